@@ -1,0 +1,126 @@
+"""What an engine must answer: one small protocol, the same for the reference and for MuJoCo."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, Protocol, runtime_checkable
+
+from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
+
+Setup = Literal["physics", "as-shipped"]
+Channel = Literal[
+    "omega_dot",
+    "omega",
+    "attitude",
+    "energy",
+    "angular_momentum",
+    "linear_momentum",
+    "position",
+    "torque",
+    "model",
+    "time",
+]
+
+
+class UnsupportedError(Exception):
+    """The engine cannot do what the scenario asks; the message says what, in one sentence."""
+
+
+@dataclass(frozen=True)
+class Integrator:
+    """One way an engine steps.
+
+    scheme: the name of the reference scheme it is declared to equal, or None when unknown.
+    orders: declared order of the accumulated error per channel.
+    knob: "timestep", or "accuracy" for an error-controlled integrator.
+    """
+
+    name: str
+    scheme: str | None
+    orders: dict[str, int]
+    knob: Literal["timestep", "accuracy"] = "timestep"
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Description:
+    """What an engine is.
+
+    conventions: how the engine itself keeps states (frames, orders), one clause each.
+    switched_off: defaults that spoil physics and were turned off for the ``physics`` setup.
+    features: what it can do, of "free", "pivot", "gravity", "damping", "torque", "full_inertia",
+    "offset_com", "forward_dynamics", "inverse_dynamics", "batch".
+    """
+
+    name: str
+    version: str
+    integrators: tuple[Integrator, ...]
+    precision: Literal["float64", "float32"] = "float64"
+    conventions: tuple[str, ...] = ()
+    switched_off: tuple[str, ...] = ()
+    features: frozenset[str] = field(default_factory=frozenset)
+    licence: str = ""
+    links: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """States at the engine's own steps. time: (n,) s; every array of the state has n rows."""
+
+    time: Array
+    state: State
+
+
+@runtime_checkable
+class Adapter(Protocol):
+    """An engine behind the harness.
+
+    A class is built with ``Engine(setup="physics")`` and must not import its engine before that.
+    States cross this border in the project's frames only, whatever the engine keeps inside.
+    """
+
+    @property
+    def description(self) -> Description:
+        """Name, version, integrators with declared orders, conventions, links."""
+        ...
+
+    def load(self, system: System) -> None:
+        """Build the engine's own model of the system, forgetting any earlier one.
+
+        Raises UnsupportedError when the engine lacks what the system needs.
+        """
+        ...
+
+    def model(self) -> tuple[Body, ...]:
+        """Mass, centre of mass and inertia as the engine itself holds them, read back."""
+        ...
+
+    def set_state(self, state: State) -> None:
+        """Put the engine in a state. Pivoted bodies take orientation and angular velocity only."""
+        ...
+
+    def get_state(self) -> State:
+        """The engine's present state."""
+        ...
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """The engine's omega-dot and centre-of-mass acceleration at n states, all loads acting."""
+        ...
+
+    def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
+        """The torque (n, 3) in N m, body axes, that gives n states this acceleration.
+
+        Everything but gravity: ``I omega_dot + omega x I omega - tau_gravity``, about the centre of
+        mass, or about the pivot for a pivoted body. Damping and applied torques are part of it.
+        Raises UnsupportedError where the engine has no inverse dynamics.
+        """
+        ...
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        """Step from `initial`, logging step 0, every `every`-th step and the last one.
+
+        Times are ``n * timestep``. The result does not depend on earlier runs.
+        """
+        ...
