@@ -33,6 +33,7 @@ class Integrator:
     scheme: the name of the reference scheme it is declared to equal, or None when unknown.
     orders: declared order of the accumulated error per channel.
     knob: "timestep", or "accuracy" for an error-controlled integrator.
+    steps_origin: the engine steps the position of a free body's origin, not its centre of mass's.
     """
 
     name: str
@@ -40,6 +41,7 @@ class Integrator:
     orders: dict[str, int]
     knob: Literal["timestep", "accuracy"] = "timestep"
     note: str = ""
+    steps_origin: bool = False
 
 
 @dataclass(frozen=True)

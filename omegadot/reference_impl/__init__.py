@@ -1,0 +1,1 @@
+"""What is true: the Newton-Euler equations, schemes that step them, and exact solutions."""

@@ -1,0 +1,21 @@
+"""What is run: scenario files, their model and the built-in cases."""
+
+from omegadot.scenarios.errors import ScenarioError
+from omegadot.scenarios.loader import (
+    builtin_names,
+    find_scenario,
+    load_builtin,
+    load_scenario,
+    scenario_of,
+)
+from omegadot.scenarios.model import Scenario
+
+__all__ = [
+    "Scenario",
+    "ScenarioError",
+    "builtin_names",
+    "find_scenario",
+    "load_builtin",
+    "load_scenario",
+    "scenario_of",
+]

@@ -1,0 +1,31 @@
+"""The schemes, one a file, by name."""
+
+from __future__ import annotations
+
+from omegadot.reference_impl.schemes import (
+    implicit_damping_euler,
+    implicit_midpoint,
+    lie_rk4,
+    lie_rk4_naive,
+    linearly_implicit_euler,
+    munthe_kaas_rk4,
+    rk4_quaternion,
+    semi_implicit_euler,
+)
+from omegadot.reference_impl.schemes.scheme import AccelerationOf, Scheme
+
+SCHEMES: dict[str, Scheme] = {
+    module.SCHEME.name: module.SCHEME
+    for module in (
+        semi_implicit_euler,
+        implicit_damping_euler,
+        linearly_implicit_euler,
+        rk4_quaternion,
+        lie_rk4,
+        munthe_kaas_rk4,
+        lie_rk4_naive,
+        implicit_midpoint,
+    )
+}
+
+__all__ = ["SCHEMES", "AccelerationOf", "Scheme"]

@@ -1,0 +1,137 @@
+"""MuJoCo's integrators, which change their mathematics from version to version.
+
+What each version does is told by MuJoCo's changelog and was confirmed against the reference's
+schemes to rounding. A body without jointed children on a free joint ("standalone") is treated
+apart by some versions; a body on a ball joint never is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from omegadot.adapters.protocol import Integrator
+
+_ROTATION = ("omega", "attitude", "energy", "angular_momentum")
+_TRANSLATION = ("linear_momentum", "position")
+
+_FLAGS = {
+    "Euler": "mjINT_EULER",
+    "RK4": "mjINT_RK4",
+    "implicit": "mjINT_IMPLICIT",
+    "implicitfast": "mjINT_IMPLICITFAST",
+    "discrete": "mjINT_DISCRETE",
+}
+
+_SEMI_IMPLICIT = "semi-implicit-euler"
+_LINEARLY_IMPLICIT = "linearly-implicit-euler"
+
+
+@dataclass(frozen=True)
+class Case:
+    """What the choice of scheme, and its orders, depend on.
+
+    pivoted: hung on a ball joint.  offset: free, with the centre of mass off the body's origin.
+    damped: the body has damping.  euler_damps: damping is implicit in ``Euler`` too.
+    turns_torque: a torque that depends on the attitude acts.
+    """
+
+    version: tuple[int, ...]
+    pivoted: bool = False
+    offset: bool = False
+    damped: bool = False
+    euler_damps: bool = False
+    turns_torque: bool = False
+
+
+def _orders(rotation: int, translation: int) -> dict[str, int]:
+    return {**dict.fromkeys(_ROTATION, rotation), **dict.fromkeys(_TRANSLATION, translation)}
+
+
+def version_of(text: str) -> tuple[int, ...]:
+    """``"3.8.1"`` to ``(3, 8, 1)``; a suffix such as ``.dev1`` is dropped."""
+    numbers = []
+    for part in text.split("."):
+        if not part.isdigit():
+            break
+        numbers.append(int(part))
+    return tuple(numbers)
+
+
+def _explicit(name: str, damping_is_implicit: bool) -> Integrator:
+    """The gyroscopic term is taken at the step's start; damping may be implicit."""
+    scheme = "implicit-damping-euler" if damping_is_implicit else "semi-implicit-euler"
+    return Integrator(name, scheme, _orders(1, 1))
+
+
+def _linearly_implicit(name: str) -> Integrator:
+    return Integrator(name, "linearly-implicit-euler", _orders(1, 1))
+
+
+def _midpoint(name: str, case: Case) -> Integrator:
+    """Of order 2 in rotation, unless a torque changes within the step."""
+    order = 1 if case.damped or case.turns_torque else 2
+    note = "I (ω₁ - ω₀) = dt (τ₀ - ω_m × I ω_m), ω_m = (ω₀ + ω₁)/2, q₁ = q₀ exp(dt ω_m)"
+    return Integrator(name, None, _orders(order, 1), note=note)
+
+
+def _euler(case: Case) -> Integrator:
+    return _explicit("Euler", case.damped and case.euler_damps)
+
+
+def _rk4(case: Case) -> Integrator:
+    if case.version >= (4,):
+        return Integrator("RK4", "munthe-kaas-rk4", _orders(4, 4))
+    orders = _orders(2, 2)
+    if not case.turns_torque:
+        orders["omega"] = 4
+        orders["energy"] = 2 if case.offset else 4
+    return Integrator("RK4", "lie-rk4-naive", orders)
+
+
+def _implicit(case: Case) -> Integrator:
+    if (3, 7) <= case.version < (3, 8, 1) and not case.pivoted:
+        return _midpoint("implicit", case)
+    return _linearly_implicit("implicit")
+
+
+def _implicitfast(case: Case) -> Integrator:
+    if case.pivoted or case.version < (3, 7):
+        return _explicit("implicitfast", case.damped)
+    if case.version < (3, 11):
+        return _midpoint("implicitfast", case)
+    return _linearly_implicit("implicitfast")
+
+
+def _discrete(case: Case) -> Integrator:
+    if case.pivoted:
+        return _explicit("discrete", case.damped)
+    return _linearly_implicit("discrete")
+
+
+_DECLARATIONS: dict[str, Callable[[Case], Integrator]] = {
+    "Euler": _euler,
+    "RK4": _rk4,
+    "implicit": _implicit,
+    "implicitfast": _implicitfast,
+    "discrete": _discrete,
+}
+
+
+def integrator_flag(mujoco: Any, name: str) -> int | None:
+    """The number of ``opt.integrator``, or None where the installed version has no such one."""
+    flag = getattr(mujoco.mjtIntegrator, _FLAGS.get(name, ""), None)
+    return None if flag is None else int(flag)
+
+
+def declared_integrators(mujoco: Any, case: Case) -> tuple[Integrator, ...]:
+    """The installed version's integrators, with what each does in this case.
+
+    A free joint's position is the body origin's, so that is what every one of them steps.
+    """
+    return tuple(
+        replace(declare(case), steps_origin=True)
+        for name, declare in _DECLARATIONS.items()
+        if integrator_flag(mujoco, name) is not None
+    )

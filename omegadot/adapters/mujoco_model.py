@@ -1,0 +1,130 @@
+"""A system as a MuJoCo model: one body on a free joint, or on a ball joint at its pivot."""
+
+from __future__ import annotations
+
+from itertools import permutations
+from typing import Any
+
+import numpy as np
+
+from omegadot.adapters.protocol import Setup, UnsupportedError
+from omegadot.reference_impl.rotations import rotation_matrix
+from omegadot.reference_impl.system import Array, Body, System
+
+BODY = 1  # body 0 is MuJoCo's world
+
+# Flags by name: a version knows only some of them, and what it lacks it cannot do wrong.
+_DISABLED = {
+    "mjDSBL_AUTORESET": "reset to the model's first pose when the state diverges",
+    "mjDSBL_EULERDAMP": "implicit treatment of damping in the Euler integrator",
+    "mjDSBL_CONTACT": "contacts",
+    "mjDSBL_CONSTRAINT": "the constraint solver",
+    "mjDSBL_WARMSTART": "warm start of the constraint solver from the step before",
+}
+
+
+def switched_off(mujoco: Any) -> tuple[str, ...]:
+    """What the ``physics`` setup turns off in the installed version, one clause each."""
+    known = [what for name, what in _DISABLED.items() if hasattr(mujoco.mjtDisableBit, name)]
+    return (*known, "every optional flag, sleep among them", "density and viscosity of a medium")
+
+
+def _nearest_to_identity(axes: Array) -> Array:
+    """The columns of a (3, 3) orthogonal matrix, reordered and signed to a rotation near 1."""
+    order = max(permutations(range(3)), key=lambda p: float(abs(axes[range(3), p]).sum()))
+    axes = axes[:, order]
+    axes = axes * np.where(np.diagonal(axes) < 0, -1.0, 1.0)
+    if np.linalg.det(axes) < 0:
+        axes[:, np.argmin(np.diagonal(axes))] *= -1.0
+    return axes
+
+
+def _quaternion(rotation: Array) -> Array:
+    """The unit quaternion (w, x, y, z) of a rotation matrix (3, 3).
+
+    ``4 q qᵀ`` is linear in the matrix; its row with the largest diagonal gives q without
+    cancellation.
+    """
+    trace = np.trace(rotation)
+    skewed = rotation - rotation.T
+    outer = np.empty((4, 4))
+    outer[0, 0] = 1 + trace
+    outer[0, 1:] = outer[1:, 0] = skewed[2, 1], skewed[0, 2], skewed[1, 0]
+    outer[1:, 1:] = rotation + rotation.T + (1 - trace) * np.eye(3)
+    row = outer[np.argmax(np.diagonal(outer))]
+    unit: Array = row / np.linalg.norm(row)
+    return unit
+
+
+def principal_frame(inertia: Array) -> tuple[Array, Array]:
+    """Principal moments (3,) and the quaternion (4,) of their axes in body axes.
+
+    ``I = R diag(moments) Rᵀ``. A diagonal tensor comes back as it is, with the identity.
+    """
+    axes = _nearest_to_identity(np.linalg.eigh(inertia)[1])
+    moments = np.einsum("ji,jk,ki->i", axes, inertia, axes)
+    return moments, _quaternion(axes)
+
+
+def _check_size(mujoco: Any, mass: float, moments: Array) -> None:
+    least = float(getattr(mujoco, "mjMINVAL", 1e-15))
+    smallest = min(mass, float(moments.min()))
+    if not smallest > least:
+        raise UnsupportedError(
+            f"MuJoCo takes no mass or principal moment of {least:g} or less, and the smallest "
+            f"here is {smallest:g}; give the body larger units."
+        )
+
+
+def build_model(mujoco: Any, system: System) -> Any:
+    """An ``MjModel`` of the system, without geoms.
+
+    The compiler is given the frames and a stand-in for mass and inertia; the true values are
+    written into the compiled model. Its own way from a full tensor to principal axes loses up to
+    nine digits in old versions, and its triangle check turns away flat bodies by one rounding.
+    Raises UnsupportedError for more than one body and for bodies below MuJoCo's least inertia.
+    """
+    if len(system.bodies) != 1:
+        raise UnsupportedError(f"the MuJoCo adapter takes one body, not {len(system.bodies)}.")
+    body, load = system.body, system.load
+    moments, axes = principal_frame(np.asarray(body.inertia, dtype=float))
+    _check_size(mujoco, float(body.mass), moments)
+    spec = mujoco.MjSpec()
+    element = spec.worldbody.add_body(name="body")
+    if load.pivot is None:
+        element.add_joint(type=mujoco.mjtJoint.mjJNT_FREE)
+    else:
+        element.pos = -np.asarray(load.pivot)
+        element.add_joint(type=mujoco.mjtJoint.mjJNT_BALL, pos=load.pivot)
+    element.explicitinertial = True
+    element.mass, element.inertia = 1.0, np.ones(3)
+    element.ipos, element.iquat = body.center_of_mass, axes
+    model = spec.compile()
+    model.body_mass[BODY], model.body_inertia[BODY] = body.mass, moments
+    model.body_ipos[BODY], model.body_iquat[BODY] = body.center_of_mass, axes
+    model.dof_damping[-3:] = load.damping  # a free joint's first three are translations
+    model.opt.gravity[:] = load.gravity
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    return model
+
+
+def apply_setup(mujoco: Any, model: Any, setup: Setup) -> None:
+    """Turn off what spoils physics, or leave every default of MuJoCo as it is."""
+    if setup == "as-shipped":
+        return
+    for name in _DISABLED:
+        flag = getattr(mujoco.mjtDisableBit, name, None)
+        if flag is not None:
+            model.opt.disableflags |= int(flag)
+    model.opt.enableflags = 0
+    model.opt.density = model.opt.viscosity = 0.0
+
+
+def body_of(model: Any) -> Body:
+    """Mass, centre of mass and inertia as the compiled model holds them."""
+    axes = rotation_matrix(model.body_iquat[BODY])
+    return Body(
+        mass=np.array(model.body_mass[BODY]),
+        center_of_mass=model.body_ipos[BODY].copy(),
+        inertia=axes @ np.diag(model.body_inertia[BODY]) @ axes.T,
+    )

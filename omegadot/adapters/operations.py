@@ -1,0 +1,110 @@
+"""What a worker can be asked: each operation takes the adapter and the request's fields."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from omegadot.adapters.protocol import Adapter, Trajectory
+from omegadot.adapters.wire import acceleration_from, state_from, system_from
+from omegadot.reference_impl.companion import Steps, companion
+from omegadot.reference_impl.exact_solution import exact_solution
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.system import State
+
+Request = dict[str, Any]
+
+
+def _load(adapter: Adapter, request: Request) -> Any:
+    """Load a system; the description that comes back may speak of this very system."""
+    adapter.load(system_from(request["system"]))
+    return adapter.description
+
+
+def _model(adapter: Adapter, request: Request) -> Any:
+    """Bodies as the engine holds them, and a state after a round trip through it."""
+    adapter.set_state(state_from(request["state"]))
+    return {"bodies": adapter.model(), "state": adapter.get_state()}
+
+
+def _forward(adapter: Adapter, request: Request) -> Any:
+    return adapter.forward_dynamics(state_from(request["states"]))
+
+
+def _inverse(adapter: Adapter, request: Request) -> Any:
+    states = state_from(request["states"])
+    return {"torque": adapter.inverse_dynamics(states, acceleration_from(request["acceleration"]))}
+
+
+def _is_finite(state: State) -> Any:
+    values = (state.orientation, state.angular_velocity, state.position, state.linear_velocity)
+    return np.all(np.concatenate([np.isfinite(v) for v in values], axis=-1), axis=-1)
+
+
+def _timed_run(adapter: Adapter, request: Request) -> tuple[Trajectory, float]:
+    initial = state_from(request["initial"])
+    step = (request["integrator"], request["timestep"])
+    adapter.run(initial, *step, 1, 1)  # a warm-up, so that first-call costs are not counted
+    started = time.perf_counter()
+    trajectory = adapter.run(initial, *step, request["steps"], request["every"])
+    return trajectory, (time.perf_counter() - started) / request["steps"]
+
+
+def _run(adapter: Adapter, request: Request) -> Any:
+    """A run with the engine's own omega-dot at its samples; the time per step is its own."""
+    trajectory, seconds_per_step = _timed_run(adapter, request)
+    finite = _is_finite(trajectory.state)
+    angular = np.full(trajectory.state.angular_velocity.shape, np.nan)
+    if "forward_dynamics" in adapter.description.features and finite.any():
+        state = trajectory.state
+        kept = State(
+            state.orientation[finite],
+            state.angular_velocity[finite],
+            state.position[finite],
+            state.linear_velocity[finite],
+        )
+        angular[finite] = adapter.forward_dynamics(kept).angular
+    return {
+        "time": trajectory.time,
+        "state": trajectory.state,
+        "omega_dot": angular,
+        "seconds_per_step": seconds_per_step,
+    }
+
+
+def _solve(_: Adapter, request: Request) -> Any:
+    """The exact states, and exact omega-dot, at any times; no engine takes part."""
+    system, initial = system_from(request["system"]), state_from(request["initial"])
+    source, state = exact_solution(system, initial, request["times"])
+    return {"source": source, "state": state, "omega_dot": forward_dynamics(system, state).angular}
+
+
+def _companion(_: Adapter, request: Request) -> Any:
+    """The reference stepping one scheme over a sweep, with the growth of rounding."""
+    system, initial = system_from(request["system"]), state_from(request["initial"])
+    plan = [Steps(**step) for step in request["plan"]]
+    how = (request["scheme"], request["rate"], plan, request["at_origin"])
+    runs = companion(system, initial, *how)
+    return [
+        {
+            "time": run.time,
+            "state": run.state,
+            "growth": run.growth,
+            "omega_dot": forward_dynamics(system, run.state).angular,
+        }
+        for run in runs
+    ]
+
+
+OPERATIONS: dict[str, Callable[[Adapter, Request], Any]] = {
+    "solve": _solve,
+    "companion": _companion,
+    "load": _load,
+    "model": _model,
+    "forward": _forward,
+    "inverse": _inverse,
+    "run": _run,
+}

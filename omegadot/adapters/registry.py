@@ -1,0 +1,68 @@
+"""Which engines there are: the built-in ones, those of entry points, those named by a file."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import sys
+from collections.abc import Callable
+from importlib.metadata import entry_points
+from pathlib import Path
+from types import ModuleType
+
+from omegadot.adapters.protocol import Adapter, Setup
+
+ENTRY_POINT_GROUP = "omegadot.adapters"
+
+BUILT_IN: dict[str, str] = {
+    "exact": "omegadot.adapters.exact:ExactAdapter",
+    "reference": "omegadot.adapters.reference:ReferenceAdapter",
+    "mujoco": "omegadot.adapters.mujoco:MujocoAdapter",
+    "pinocchio": "omegadot.adapters.pinocchio:PinocchioAdapter",
+    "dart": "omegadot.adapters.dart:DartAdapter",
+}
+
+
+class AdapterError(ValueError):
+    """An adapter cannot be found or built; the message is one sentence for the user."""
+
+
+def registered() -> dict[str, str]:
+    """Every engine name with its ``module:Class`` target; entry points add to the built-ins."""
+    found = {point.name: point.value for point in entry_points(group=ENTRY_POINT_GROUP)}
+    return {**found, **BUILT_IN}
+
+
+def _module_of_file(path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    if spec is None or spec.loader is None:
+        raise AdapterError(f"{path}: not a Python file; give FILE.py:Class or module:Class.")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _import_target(module_name: str) -> ModuleType:
+    if not module_name.endswith(".py"):
+        return importlib.import_module(module_name)
+    path = Path(module_name)
+    if not path.is_file():
+        raise AdapterError(f"{module_name}: no such adapter file; check the path.")
+    return _module_of_file(path)
+
+
+def build_adapter(target: str, setup: Setup = "physics") -> Adapter:
+    """Build the adapter that ``module:Class`` or ``FILE.py:Class`` names.
+
+    Raises AdapterError when the target is malformed, and whatever the engine's import raises
+    (ImportError when it is not installed).
+    """
+    module_name, separator, class_name = target.rpartition(":")
+    if not separator or not class_name:
+        raise AdapterError(f"{target}: not an adapter; give module:Class or FILE.py:Class.")
+    module = _import_target(module_name)
+    factory: Callable[..., Adapter] | None = getattr(module, class_name, None)
+    if factory is None:
+        raise AdapterError(f"{target}: {module_name} has no {class_name}; check the class name.")
+    return factory(setup=setup)

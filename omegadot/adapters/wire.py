@@ -1,0 +1,106 @@
+"""How a worker and the harness talk: one frame a message, a JSON header and raw arrays.
+
+A frame is: 8 bytes, the header's length (big endian); the header, UTF-8 JSON, in which an array
+stands as ``{"$array": i}``; then the arrays in order, as little-endian float64. Nothing is
+pickled, so an old worker and a new harness understand each other.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import struct
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from omegadot.adapters.protocol import Description, Integrator
+from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
+
+
+def _pack(value: Any, arrays: list[Array]) -> Any:
+    if isinstance(value, np.ndarray):
+        arrays.append(np.array(value, dtype="<f8", order="C"))  # a scalar stays one
+        return {"$array": len(arrays) - 1}
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        fields = {f.name: getattr(value, f.name) for f in dataclasses.fields(value)}
+        return {name: _pack(item, arrays) for name, item in fields.items()}
+    if isinstance(value, dict):
+        return {str(key): _pack(item, arrays) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_pack(item, arrays) for item in value]
+    if isinstance(value, set | frozenset):
+        return sorted(value)
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _unpack(value: Any, arrays: list[Array]) -> Any:
+    if isinstance(value, dict):
+        if "$array" in value:
+            return arrays[value["$array"]]
+        return {key: _unpack(item, arrays) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_unpack(item, arrays) for item in value]
+    return value
+
+
+def write_frame(stream: BinaryIO, message: dict[str, Any]) -> None:
+    """Write one message; arrays anywhere in it travel as raw float64."""
+    arrays: list[Array] = []
+    body = _pack(message, arrays)
+    header = json.dumps({"body": body, "shapes": [a.shape for a in arrays]}).encode()
+    stream.write(struct.pack(">Q", len(header)) + header + b"".join(a.tobytes() for a in arrays))
+    stream.flush()
+
+
+def _read_exactly(stream: BinaryIO, count: int) -> bytes:
+    data = stream.read(count)
+    if len(data) != count:
+        raise EOFError("the other side closed the channel")
+    return data
+
+
+def read_frame(stream: BinaryIO) -> dict[str, Any]:
+    """Read one message. Raises EOFError when the other side is gone."""
+    (length,) = struct.unpack(">Q", _read_exactly(stream, 8))
+    header = json.loads(_read_exactly(stream, length))
+    arrays = []
+    for shape in header["shapes"]:
+        count = int(np.prod(shape, dtype=np.int64))
+        flat = np.frombuffer(_read_exactly(stream, 8 * count), dtype="<f8")
+        arrays.append(flat.reshape(shape).copy())
+    unpacked: dict[str, Any] = _unpack(header["body"], arrays)
+    return unpacked
+
+
+def system_from(message: dict[str, Any]) -> System:
+    """The System that a packed one describes."""
+    load = dict(message["load"])
+    load["damping"] = np.asarray(load["damping"], dtype=float)
+    bodies = tuple(body_from(body) for body in message["bodies"])
+    return System(bodies=bodies, load=Load(**load))
+
+
+def body_from(message: dict[str, Any]) -> Body:
+    """The Body that a packed one describes."""
+    return Body(**{key: np.asarray(value, dtype=float) for key, value in message.items()})
+
+
+def state_from(message: dict[str, Any]) -> State:
+    """The State that a packed one describes."""
+    return State(**message)
+
+
+def acceleration_from(message: dict[str, Any]) -> Acceleration:
+    """The Acceleration that a packed one describes."""
+    return Acceleration(**message)
+
+
+def description_of(message: dict[str, Any]) -> Description:
+    """The Description that a packed one holds."""
+    fields = dict(message)
+    fields["integrators"] = tuple(Integrator(**item) for item in fields["integrators"])
+    fields["features"] = frozenset(fields["features"])
+    for name in ("conventions", "switched_off", "links"):
+        fields[name] = tuple(fields[name])
+    return Description(**fields)

@@ -1,0 +1,78 @@
+"""Ask the exact solution and the reference's companions of their workers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from omegadot.adapters.wire import state_from
+from omegadot.harness.drive import Driver
+from omegadot.harness.gates.course import Companion, SchemeKey
+from omegadot.harness.measures import Yardstick
+from omegadot.harness.plan import Case, Sweep
+from omegadot.harness.truth import Truth
+from omegadot.harness.worker_process import Answer
+
+STEPS_TIMED = 64
+
+
+def case_truth(exact: Driver, case: Case) -> Truth | str:
+    """The exact course of a case, or the sentence that says why there is none."""
+    times = case.sample_times
+    answer = exact.request(case, "solve", system=case.system, initial=case.initial, times=times)
+    if not answer.ok:
+        return f"no exact solution to compare with: {answer.reason}"
+    state = state_from(answer.result["state"])
+    yardstick = Yardstick(case.system, times, state)
+    return Truth(answer.result["source"], times, state, answer.result["omega_dot"], yardstick)
+
+
+def case_companions(
+    reference: Driver, case: Case, truth: Truth | str, keys: Sequence[SchemeKey]
+) -> dict[tuple[SchemeKey, float], Companion]:
+    """The reference's run for every scheme and step of a case; a scheme that fails is left out."""
+    if isinstance(truth, str):
+        return {}
+    plan = [{"timestep": s.timestep, "steps": s.steps, "every": s.every} for s in case.sweeps]
+    found = {}
+    for key in keys:
+        answer = reference.request(
+            case,
+            "companion",
+            system=case.system,
+            initial=case.initial,
+            scheme=key.scheme,
+            at_origin=key.at_origin,
+            rate=truth.yardstick.rate,
+            plan=plan,
+        )
+        if answer.ok:
+            for sweep, run in zip(case.sweeps, answer.result, strict=True):
+                companion = Companion(state_from(run["state"]), run["growth"], run["omega_dot"])
+                found[key, sweep.timestep] = companion
+    return found
+
+
+def reference_runs(
+    reference: Driver, case: Case, companions: dict[tuple[SchemeKey, float], Companion]
+) -> dict[tuple[str, float], Answer]:
+    """The companions as the runs of the engine `reference`: they are the same computation.
+
+    Companions of a sweep share their steps, so the cost of one is measured on a short run apart.
+    """
+    runs = {}
+    for integrator in reference.engine.integrators:
+        first = case.sweeps[0]
+        short = Sweep(first.timestep, min(first.steps, STEPS_TIMED), first.every)
+        timed = reference.run(case, integrator.name, short)
+        for sweep in case.sweeps:
+            key = (integrator.name, sweep.timestep)
+            found = companions.get((SchemeKey(integrator.name, False), sweep.timestep))
+            if found is None or not timed.ok:
+                failed = Answer("raised", "the reference gave no answer for this scheme")
+                runs[key] = failed if timed.ok else timed
+                continue
+            result = {"time": sweep.times, "state": vars(found.state)}
+            result |= {"omega_dot": found.omega_dot}
+            result |= {"seconds_per_step": timed.result["seconds_per_step"]}
+            runs[key] = Answer("ok", result=result)
+    return runs

@@ -1,0 +1,172 @@
+"""The command line: ``omegadot run | engines | scenarios | report``."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    name="omegadot",
+    help="Cross-validate rigid-body engines against a readable Newton-Euler reference.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+class Format(StrEnum):
+    """How results are printed."""
+
+    text = "text"
+    json = "json"
+
+
+class Setup(StrEnum):
+    """Engines with what spoils physics switched off, or as they come."""
+
+    physics = "physics"
+    as_shipped = "as-shipped"
+
+
+@app.command()
+def run(
+    scenarios: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[SCENARIO]...", help="Built-in names or paths; default: all."),
+    ] = None,
+    engine: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME[:INTEGRATOR]", help="An engine; repeat for more. Default: all."),
+    ] = None,
+    timestep: Annotated[
+        list[float] | None,
+        typer.Option(metavar="S", help="A time step in s, instead of the scenario's; repeatable."),
+    ] = None,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the record goes.")] = Path(
+        "omegadot-run"
+    ),
+    setup: Annotated[Setup, typer.Option(help="How engines are configured.")] = Setup.physics,
+    adapter: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
+    ] = None,
+    timeout: Annotated[
+        float, typer.Option(metavar="S", min=0.1, help="Limit for one request to an engine.")
+    ] = 60.0,
+    jobs: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Engines at the same time. Default: cores.")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="For the random states.")] = 0,
+    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+) -> None:
+    """Run scenarios on engines, judge them, and write a record with its report.
+
+    Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
+    hung or could not be started.
+    """
+    import os
+
+    from omegadot.harness.command_run import run_and_write
+    from omegadot.harness.print_run import print_json, print_text
+    from omegadot.harness.run import RunRequest
+    from omegadot.harness.usage import case_of, engine_choices, scenarios_of
+    from omegadot.reports.record import check_folder
+
+    choices = engine_choices(engine or [], adapter or [])
+    cases = [case_of(scenario, timestep or []) for scenario in scenarios_of(scenarios or [])]
+    check_folder(out)
+    jobs = jobs or os.cpu_count() or 1
+    request = RunRequest(cases, choices, setup.value, seed, timeout, jobs)
+    record, code = run_and_write(request, out, ["omegadot", *sys.argv[1:]])
+    if output is Format.json:
+        print_json(record, out, code)
+    else:
+        print_text(record, out)
+    raise typer.Exit(code)
+
+
+@app.command()
+def engines(
+    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+    adapter: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
+    ] = None,
+) -> None:
+    """List the engines: installed or not, versions, integrators, conventions, what is off."""
+    from omegadot.harness.command_engines import print_engines
+
+    print_engines(adapter or [], as_json=output is Format.json)
+
+
+@app.command()
+def scenarios(
+    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+) -> None:
+    """List the built-in scenarios and what each shows."""
+    from omegadot.harness.command_scenarios import print_scenarios
+
+    print_scenarios(as_json=output is Format.json)
+
+
+@app.command()
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run.")],
+) -> None:
+    """Draw the page of a stored run again."""
+    from omegadot.harness.command_report import redraw
+
+    typer.echo(redraw(folder))
+
+
+def _version(show: bool) -> None:
+    if show:
+        from omegadot import __version__
+
+        typer.echo(f"omegadot {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    pass
+
+
+def main() -> None:
+    """Entry point: wrong input is one sentence on standard error and exit code 2."""
+    try:
+        code = app(standalone_mode=False)
+    except (typer.Abort, KeyboardInterrupt):
+        print("omegadot: interrupted.", file=sys.stderr)
+        sys.exit(130)
+    except Exception as error:
+        sentence = _sentence(error)
+        if sentence is None:
+            raise
+        print(f"omegadot: {sentence}", file=sys.stderr)
+        sys.exit(2)
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _sentence(error: Exception) -> str | None:
+    """The sentence of an error that is the user's to mend; None of any other."""
+    if hasattr(error, "format_message"):  # what the command-line parser raises
+        text = " ".join(str(error.format_message()).split())
+        return text if text.endswith(".") else f"{text}."
+    from omegadot.adapters.registry import AdapterError
+    from omegadot.harness.usage import UsageError
+    from omegadot.reports.schema import RecordError
+    from omegadot.scenarios import ScenarioError
+
+    if isinstance(error, AdapterError | UsageError | RecordError | ScenarioError):
+        return str(error)
+    return None

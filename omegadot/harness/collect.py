@@ -1,0 +1,183 @@
+"""From a finished run to the record that reports read: tasks, metrics, trajectories."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from omegadot.adapters.wire import state_from
+from omegadot.harness.exact_rows import exact_rows
+from omegadot.harness.judge_case import JudgedRun
+from omegadot.harness.plan import Case, Engine, Task
+from omegadot.harness.rows import Row, worst
+from omegadot.harness.run import EngineCase, JudgedCase, Outcome
+from omegadot.reference_impl.system import Array, State
+from omegadot.reports import schema
+
+COLUMNS = {
+    "orientation": ("qw", "qx", "qy", "qz"),
+    "angular_velocity": ("wx", "wy", "wz"),
+    "position": ("px", "py", "pz"),
+    "linear_velocity": ("vx", "vy", "vz"),
+}
+
+
+def _task_entry(task: Task, version: str, outcome: str, reason: str) -> dict[str, Any]:
+    return {
+        "scenario": task.scenario,
+        "engine": task.engine,
+        "engine_version": version,
+        "setup": task.setup,
+        "integrator": task.integrator,
+        "timestep": task.timestep,
+        "accuracy": task.accuracy,
+        "outcome": outcome,
+        "reason": reason,
+        "gates": {},
+        "why": "",
+    }
+
+
+def _gates(rows: list[Row]) -> dict[str, str]:
+    found = {}
+    for gate in schema.GATES:
+        verdict = worst(row.verdict for row in rows if row.gate == gate)
+        if verdict is not None:
+            found[gate] = verdict
+    return found
+
+
+def _judged_entry(
+    task: Task, version: str, found: EngineCase, judged: JudgedRun
+) -> dict[str, Any]:
+    """A task that ran, or whose run failed; a failure before it counts where it ran well."""
+    earlier = found.result.first_failure()
+    outcome, reason = judged.outcome, judged.reason
+    if outcome == "ok" and earlier is not None:
+        outcome, reason = earlier.outcome, earlier.reason
+    entry = _task_entry(task, version, outcome, reason)
+    entry["gates"] = _gates([*found.shared, *judged.rows])
+    entry["why"] = judged.why
+    return entry
+
+
+def _exact_tasks(case: JudgedCase, found: EngineCase, setup: str) -> Iterator[dict[str, Any]]:
+    name = case.truth.source if case.truth else "series"
+    task = Task(case.case.name, "exact", setup, name, None)
+    version = found.engine.description.version
+    if case.truth is None:
+        yield _task_entry(task, version, _outcome_without_truth(case.reason), case.reason)
+        return
+    failure = found.result.first_failure()
+    outcome, reason = (failure.outcome, failure.reason) if failure else ("ok", "")
+    entry = _task_entry(task, version, outcome, reason)
+    entry["gates"] = _gates([*found.shared, *exact_rows(case.case, case.truth)])
+    entry["why"] = f"the exact solution itself, by {name}"
+    yield entry
+
+
+def _outcome_without_truth(reason: str) -> str:
+    return "interrupted" if "interrupted" in reason else "raised"
+
+
+def _engine_tasks(case: JudgedCase, found: EngineCase, setup: str) -> Iterator[dict[str, Any]]:
+    version, name = found.engine.description.version, found.engine.name
+    if case.truth is None:
+        for integrator in found.engine.integrators:
+            for sweep in case.case.sweeps:
+                task = Task(case.case.name, name, setup, integrator.name, sweep.timestep)
+                outcome = _outcome_without_truth(case.reason)
+                yield _task_entry(task, version, outcome, case.reason)
+    for judged in found.runs:
+        step = judged.sweep.timestep
+        task = Task(case.case.name, name, setup, judged.integrator.name, step)
+        yield _judged_entry(task, version, found, judged)
+
+
+def tasks_of_run(outcome: Outcome, cases: list[Case], setup: str) -> list[dict[str, Any]]:
+    """Every task with its outcome; engines that did not start have one task a scenario."""
+    found = []
+    for case in outcome.cases:
+        for engine in case.engines:
+            tasks = _exact_tasks if engine.engine.name == "exact" else _engine_tasks
+            found += list(tasks(case, engine, setup))
+    for choice, answer in outcome.missing:
+        for prepared in cases:
+            wanted = choice.integrators or ("",)
+            for integrator in wanted:
+                task = Task(prepared.name, choice.name, setup, integrator, None)
+                found.append(_task_entry(task, "", answer.outcome, answer.reason))
+    return found
+
+
+def _metric(row: Row, case: str, engine: Engine, setup: str, task: JudgedRun | None, exact: str) -> dict[str, Any]:
+    return {
+        "scenario": case,
+        "engine": engine.name,
+        "engine_version": engine.description.version,
+        "setup": setup,
+        "integrator": task.integrator.name if task else exact or None,
+        "timestep": task.sweep.timestep if task else None,
+        "accuracy": None,
+        **vars(row),
+    }
+
+
+def metrics_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
+    """One value a row; rows that belong to engine and scenario have no integrator and step."""
+    rows = []
+    for case in outcome.cases:
+        for found in case.engines:
+            name, engine = case.case.name, found.engine
+            rows += [_metric(row, name, engine, setup, None, "") for row in found.shared]
+            for task in found.runs:
+                rows += [_metric(row, name, engine, setup, task, "") for row in task.rows]
+            if engine.name == "exact" and case.truth is not None:
+                source = case.truth.source
+                for row in exact_rows(case.case, case.truth):
+                    rows.append(_metric(row, name, engine, setup, None, source))
+    columns = {name: f.dtype for name, f in schema.METRICS.items()}
+    return pl.DataFrame(rows, schema=columns, orient="row") if rows else schema.empty(schema.METRICS)
+
+
+def _samples(labels: dict[str, Any], time: Array, state: State, omega_dot: Array) -> pl.DataFrame:
+    columns: dict[str, Array] = {"time": time}
+    for field, names in COLUMNS.items():
+        columns |= {name: getattr(state, field)[:, i] for i, name in enumerate(names)}
+    columns |= {name: omega_dot[:, i] for i, name in enumerate(("ax", "ay", "az"))}
+    numbers = {name: np.ascontiguousarray(values) for name, values in columns.items()}
+    texts = [pl.lit(v, dtype=schema.TRAJECTORIES[k].dtype).alias(k) for k, v in labels.items()]
+    return pl.DataFrame(numbers).with_columns(texts).select(list(schema.TRAJECTORIES))
+
+
+def _labels(case: str, engine: str, setup: str, integrator: str, timestep: float | None) -> dict[str, Any]:
+    return {
+        "scenario": case,
+        "engine": engine,
+        "setup": setup,
+        "integrator": integrator,
+        "timestep": timestep,
+        "accuracy": None,
+    }
+
+
+def trajectories_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
+    """Every run's samples, and the exact course of every case beside them."""
+    frames = []
+    for case in outcome.cases:
+        name, truth = case.case.name, case.truth
+        if truth is None:
+            continue
+        labels = _labels(name, "exact", setup, truth.source, None)
+        frames.append(_samples(labels, truth.times, truth.state, truth.omega_dot))
+        for found in case.engines:
+            for (integrator, timestep), answer in found.result.runs.items():
+                if answer.ok:
+                    labels = _labels(name, found.engine.name, setup, integrator, timestep)
+                    run = answer.result
+                    state = state_from(run["state"])
+                    frames.append(_samples(labels, run["time"], state, run["omega_dot"]))
+    return pl.concat(frames) if frames else schema.empty(schema.TRAJECTORIES)

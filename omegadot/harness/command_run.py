@@ -1,0 +1,134 @@
+"""``omegadot run``: from the words on the command line to a record and an exit code."""
+
+from __future__ import annotations
+
+import datetime
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from omegadot import __version__
+from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
+from omegadot.harness.machine import describe_machine, package_versions
+from omegadot.harness.plan import Case, EngineChoice
+from omegadot.harness.run import Outcome, Runner, RunRequest, tasks_of
+from omegadot.reports.page import draw_page
+from omegadot.reports.record import Record, write_record
+from omegadot.reports.schema import SCHEMA
+
+BROKEN = ("crashed", "timeout", "raised")
+INTERRUPTED_EXIT = 130
+
+
+@contextmanager
+def progress_bar(runner: Runner, cases: Sequence[Case]) -> Iterator[None]:
+    """A bar with an estimate on a terminal, nothing where standard error is piped."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import TimeRemainingColumn as Remaining
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Remaining())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("starting the engines", total=None)
+
+        def planned() -> None:
+            total = sum(tasks_of(engine, case) for engine in runner.engines for case in cases)
+            bar.update(task, total=total, description="running")
+
+        runner.on_start = planned
+        runner.on_advance = lambda count: bar.advance(task, count)
+        yield
+
+
+def record_of(outcome: Outcome, request: RunRequest, command: list[str], seconds: float) -> Record:
+    """The record of a finished or interrupted run."""
+    now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
+    run = {
+        "schema": SCHEMA,
+        "omegadot": __version__,
+        "created": now.isoformat(),
+        "command": command,
+        "seed": request.seed,
+        "seconds": round(seconds, 3),
+        "complete": not outcome.interrupted,
+        "machine": describe_machine(),
+        "versions": package_versions(),
+        "engines": _engines(outcome),
+        "scenarios": [_scenario(case) for case in request.cases],
+        "tasks": tasks_of_run(outcome, list(request.cases), request.setup),
+    }
+    return Record(
+        run,
+        metrics_of_run(outcome, request.setup),
+        trajectories_of_run(outcome, request.setup),
+    )
+
+
+def _engines(outcome: Outcome) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = []
+    for engine in outcome.engines:
+        fields = vars(engine.description)
+        integrators = [vars(integrator) for integrator in engine.description.integrators]
+        features = sorted(engine.description.features)
+        found.append(
+            {**fields, "installed": True, "reason": "", "integrators": integrators}
+            | {"features": features}
+        )
+    for choice, answer in outcome.missing:
+        found.append({"name": choice.name, "installed": False, "reason": answer.reason})
+    return found
+
+
+def _scenario(case: Case) -> dict[str, Any]:
+    scenario, body, load = case.scenario, case.system.body, case.system.load
+    return {
+        "name": scenario.name,
+        "title": scenario.title,
+        "shows": scenario.shows,
+        "source": scenario.source,
+        "definition": scenario.to_dict(),
+        "system": {
+            "mass": float(body.mass),
+            "center_of_mass": body.center_of_mass.tolist(),
+            "inertia": body.inertia.tolist(),
+            "gravity": load.gravity.tolist(),
+            "pivot": None if load.pivot is None else load.pivot.tolist(),
+            "damping": float(load.damping),
+            "torque_body": load.torque_body.tolist(),
+            "torque_world": load.torque_world.tolist(),
+        },
+    }
+
+
+def exit_code(run: dict[str, Any], choices: Sequence[EngineChoice]) -> int:
+    """0 every gate holds, 1 a gate fails, 3 an engine failed to answer or to start.
+
+    An engine that is not installed counts only where it was asked for by name.
+    """
+    required = {choice.name for choice in choices if choice.required}
+    tasks = run["tasks"]
+    if not run["complete"]:
+        return INTERRUPTED_EXIT
+    if any(task["outcome"] in BROKEN for task in tasks):
+        return 3
+    if any(t["outcome"] == "not-installed" and t["engine"] in required for t in tasks):
+        return 3
+    failed = any("fail" in t["gates"].values() or t["outcome"] == "diverged" for t in tasks)
+    return 1 if failed else 0
+
+
+def run_and_write(request: RunRequest, out: Path, command: list[str]) -> tuple[Record, int]:
+    """Run, write the record with its page, and say how it went."""
+    started = time.perf_counter()
+    runner = Runner(request)
+    with progress_bar(runner, request.cases):
+        outcome = runner.execute()
+    record = record_of(outcome, request, command, time.perf_counter() - started)
+    write_record(record, out, draw_page(record))
+    return record, exit_code(record.run, request.choices)

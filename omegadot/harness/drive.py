@@ -1,0 +1,158 @@
+"""Put one engine through one scenario: load, read back, equation, every integrator and step.
+
+A request that kills or hangs the worker costs its own task; the worker is started again and the
+next request goes on.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.adapters.wire import description_of
+from omegadot.harness.plan import Case, Engine, Sweep
+from omegadot.harness.worker_process import FAILED_TO_ANSWER, Answer, WorkerProcess
+from omegadot.reference_impl.system import Acceleration, State
+
+MOST_TIMEOUTS_IN_A_ROW = 3
+INTERRUPTED = Answer("interrupted", "the run was interrupted before this task")
+
+
+@dataclass(frozen=True)
+class Questions:
+    """States to put to an engine's equations: random ones, and ones along the exact course."""
+
+    random: State
+    path: State
+    asked: Acceleration
+
+
+@dataclass
+class CaseResult:
+    """What one engine answered for one scenario; answers that failed are kept as such.
+
+    integrators: those that are run, as the engine declares them for this system.
+    """
+
+    engine: str
+    case: str
+    integrators: tuple[Integrator, ...] = ()
+    model: Answer = INTERRUPTED
+    forward: Answer = INTERRUPTED
+    path: Answer = INTERRUPTED
+    inverse: Answer = INTERRUPTED
+    runs: dict[tuple[str, float], Answer] = field(default_factory=dict)
+
+    def first_failure(self) -> Answer | None:
+        """The first answer besides the runs that failed; unsupported parts are no failure."""
+        named = {
+            "reading the model back": self.model,
+            "forward dynamics": self.forward,
+            "forward dynamics along the course": self.path,
+            "inverse dynamics": self.inverse,
+        }
+        for name, answer in named.items():
+            if answer.outcome not in ("ok", "unsupported"):
+                return replace(answer, reason=f"{name}: {answer.reason}")
+        return None
+
+
+class Driver:
+    """One engine's worker with the engine's memory of failures."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        worker: WorkerProcess,
+        slots: threading.Semaphore,
+        stopping: threading.Event,
+    ) -> None:
+        self.engine, self.worker = engine, worker
+        self._slots, self._stopping = slots, stopping
+        self._timeouts_in_a_row = 0
+        self._loaded: Case | None = None
+        self._declared: tuple[Integrator, ...] = ()
+
+    def _ask(self, operation: str, **fields: Any) -> Answer:
+        if self._stopping.is_set():
+            return INTERRUPTED
+        with self._slots:
+            answer = self.worker.ask(operation, **fields)
+        if self._stopping.is_set() and not answer.ok:
+            return INTERRUPTED
+        late = answer.outcome == "timeout"
+        self._timeouts_in_a_row = self._timeouts_in_a_row + 1 if late else 0
+        if answer.outcome in FAILED_TO_ANSWER:
+            self._loaded = None
+        return answer
+
+    def _load(self, case: Case) -> Answer:
+        """Have the worker up and the scenario loaded, whatever went before."""
+        if self._timeouts_in_a_row >= MOST_TIMEOUTS_IN_A_ROW:
+            return Answer("timeout", f"not tried: {self._timeouts_in_a_row} time-outs in a row")
+        if self._stopping.is_set():
+            return INTERRUPTED
+        if not self.worker.alive:
+            self._loaded = None
+            started = self.worker.start()
+            if not started.ok:
+                return started
+        if self._loaded is case:
+            return Answer("ok")
+        answer = self._ask("load", system=case.system)
+        self._loaded = case if answer.ok else None
+        if answer.ok:
+            self._declared = description_of(answer.result).integrators
+        return answer
+
+    def integrators(self) -> tuple[Integrator, ...]:
+        """The integrators to run, as declared for the system that was loaded last."""
+        declared = {integrator.name: integrator for integrator in self._declared}
+        return tuple(declared.get(i.name, i) for i in self.engine.integrators)
+
+    def request(self, case: Case, operation: str, **fields: Any) -> Answer:
+        """One request about a case; what fails is the answer."""
+        loaded = self._load(case)
+        return self._ask(operation, **fields) if loaded.ok else loaded
+
+    def run(self, case: Case, integrator: str, sweep: Sweep) -> Answer:
+        """One integrator with one step size."""
+        return self.request(
+            case,
+            "run",
+            initial=case.initial,
+            integrator=integrator,
+            timestep=sweep.timestep,
+            steps=sweep.steps,
+            every=sweep.every,
+        )
+
+    def ask_equations(self, case: Case, questions: Questions) -> CaseResult:
+        """The model read back, and the engine's equations at the states in question."""
+        result = CaseResult(self.engine.name, case.name)
+        features = self.engine.description.features
+        first = State(*(f[0] for f in vars(questions.random).values()))
+        result.model = self.request(case, "model", state=first)
+        result.integrators = self.integrators()
+        lacking = Answer("unsupported", "the engine offers no such call")
+        result.forward = result.path = result.inverse = lacking
+        if "forward_dynamics" in features:
+            result.forward = self.request(case, "forward", states=questions.random)
+            result.path = self.request(case, "forward", states=questions.path)
+        if "inverse_dynamics" in features:
+            result.inverse = self.request(
+                case, "inverse", states=questions.random, acceleration=questions.asked
+            )
+        return result
+
+    def run_all(self, case: Case, finished: Callable[[], None]) -> dict[tuple[str, float], Answer]:
+        """Every integrator with every step; `finished` is called after each run."""
+        runs = {}
+        for integrator in self.engine.integrators:
+            for sweep in case.sweeps:
+                runs[integrator.name, sweep.timestep] = self.run(case, integrator.name, sweep)
+                finished()
+        return runs

@@ -1,0 +1,41 @@
+"""Gate 4, invariants: energy and momenta against their exact course, over three horizons."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from omegadot.harness.gates.course import Course
+from omegadot.harness.measures import INVARIANT_CHANNELS
+from omegadot.harness.rows import Row, judged
+from omegadot.harness.verdicts import Finding
+from omegadot.reference_impl.system import Array
+
+GATE = "invariants"
+HORIZONS = {"drift_quarter": 0.25, "drift_half": 0.5, "drift_full": 1.0}
+
+
+def rows(
+    course: Course,
+    findings: dict[str, Finding],
+    times: Array,
+    channels: Sequence[str] = INVARIANT_CHANNELS,
+) -> list[Row]:
+    """The largest error up to a quarter, half and the whole of the run, relative, per channel.
+
+    For a free body without load that is the drift of a constant; under load it is the distance
+    from the exact course.
+    """
+    found = []
+    for channel in channels:
+        finding = findings[channel]
+        for metric, part in HORIZONS.items():
+            until = times <= part * times[-1]
+            value = float(np.max(course.error[channel][until]))
+            bound = float(np.max(course.round_off[channel][until]))
+            row = Row(GATE, channel, metric, value, "1", bound)
+            # A horizon may stand on its own, within rounding, before a later fault shows.
+            own = "within round-off" if value <= bound else finding.note
+            found.append(judged(row, finding.holds or value <= bound, own))
+    return found

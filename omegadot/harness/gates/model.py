@@ -1,0 +1,54 @@
+"""Gate 1, model: the engine holds the body and the state that it was given."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.harness.plan import Case
+from omegadot.harness.rows import Row, within
+from omegadot.harness.scales import EPS, ROUNDINGS_PER_EVALUATION, body_scale, norm
+from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.system import Array, Body, State
+
+GATE = "model"
+# Reading a number back takes at most a change of frame there and back.
+ROUNDINGS = 32
+
+
+def _largest(values: Array) -> float:
+    return float(np.max(np.abs(values)))
+
+
+def body_rows(case: Case, body: Body) -> list[Row]:
+    """Mass, centre of mass and inertia read back, against what was asked.
+
+    The inertia's bound counts an eigendecomposition and its inverse, at the size of the tensor.
+    """
+    asked, scale = case.system.body, body_scale(case.system)
+    mass = abs(float(body.mass) - scale.mass) / scale.mass
+    offset = float(norm(np.asarray(body.center_of_mass) - asked.center_of_mass))
+    size = float(np.linalg.norm(asked.inertia, 2))
+    inertia = float(np.linalg.norm(np.asarray(body.inertia) - asked.inertia, 2)) / size
+    return [
+        within(GATE, "model", "mass", mass, "1", ROUNDINGS * EPS),
+        within(GATE, "model", "center_of_mass", offset, "m", ROUNDINGS * EPS * scale.lever),
+        within(GATE, "model", "inertia", inertia, "1", ROUNDINGS_PER_EVALUATION * EPS),
+    ]
+
+
+def state_rows(case: Case, asked: State, back: State) -> list[Row]:
+    """A state after a round trip through the engine, against what went in."""
+    lever = body_scale(case.system).lever
+    rate, reach = norm(asked.angular_velocity), norm(asked.position) + lever
+    speed = norm(asked.linear_velocity) + rate * lever
+    turn = attitude_angle(asked.orientation, back.orientation)
+    values = {
+        "attitude": (turn, "rad", np.ones_like(turn)),
+        "omega": (norm(back.angular_velocity - asked.angular_velocity), "rad/s", rate),
+        "position": (norm(back.position - asked.position), "m", reach),
+        "linear_momentum": (norm(back.linear_velocity - asked.linear_velocity), "m/s", speed),
+    }
+    return [
+        within(GATE, channel, "state", _largest(value), unit, ROUNDINGS * EPS * _largest(size))
+        for channel, (value, unit, size) in values.items()
+    ]

@@ -1,0 +1,46 @@
+"""Gate 5, trajectory: omega, attitude and position against the exact solution."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.harness.gates.course import Course
+from omegadot.harness.measures import TRAJECTORY_UNITS
+from omegadot.harness.plan import Sweep
+from omegadot.harness.rows import Row, judged, within
+from omegadot.harness.scales import EPS
+from omegadot.harness.verdicts import Finding, ObservedOrder
+from omegadot.reference_impl.system import Array
+
+GATE = "trajectory"
+
+
+def time_row(sweep: Sweep, times: Array) -> Row:
+    """Whether the samples stand at the engine's own steps: n times the step, none missing."""
+    expected = sweep.times
+    if len(times) != len(expected):
+        note = f"{len(times)} samples came back, {len(expected)} were asked for"
+        return Row(GATE, "time", "sample_times", float("inf"), "s", 0.0, "fail", note)
+    late = float(np.max(np.abs(times - expected)))
+    return within(GATE, "time", "sample_times", late, "s", 2 * EPS * float(expected[-1]))
+
+
+def rows(
+    course: Course, findings: dict[str, Finding], orders: dict[str, ObservedOrder | None]
+) -> list[Row]:
+    """The largest error per channel, what is left after the declared scheme, the observed order."""
+    found = []
+    for channel, unit in TRAJECTORY_UNITS.items():
+        finding, bound = findings[channel], float(np.max(course.round_off[channel]))
+        error = Row(GATE, channel, "error_max", float(np.max(course.error[channel])), unit, bound)
+        found.append(judged(error, finding.holds, finding.note))
+        end = float(course.error[channel][-1])
+        found.append(Row(GATE, channel, "error_end", end, unit))
+        if channel in course.against_scheme:
+            left = float(np.max(course.against_scheme[channel]))
+            found.append(Row(GATE, channel, "unexplained_max", left, unit, bound))
+    for channel, order in orders.items():
+        if order is not None:
+            note = "" if order.resolved else "not resolved by this sweep"
+            found.append(Row("scheme", channel, "observed_order", order.value, "1", note=note))
+    return found

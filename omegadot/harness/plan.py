@@ -1,0 +1,100 @@
+"""What will be run: engines, scenarios, steps, and the samples each run keeps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from omegadot.adapters.protocol import Description, Integrator
+from omegadot.reference_impl.system import Array, State, System
+from omegadot.scenarios import Scenario
+
+
+@dataclass(frozen=True)
+class EngineChoice:
+    """An engine asked for, and which of its integrators (all of them when empty)."""
+
+    name: str
+    target: str
+    integrators: tuple[str, ...] = ()
+    required: bool = False
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """One step size of a scenario: `steps` of `timestep`, keeping every `every`-th."""
+
+    timestep: float
+    steps: int
+    every: int
+
+    @property
+    def sample_steps(self) -> Array:
+        """The step numbers that are kept: the start, every `every`-th, the end."""
+        kept = np.arange(0, self.steps + 1, self.every)
+        return kept if kept[-1] == self.steps else np.append(kept, self.steps)
+
+    @property
+    def times(self) -> Array:
+        """(n,) s: the step numbers times the step, the contract's sample times."""
+        return self.sample_steps * self.timestep
+
+    def refined(self, factor: int) -> Sweep:
+        """The same samples at a step `factor` times smaller."""
+        return Sweep(self.timestep / factor, self.steps * factor, self.every * factor)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scenario made ready: its system, its initial state, its sweep."""
+
+    scenario: Scenario
+    system: System
+    initial: State
+    sweeps: tuple[Sweep, ...]
+
+    @property
+    def name(self) -> str:
+        """The scenario's name."""
+        return self.scenario.name
+
+    @property
+    def sample_times(self) -> Array:
+        """Every sample time of every sweep, sorted, each once."""
+        return np.unique(np.concatenate([sweep.times for sweep in self.sweeps]))
+
+
+def sweep_of(duration: float, timestep: float, sample: float) -> Sweep:
+    """Whole steps within the duration, and k = max(1, round(sample / step)) between samples."""
+    ratio = duration / timestep
+    nearest = round(ratio)
+    # A duration that is a whole multiple on paper is one here, whatever the division rounded to.
+    whole = nearest if abs(ratio - nearest) <= 4 * np.finfo(float).eps * ratio else int(ratio)
+    return Sweep(timestep, max(1, whole), max(1, round(sample / timestep)))
+
+
+@dataclass(frozen=True)
+class Task:
+    """Scenario x engine x setup x integrator x step: what an outcome is given to."""
+
+    scenario: str
+    engine: str
+    setup: str
+    integrator: str
+    timestep: float | None
+    accuracy: float | None = None
+
+
+@dataclass(frozen=True)
+class Engine:
+    """An engine that started: its choice, what it says of itself, what is run of it."""
+
+    choice: EngineChoice
+    description: Description
+    integrators: tuple[Integrator, ...] = field(default_factory=tuple)
+
+    @property
+    def name(self) -> str:
+        """The engine's name."""
+        return self.choice.name

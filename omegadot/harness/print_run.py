@@ -1,0 +1,38 @@
+"""What ``omegadot run`` prints when it is done."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from omegadot.reports.headline import headline
+from omegadot.reports.record import PAGE, Record, dump_json
+from omegadot.reports.summary import summarise
+from omegadot.reports.terminal import print_summary
+
+
+def print_text(record: Record, out: Path) -> None:
+    """A table that is read in ten seconds, and where the page is."""
+    print_summary(record)
+    typer.echo(f"Report: {out / PAGE}")
+
+
+def print_json(record: Record, out: Path, code: int) -> None:
+    """The verdicts of every task, for machines."""
+    tasks: list[dict[str, Any]] = record.run["tasks"]
+    verdicts = Counter(v for task in tasks for v in task["gates"].values())
+    result = {
+        "schema": record.run["schema"],
+        "exit_code": code,
+        "complete": record.run["complete"],
+        "folder": str(out),
+        "report": str(out / PAGE),
+        "headline": headline(summarise(record)),
+        "outcomes": Counter(task["outcome"] for task in tasks),
+        "verdicts": verdicts,
+        "tasks": tasks,
+    }
+    typer.echo(dump_json(result))

@@ -1,0 +1,32 @@
+"""Finer steps where a sweep is too coarse to show the order of an error."""
+
+from __future__ import annotations
+
+from omegadot.harness.drive import Driver
+from omegadot.harness.judge_case import JudgedRun
+from omegadot.harness.plan import Case, Sweep
+from omegadot.harness.worker_process import Answer
+
+MOST_HALVINGS = 4
+# Two starts of a sweep need this many to fit a slope and to see that it has settled.
+FEWEST_STEPS = 3
+Refinements = dict[str, dict[float, tuple[Sweep, Answer]]]
+
+
+def refine(driver: Driver, case: Case, runs: list[JudgedRun], finer: Refinements) -> list[str]:
+    """Run the integrators that are still unresolved at half their finest step so far.
+
+    The new runs go into `finer`. Returns the integrators that were run; none when all is decided,
+    when a run failed, or after the most halvings.
+    """
+    finest = min(case.sweeps, key=lambda sweep: sweep.timestep)
+    done = []
+    for name in sorted({run.integrator.name for run in runs if run.unresolved}):
+        known = finer.setdefault(name, {})
+        halvings = len(known) + 1
+        if halvings > MOST_HALVINGS or any(not answer.ok for _, answer in known.values()):
+            continue
+        sweep = finest.refined(2**halvings)
+        known[sweep.timestep] = (sweep, driver.run(case, name, sweep))
+        done.append(name)
+    return done

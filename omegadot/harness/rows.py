@@ -1,0 +1,40 @@
+"""One measured value: what a gate writes and `metrics.parquet` holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+VERDICTS = ("info", "pass", "declared", "fail")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A value of the contract's `metrics.parquet`, without the columns that name its task."""
+
+    gate: str
+    channel: str
+    metric: str
+    value: float
+    unit: str
+    bound: float | None = None
+    verdict: str = "info"
+    note: str = ""
+
+
+def judged(row: Row, holds: bool, note: str = "") -> Row:
+    """The same row with the verdict pass or fail."""
+    verdict = "pass" if holds else "fail"
+    return Row(
+        row.gate, row.channel, row.metric, row.value, row.unit, row.bound, verdict, note or row.note
+    )
+
+
+def within(gate: str, channel: str, metric: str, value: float, unit: str, bound: float) -> Row:
+    """A row that passes where the value is at most its bound; NaN fails."""
+    return judged(Row(gate, channel, metric, value, unit, bound), value <= bound)
+
+
+def worst(verdicts: Iterable[str]) -> str | None:
+    """The worst of some verdicts, None of none."""
+    return max(verdicts, key=VERDICTS.index, default=None)

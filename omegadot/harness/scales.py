@@ -1,0 +1,83 @@
+"""The sizes that errors are measured against, and the rounding that a sound engine may show.
+
+Every bound here is floating point and physics: a count of roundings times eps times the size of
+the terms that were added to make the answer. Nothing is tuned.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import torque
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+EPS = float(np.finfo(float).eps)
+# A forward or inverse dynamics pass is a chain of about 64 dependent roundings (two changes of
+# frame, two cross products, a 3x3 or 6x6 solve).
+ROUNDINGS_PER_EVALUATION = 64
+# A step is an evaluation's result, scaled and added, an exponential and a normalised product.
+ROUNDINGS_PER_STEP = 16
+
+
+def norm(vectors: Array) -> Array:
+    """Euclidean length over the last axis, (..., n) to (...)."""
+    length: Array = np.sqrt(np.sum(vectors * vectors, axis=-1))
+    return length
+
+
+@dataclass(frozen=True)
+class BodyScale:
+    """Sizes of one system.
+
+    lever: m, how far the engine's own reference points may lie from the centre of mass.
+    largest: kg m^2, the largest inertia that enters a sum, about those points.
+    smallest: kg m^2, the least eigenvalue of the inertia that is inverted.
+    """
+
+    mass: float
+    lever: float
+    largest: float
+    smallest: float
+
+
+def body_scale(system: System) -> BodyScale:
+    """The sizes of `system`; the inverted inertia is about the pivot, if there is one."""
+    body, pivot = system.body, system.load.pivot
+    mass = float(body.mass)
+    lever = float(norm(body.center_of_mass))
+    if pivot is not None:
+        lever += float(norm(pivot))
+    moments = np.linalg.eigvalsh(np.asarray(moving_inertia(system), dtype=float))
+    own = float(np.linalg.eigvalsh(np.asarray(body.inertia, dtype=float))[-1])
+    return BodyScale(mass, lever, max(own + mass * lever**2, float(moments[-1])), float(moments[0]))
+
+
+def torque_size(system: System, state: State, acceleration: Acceleration) -> Array:
+    """(...) N m: the terms of equation (8) added up by size, with what cancels among them.
+
+    ``J (|omega|^2 + |omega_dot|) + |tau| + m L (|g| + |omega| |v| + |a|)``, J the largest inertia
+    and L the lever of `body_scale`.
+    """
+    scale, load = body_scale(system), system.load
+    rate = norm(state.angular_velocity)
+    size = scale.largest * (rate**2 + norm(acceleration.angular)) + norm(torque(system, state))
+    linear = norm(load.gravity) + norm(acceleration.linear)
+    if load.pivot is None:
+        linear = linear + rate * norm(state.linear_velocity)
+    return np.asarray(size + scale.mass * scale.lever * linear)
+
+
+def angular_size(system: System, state: State, acceleration: Acceleration) -> Array:
+    """(...) rad/s^2: `torque_size` through the inverse of the inertia at its largest."""
+    return np.asarray(torque_size(system, state, acceleration) / body_scale(system).smallest)
+
+
+def linear_size(system: System, state: State, acceleration: Acceleration) -> Array:
+    """(...) m/s^2: the terms of the centre of mass's acceleration, added up by size."""
+    rate, lever = norm(state.angular_velocity), body_scale(system).lever
+    turning = lever * (rate**2 + angular_size(system, state, acceleration))
+    moving = rate * norm(state.linear_velocity)
+    return np.asarray(norm(acceleration.linear) + norm(system.load.gravity) + turning + moving)

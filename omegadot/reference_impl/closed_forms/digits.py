@@ -1,0 +1,145 @@
+"""Constants to eighty digits.
+
+A closed form has few constants and many times. The constants (moduli, periods, rates, phases) are
+worked out in decimal arithmetic from the inputs taken as exact, so that nothing in them can cancel
+down to double precision: the products that decide on which side of the separatrix a body lies are
+exact in eighty digits. Only the course in time runs in double precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from decimal import (
+    MAX_EMAX,
+    MIN_EMIN,
+    Context,
+    Decimal,
+    DivisionByZero,
+    InvalidOperation,
+    Overflow,
+    localcontext,
+)
+from functools import cache
+from typing import TypeAlias
+
+import numpy as np
+
+from omegadot.reference_impl.system import Array
+
+PRECISION = 80
+ZERO, ONE, TWO, HALF = Decimal(0), Decimal(1), Decimal(2), Decimal("0.5")
+INFINITY = Decimal("Infinity")
+RESOLUTION = Decimal(10) ** (5 - PRECISION)  # relative size of what rounding may leave of a zero
+
+Row: TypeAlias = list[Decimal]
+Matrix: TypeAlias = list[Row]
+
+_CONTEXT = Context(
+    prec=PRECISION,
+    Emin=MIN_EMIN,
+    Emax=MAX_EMAX,
+    traps=[InvalidOperation, DivisionByZero, Overflow],
+)
+
+
+@contextmanager
+def many_digits() -> Iterator[None]:
+    """Decimal arithmetic in here has eighty digits and no practical limit of the exponent."""
+    with localcontext(_CONTEXT):
+        yield
+
+
+def exact(values: Array) -> Row:
+    """Doubles as the decimal numbers they are, flattened."""
+    return [Decimal(float(value)) for value in np.asarray(values, float).ravel()]
+
+
+def exact_matrix(values: Array) -> Matrix:
+    """A matrix of doubles as the decimal numbers they are."""
+    return [exact(row) for row in np.asarray(values, float)]
+
+
+def doubles(values: Sequence[Decimal]) -> Array:
+    """Each number rounded once to double precision."""
+    return np.array([float(value) for value in values])
+
+
+def dot(a: Sequence[Decimal], b: Sequence[Decimal]) -> Decimal:
+    """``a · b``."""
+    return sum((x * y for x, y in zip(a, b, strict=True)), ZERO)
+
+
+def cross(a: Sequence[Decimal], b: Sequence[Decimal]) -> Row:
+    """``a × b``."""
+    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
+
+
+def apply(matrix: Matrix, vector: Sequence[Decimal]) -> Row:
+    """``matrix @ vector``."""
+    return [dot(row, vector) for row in matrix]
+
+
+def power(x: Decimal, n: int) -> Decimal:
+    """``x^n`` with ``0^0 = 1``."""
+    return x**n if n else ONE
+
+
+@cache
+def pi() -> Decimal:
+    """π by the iteration of Gauss, Brent and Salamin: DLMF 19.8(i)."""
+    with many_digits():
+        a, b, t, x = ONE, HALF.sqrt(), HALF * HALF, ONE
+        for _ in range(8):  # correct digits double: 2^8 > 80
+            mean = (a + b) / 2
+            a, b, t, x = mean, (a * b).sqrt(), t - x * (a - mean) ** 2, 2 * x
+        return (a + b) ** 2 / (4 * t)
+
+
+def cos_sin(x: Decimal) -> tuple[Decimal, Decimal]:
+    """``(cos x, sin x)`` by the power series of exp(ix/16), squared four times."""
+    y = x / 16
+    real, imaginary, term, n = ONE, ZERO, ONE, 0
+    while n < 4 or abs(term) > RESOLUTION / 10**5:
+        n += 1
+        term = term * y / n
+        sign = -1 if n % 4 in (2, 3) else 1
+        if n % 2:
+            imaginary += sign * term
+        else:
+            real += sign * term
+    for _ in range(4):
+        real, imaginary = real * real - imaginary * imaginary, 2 * real * imaginary
+    return real, imaginary
+
+
+def agm(a: Decimal, b: Decimal) -> Decimal:
+    """Arithmetic-geometric mean of positive numbers, DLMF 19.8.1; zero where one of them is."""
+    if a == 0 or b == 0:
+        return ZERO
+    while abs(a - b) > RESOLUTION * a:
+        a, b = (a + b) / 2, (a * b).sqrt()
+    return (a + b) / 2
+
+
+def carlson_rf(x: Decimal, y: Decimal, z: Decimal) -> Decimal:
+    """``R_F(x, y, z)`` for non-negative x, y, z, at most one of them zero.
+
+    Duplication, DLMF 19.26.18, until the spread is below 1e-14, then the expansion DLMF 19.36.1
+    in the elementary symmetric functions, whose first omitted terms are of its sixth power.
+    (Carlson, Numerical computation of real or complex elliptic integrals, Numer. Algorithms 10
+    (1995) 13-26, section 2.)
+    """
+    while True:
+        a = (x + y + z) / 3
+        dx, dy = ONE - x / a, ONE - y / a
+        if max(abs(dx), abs(dy), abs(dx + dy)) < Decimal("1e-14"):
+            break
+        sx, sy, sz = x.sqrt(), y.sqrt(), z.sqrt()
+        shift = sx * sy + sy * sz + sz * sx
+        x, y, z = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4
+    dz = -(dx + dy)
+    e2, e3 = dx * dy - dz * dz, dx * dy * dz
+    series = ONE - e2 / 10 + e3 / 14 + e2 * e2 / 24 - 3 * e2 * e3 / 44
+    series += -5 * e2**3 / 208 + 3 * e3**2 / 104 + e2**2 * e3 / 16
+    return series / a.sqrt()

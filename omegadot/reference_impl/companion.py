@@ -1,0 +1,93 @@
+"""The reference beside an engine: one scheme, every step of a sweep, and how rounding grows.
+
+The steps of a sweep are lanes of one array, so that a whole sweep costs little more than its
+longest run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import gcd
+
+import numpy as np
+
+from omegadot.reference_impl.body_origin import from_origin, origin_acceleration_of, to_origin
+from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.schemes import SCHEMES, Scheme
+from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.system import Array, State, System
+
+# Lanes share their samples; beyond this many rows it is cheaper to run each step by itself.
+MOST_SHARED_ROWS = 20_000
+
+
+@dataclass(frozen=True)
+class Steps:
+    """`steps` of `timestep`, of which every `every`-th and the last are kept."""
+
+    timestep: float
+    steps: int
+    every: int
+
+    @property
+    def kept(self) -> Array:
+        """The numbers of the steps that are kept."""
+        kept = np.arange(0, self.steps + 1, self.every)
+        return kept if kept[-1] == self.steps else np.append(kept, self.steps)
+
+
+@dataclass(frozen=True)
+class CompanionRun:
+    """time: (n,) s.  state: (n, ...).  growth: (n,), how rounding grows along these states."""
+
+    time: Array
+    state: State
+    growth: Array
+
+
+def _fields(state: State) -> tuple[Array, Array, Array, Array]:
+    return (state.orientation, state.angular_velocity, state.position, state.linear_velocity)
+
+
+def _run_together(
+    system: System, scheme: Scheme, initial: State, at_origin: bool, plan: Sequence[Steps]
+) -> list[State]:
+    """All of `plan` as lanes; samples are kept where any of them needs one."""
+    every = gcd(*(n for step in plan for n in (step.every, step.steps)))
+    longest = max(step.steps for step in plan)
+    timesteps = np.array([step.timestep for step in plan])
+    lanes = State(*(np.repeat(f[None], len(plan), axis=0) for f in _fields(initial)))
+    acceleration = (origin_acceleration_of if at_origin else acceleration_of)(system)
+    start = to_origin(system, lanes) if at_origin else lanes
+    _, kept = step_through(scheme, system, acceleration, start, timesteps, longest, every)
+    states = from_origin(system, kept) if at_origin else kept
+    return [
+        State(*(f[step.kept // every, lane] for f in _fields(states)))
+        for lane, step in enumerate(plan)
+    ]
+
+
+def companion(
+    system: System,
+    initial: State,
+    scheme: str,
+    rate: float,
+    plan: Sequence[Steps],
+    at_origin: bool = False,
+) -> list[CompanionRun]:
+    """The reference stepping `scheme` from `initial`, once per entry of `plan`.
+
+    rate: rad/s, the scale by which changes of omega are measured against changes of attitude.
+    at_origin: step the position of the body's origin instead of the centre of mass's.
+    """
+    shared = gcd(*(n for step in plan for n in (step.every, step.steps)))
+    longest = max(step.steps for step in plan)
+    groups = [plan] if longest // shared <= MOST_SHARED_ROWS else [[step] for step in plan]
+    named = SCHEMES[scheme]
+    states = [s for group in groups for s in _run_together(system, named, initial, at_origin, group)]
+    return [
+        CompanionRun(times, state, growth_along(system, times, state, rate))
+        for times, state in zip((s.kept * s.timestep for s in plan), states, strict=True)
+    ]

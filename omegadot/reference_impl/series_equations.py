@@ -1,0 +1,145 @@
+"""The equations of motion as one quadratic system with constant coefficients, in long double.
+
+In principal axes equation (8) reads ``ω̇₁ = (I₂ - I₃)/I₁ ω₂ω₃ + τ₁/I₁`` and so on. Its coefficients
+are formed in eighty digits from the doubles that the system holds and rounded once, so that the
+differences of moments and the small moment of a thin body keep all their digits; in body axes the
+tensor's condition number would multiply every rounding.
+
+The unknown is ``x = (q, ω, g, t)``: the attitude (world from body), ω in principal axes, and, where
+they act, gravity and the world's torque as the body sees them, in principal axes. Of these the
+last two move as ``u̇ = u × ω``, constant vectors of the world seen from the body, and ``q̇ = ½ q ω``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from decimal import Decimal
+
+import numpy as np
+
+from omegadot.reference_impl.closed_forms.digits import (
+    Matrix,
+    apply,
+    cross,
+    dot,
+    exact,
+    exact_matrix,
+    many_digits,
+)
+from omegadot.reference_impl.closed_forms.principal_axes import principal_axes
+from omegadot.reference_impl.rotations import quaternion_product, rotate_inverse
+from omegadot.reference_impl.system import Array, State, System
+
+Q, W, G, T = slice(0, 4), slice(4, 7), slice(7, 10), slice(10, 13)
+
+
+@dataclass(frozen=True)
+class Equations:
+    """``ẋ_a = Σ_bc quadratic[b, c, a] x_b ω_c + Σ_b linear[b, a] x_b + constant[a]``.
+
+    axes: (3, 3), the principal axes, row by row, in body axes.  gravity and torque_world: (3,),
+    world axes, what x's last six components follow.  All in long double.
+    """
+
+    quadratic: Array
+    linear: Array
+    constant: Array
+    axes: Array
+    gravity: Array
+    torque_world: Array
+
+    def unknown(self, state: State) -> Array:
+        """The x of states, (..., 13); the quaternion is made unit in long double."""
+        q = np.asarray(state.orientation, np.longdouble)
+        w = np.asarray(state.angular_velocity, np.longdouble)
+        shape = np.broadcast_shapes(q.shape[:-1], w.shape[:-1])
+        x = np.zeros((*shape, 13), np.longdouble)
+        x[..., Q] = q
+        x[..., W] = w @ self.axes.T
+        return self.refreshed(x)
+
+    def refreshed(self, x: Array) -> Array:
+        """The x with a unit quaternion, and the world's vectors turned into the body by it anew."""
+        q = x[..., Q] / np.sqrt(np.add.reduce(x[..., Q] ** 2, -1, keepdims=True))
+        x = x.copy()
+        x[..., Q] = q
+        x[..., G] = rotate_inverse(q, self.gravity) @ self.axes.T
+        x[..., T] = rotate_inverse(q, self.torque_world) @ self.axes.T
+        return x
+
+    def angular_velocity(self, x: Array) -> Array:
+        """ω in body axes, (..., 3)."""
+        w: Array = x[..., W] @ self.axes
+        return w
+
+
+def equations_of(system: System) -> Equations:
+    """The coefficients of one system. Raises ValueError for a system with leading axes."""
+    body, load = system.body, system.load
+    if np.ndim(body.inertia) != 2 or np.ndim(load.gravity) != 1:
+        raise ValueError("a series is of one system; lanes are for its initial states")
+    with many_digits():
+        inertia, lever = _about_fixed_point(system)
+        moments, axes = principal_axes(inertia)
+        inverse = [1 / moment for moment in moments]
+        weight_arm = [Decimal(float(body.mass)) * r for r in apply(axes, lever)]
+        # τ = m r × g: columns are the torques of g along each principal axis
+        unit = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]
+        columns = [cross(weight_arm, e) for e in unit]
+        push = apply(axes, exact(load.torque_body))
+        damping = Decimal(float(load.damping))
+        gyroscopic = [(moments[i - 2] - moments[i - 1]) * inverse[i] for i in range(3)]
+        by_gravity = [[inverse[i] * columns[j][i] for j in range(3)] for i in range(3)]
+        linear = np.zeros((13, 13), np.longdouble)
+        constant = np.zeros(13, np.longdouble)
+        linear[W, W] = np.diag(_rounded([-damping * k for k in inverse]))
+        linear[W, G] = [_rounded(row) for row in by_gravity]
+        linear[W, T] = np.diag(_rounded(inverse))
+        constant[W] = _rounded([k * tau for k, tau in zip(inverse, push, strict=True)])
+        rows = np.array([_rounded(axis) for axis in axes])
+        turning = _rounded(gyroscopic)
+    pivoted = load.pivot is not None
+    return Equations(
+        quadratic=_quadratic(turning, rows),
+        linear=linear.T,
+        constant=constant,
+        axes=rows,
+        gravity=np.asarray(load.gravity if pivoted else np.zeros(3), np.longdouble),
+        torque_world=np.asarray(load.torque_world, np.longdouble),
+    )
+
+
+def _about_fixed_point(system: System) -> tuple[Matrix, list[Decimal]]:
+    """The inertia about the pivot, or the centre of mass, and the lever between them: (5)."""
+    body, pivot = system.body, system.load.pivot
+    inertia = exact_matrix(body.inertia)
+    if pivot is None:
+        return inertia, [Decimal(0)] * 3
+    center, mass = exact(body.center_of_mass), Decimal(float(body.mass))
+    r = [c - p for c, p in zip(center, exact(pivot), strict=True)]
+    square = dot(r, r)
+    for i in range(3):
+        for j in range(3):
+            inertia[i][j] += mass * ((square if i == j else 0) - r[i] * r[j])
+    return inertia, r
+
+
+def _rounded(values: list[Decimal]) -> Array:
+    return np.array([np.longdouble(str(value)) for value in values])
+
+
+def _quadratic(gyroscopic: Array, rows: Array) -> Array:
+    """The table of products, (13, 3, 13): factor in x, factor in ω, component of ẋ."""
+    table = np.zeros((13, 3, 13), np.longdouble)
+    unit = np.eye(4, dtype=np.longdouble)
+    for c in range(3):
+        pure = np.concatenate(([np.longdouble(0)], rows[c]))  # body axes
+        for b in range(4):
+            table[b, c, Q] = quaternion_product(unit[b], pure) / 2
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        table[4 + j, k, 4 + i] = gyroscopic[i]
+        for start in (G.start, T.start):  # (u × ω)_i = u_j ω_k - u_k ω_j
+            table[start + j, k, start + i] = 1
+            table[start + k, j, start + i] = -1
+    return table

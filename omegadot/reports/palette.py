@@ -1,0 +1,69 @@
+"""Engine is colour, integrator is dash, on every chart and swatch of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+# Apart in the common forms of colour blindness, 3:1 or more against the page (light, dark).
+INK = ("#1c1f23", "#e6e8eb")
+COLOURS = (
+    ("#0068ab", "#56a8e0"),
+    ("#c24e00", "#f0883e"),
+    ("#00795a", "#35c49a"),
+    ("#a8437f", "#e48ac0"),
+    ("#7a6a00", "#d8c440"),
+    ("#5b4fc4", "#a99ff5"),
+    ("#6b7077", "#9aa1a9"),
+)
+_OWN = {"reference": INK, "mujoco": COLOURS[0], "pinocchio": COLOURS[1], "dart": COLOURS[2]}
+# As in SVG's stroke-dasharray, in px.
+DASHES = (
+    "",
+    "9 4",
+    "2 3",
+    "9 3 2 3",
+    "16 5",
+    "5 3",
+    "16 4 2 4",
+    "9 3 2 3 2 3",
+    "1 6",
+    "16 3 5 3",
+    "4 8",
+    "20 4 9 4",
+)
+
+
+def colours(engines: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """(light, dark) by engine; the well-known keep theirs in every report."""
+    names = list(dict.fromkeys(engines))
+    taken = {_OWN[name] for name in names if name in _OWN}
+    free = [pair for pair in COLOURS if pair not in taken] or list(COLOURS)
+    unknown = [name for name in names if name not in _OWN]
+    given = {name: free[k % len(free)] for k, name in enumerate(unknown)}
+    return {name: _OWN.get(name) or given[name] for name in names}
+
+
+def dashes(engines: Iterable[Mapping[str, Any]]) -> dict[tuple[str, str], str]:
+    """The dash by engine and integrator.
+
+    Integrators of the same scheme share a dash across engines; a second one of that scheme within
+    an engine takes the next that is free there.
+    """
+    schemes: dict[str, int] = {}
+    given: dict[tuple[str, str], str] = {}
+    for engine in engines:
+        used: set[int] = set()
+        waiting = []
+        for integrator in engine.get("integrators") or ():
+            scheme = integrator.get("scheme") or f"{engine['name']} {integrator['name']}"
+            place = schemes.setdefault(scheme, len(schemes)) % len(DASHES)
+            if place in used:
+                waiting.append(integrator["name"])
+                continue
+            used.add(place)
+            given[engine["name"], integrator["name"]] = DASHES[place]
+        free = [place for place in range(len(DASHES)) if place not in used] or [0]
+        for k, name in enumerate(waiting):
+            given[engine["name"], name] = DASHES[free[k % len(free)]]
+    return given

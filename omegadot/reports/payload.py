@@ -1,0 +1,158 @@
+"""What the page's script gets: the lines' looks, and every course as packed 16-bit logarithms."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from omegadot.reference_impl.system import Array
+from omegadot.reports.courses import Chart, Course
+from omegadot.reports.numbers import knob, plain
+from omegadot.reports.packing import CEILING_DECADE, FLOOR, FLOOR_DECADE, codes_of
+from omegadot.reports.palette import colours, dashes
+
+_ORDINALS = ("finest", "second finest", "third finest")
+
+
+@dataclass(frozen=True)
+class Line:
+    """How one engine's integrator is drawn everywhere. colour: (light, dark); width in px."""
+
+    engine: str
+    integrator: str
+    setup: str
+    colour: tuple[str, str]
+    dash: str
+    width: float
+
+    @property
+    def name(self) -> str:
+        """What its legend and its hover text say."""
+        return f"{self.engine} {self.integrator}" + (self.setup != "physics") * f" ({self.setup})"
+
+
+def lines_of(charts: Iterable[Chart], engines: list[Mapping[str, Any]]) -> list[Line]:
+    """Every line on the page, in the order of the engines.
+
+    The engines first in order are drawn broadest, below the others: where courses coincide, each
+    stays to be seen.
+    """
+    runs = {(c.engine, c.setup, c.integrator): None for chart in charts for c in chart.courses}
+    order = {entry["name"]: place for place, entry in enumerate(engines)}
+    names = sorted({engine for engine, _, _ in runs}, key=lambda n: (order.get(n, len(order)), n))
+    colour, dash = colours(names), dashes(engines)
+    width = {name: min(5.0, 1.4 + 0.9 * k) for k, name in enumerate(reversed(names))}
+    return [
+        Line(engine, name, setup, colour[engine], dash.get((engine, name), ""), width[engine])
+        for engine, setup, name in sorted(runs, key=lambda run: names.index(run[0]))
+    ]
+
+
+def rank_of(chart: Chart) -> dict[tuple[float | None, float | None], int]:
+    """0 for the finest step of a scenario, 1 for the next; accuracies are ranked on their own."""
+    knobs = {(course.timestep, course.accuracy) for course in chart.courses}
+    steps = sorted(knob for knob in knobs if knob[0] is not None)
+    others = sorted((knob for knob in knobs if knob[0] is None), key=lambda k: k[1] or 0.0)
+    return {knob: rank for group in (steps, others) for rank, knob in enumerate(group)}
+
+
+def step_choices(charts: Iterable[Chart]) -> list[str]:
+    """The step selector's options: by rank, each with the steps it stands for."""
+    by_rank: dict[int, set[float]] = {}
+    for chart in charts:
+        for (timestep, _), rank in rank_of(chart).items():
+            by_rank.setdefault(rank, set()).update([] if timestep is None else [timestep])
+    choices = []
+    for rank, steps in sorted(by_rank.items()):
+        name = _ORDINALS[rank] if rank < len(_ORDINALS) else f"{rank + 1}th finest"
+        span = "–".join(plain(s) for s in sorted({min(steps), max(steps)})) if steps else ""
+        choices.append(f"{name} ({span} s)" if span else name)
+    return choices
+
+
+def payload(charts: Mapping[str, Chart], lines: list[Line]) -> tuple[dict[str, Any], Array]:
+    """The script's description of every chart, by the scenario's place, and all codes in a row.
+
+    A course is ``[line, rank, times, start, count]``: its channels' codes follow each other from
+    `start`, `count` of each, in the order of the scenario's charts.
+    """
+    places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
+    times: dict[bytes, int] = {}
+    clocks: list[list[float]] = []
+    codes: list[Array] = []
+    used = 0
+    scenarios: dict[str, Any] = {}
+    for name, chart in charts.items():
+        rank, entries = rank_of(chart), []
+        for course in chart.courses:
+            key = course.time.tobytes()
+            if key not in times:
+                times[key] = len(clocks)
+                clocks.append([float(f"{t:.6g}") for t in course.time])
+            line = places[course.engine, course.setup, course.integrator]
+            count = len(course.time)
+            knobs = rank[course.timestep, course.accuracy]
+            entries.append([line, knobs, times[key], used, count])
+            for channel in chart.units:
+                codes.append(_codes(course, channel))
+                used += count
+        scenarios[name] = {
+            "charts": [_axis(chart, channel) for channel in chart.units],
+            "courses": entries,
+            "steps": _captions(rank),
+        }
+    description = {
+        "floor": FLOOR_DECADE,
+        "ceiling": CEILING_DECADE,
+        "lines": [
+            {"name": n.name, "colour": n.colour, "dash": n.dash, "width": n.width} for n in lines
+        ],
+        "times": clocks,
+        "scenarios": scenarios,
+    }
+    return description, np.concatenate(codes) if codes else np.empty(0, np.uint16)
+
+
+def drawn(course: Course, channel: str) -> Array:
+    """A course as it is drawn: without the start where it was given, so that nothing is off."""
+    values = course.values[channel]
+    start = (course.time == 0.0) & (values <= FLOOR)
+    return np.where(start, np.nan, values)
+
+
+def _codes(course: Course, channel: str) -> Array:
+    return codes_of(drawn(course, channel))
+
+
+def _axis(chart: Chart, channel: str) -> dict[str, Any]:
+    """Decades that hold every step size's courses, so that a change of step moves no axis."""
+    values = np.concatenate([drawn(course, channel) for course in chart.courses])
+    values = values[~np.isnan(values)]
+    above = values[values > FLOOR]
+    at_floor = bool(np.any(values <= FLOOR))
+    highest = min(float(np.max(above, initial=FLOOR * 10.0)), 10.0**CEILING_DECADE)
+    lowest = FLOOR if at_floor else float(np.min(above, initial=highest))
+    return {
+        "channel": channel,
+        "unit": chart.units[channel],
+        "low": math.floor(math.log10(lowest)),
+        "high": math.ceil(math.log10(highest)),
+        "floor": at_floor,
+    }
+
+
+def _captions(rank: Mapping[tuple[float | None, float | None], int]) -> list[str]:
+    by_rank: dict[int, list[str]] = {}
+    for (timestep, accuracy), place in rank.items():
+        by_rank.setdefault(place, []).append(knob(timestep, accuracy))
+    return [", ".join(filter(None, by_rank[place])) for place in sorted(by_rank)]
+
+
+def command_of(run: Mapping[str, Any]) -> str:
+    """The command that made the record, as one would type it."""
+    return shlex.join(str(word) for word in run.get("command") or ())

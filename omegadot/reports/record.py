@@ -1,0 +1,202 @@
+"""A run's record: three files and the page, written whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import secrets
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from omegadot.reports import schema
+from omegadot.reports.schema import Field, RecordError
+
+RUN, METRICS, TRAJECTORIES, PAGE = (
+    "run.json",
+    "metrics.parquet",
+    "trajectories.parquet",
+    "report.html",
+)
+_REPEATING = ("timestep", "accuracy", "time")
+FILES = (RUN, METRICS, TRAJECTORIES, PAGE)
+
+
+@dataclass(frozen=True)
+class Record:
+    """run: what ``run.json`` holds.  metrics and trajectories: the contract's two tables."""
+
+    run: dict[str, Any]
+    metrics: pl.DataFrame
+    trajectories: pl.DataFrame
+
+
+def check_folder(folder: Path) -> None:
+    """Raise RecordError unless a record may be written to `folder`.
+
+    It may be absent, empty, or hold an earlier record and nothing else; no other file is ever
+    replaced. Call it before a long run, so that nobody learns of it afterwards.
+    """
+    folder = folder.resolve()
+    if Path.cwd().is_relative_to(folder):
+        raise RecordError(f"{folder}: is the current directory or holds it; name a new folder.")
+    if not folder.exists():
+        return
+    if not folder.is_dir():
+        raise RecordError(f"{folder}: is a file; name a new folder for the record.")
+    names = sorted(entry.name for entry in folder.iterdir())
+    foreign = [name for name in names if name not in FILES]
+    if foreign:
+        raise RecordError(
+            f"{folder}: holds {foreign[0]!r}, which is no part of a record; name a new folder."
+        )
+    if names and RUN not in names:
+        raise RecordError(f"{folder}: is not empty and holds no {RUN}; name a new folder.")
+
+
+def write_record(record: Record, folder: Path, page: str) -> None:
+    """Write the record and its page to `folder`, whole or not at all.
+
+    The files go to a hidden folder beside it, which then takes its name; an earlier record gives
+    way at that moment only. Raises RecordError as `check_folder` does, when the tables break the
+    contract, and when the disk refuses.
+    """
+    check_folder(folder)
+    folder = folder.resolve()
+    text = dump_json(record.run)
+    check_run(record.run, RUN)
+    metrics = schema.conform(record.metrics, schema.METRICS, METRICS)
+    trajectories = schema.conform(record.trajectories, schema.TRAJECTORIES, TRAJECTORIES)
+    fresh = folder.with_name(f".{folder.name}.{secrets.token_hex(6)}.new")
+    try:
+        fresh.mkdir(parents=True)
+        (fresh / RUN).write_text(text, encoding="utf-8")
+        _write_parquet(metrics, schema.METRICS, fresh / METRICS)
+        _write_parquet(trajectories, schema.TRAJECTORIES, fresh / TRAJECTORIES)
+        (fresh / PAGE).write_text(page, encoding="utf-8", errors="replace", newline="\n")
+        _take_the_place_of(folder, fresh)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise RecordError(f"{folder}: the record cannot be written ({reason}).") from error
+    finally:
+        shutil.rmtree(fresh, ignore_errors=True)
+
+
+def _take_the_place_of(folder: Path, fresh: Path) -> None:
+    # A folder that is not empty cannot be renamed over, so the earlier record steps aside first.
+    aside = fresh.with_suffix(".old")
+    had_earlier = folder.exists()
+    if had_earlier:
+        os.replace(folder, aside)
+    try:
+        os.replace(fresh, folder)
+    except BaseException:
+        if had_earlier:
+            os.replace(aside, folder)
+        raise
+    shutil.rmtree(aside, ignore_errors=True)
+
+
+def _write_parquet(frame: pl.DataFrame, fields: Mapping[str, Field], path: Path) -> None:
+    table = frame.to_arrow(compat_level=pl.CompatLevel.oldest()).cast(schema.arrow_schema(fields))
+    # Words and steps repeat and pack well; measured numbers do not, and trying costs time.
+    repeating = [n for n, f in fields.items() if f.dtype is pl.String or n in _REPEATING]
+    pq.write_table(
+        table, path, compression="zstd", compression_level=1, use_dictionary=repeating
+    )
+
+
+def read_record(folder: Path) -> Record:
+    """Read a record back. Raises RecordError, one sentence, for whatever is wrong with it."""
+    if not folder.is_dir():
+        raise RecordError(f"{folder}: no such folder; give the folder of a run.")
+    for name in (RUN, METRICS, TRAJECTORIES):
+        if not (folder / name).is_file():
+            raise RecordError(f"{folder / name}: missing; give the folder of a whole run.")
+    run = _read_run(folder / RUN)
+    return Record(
+        run,
+        _read_parquet(folder / METRICS, schema.METRICS),
+        _read_parquet(folder / TRAJECTORIES, schema.TRAJECTORIES),
+    )
+
+
+def _read_parquet(path: Path, fields: Mapping[str, Field]) -> pl.DataFrame:
+    try:
+        # Opened here, so that the file is not taken for a dataset and closes with its reader.
+        with path.open("rb") as file:
+            frame = pl.DataFrame(pl.from_arrow(pq.read_table(file)))
+    except (OSError, pa.ArrowException, pl.exceptions.PolarsError) as error:
+        raise RecordError(
+            f"{path}: not a readable Parquet file (truncated or damaged); run again."
+        ) from error
+    return schema.conform(frame, fields, str(path))
+
+
+def _read_run(path: Path) -> dict[str, Any]:
+    try:
+        run = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse_constant)
+    except (OSError, ValueError, RecursionError) as error:
+        raise RecordError(f"{path}: not readable as JSON ({error}); run again.") from error
+    if not isinstance(run, dict) or "schema" not in run:
+        raise RecordError(f"{path}: has no key 'schema', so it is not an omegadot record.")
+    if run["schema"] != schema.SCHEMA:
+        raise RecordError(
+            f"{path}: schema is {run['schema']!r}, this omegadot reads {schema.SCHEMA}; "
+            "use the version that wrote it."
+        )
+    check_run(run, str(path))
+    return run
+
+
+def check_run(run: dict[str, Any], where: str) -> None:
+    """Raise RecordError unless the parts that tables and page stand on are there."""
+    for key in ("engines", "scenarios", "tasks"):
+        entries = run.get(key)
+        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+            raise RecordError(f"{where}: {key} must be a list of objects; run again.")
+    needed = {"engines": ("name",), "scenarios": ("name",), "tasks": ("scenario", "engine")}
+    for key, names in needed.items():
+        for number, entry in enumerate(run[key]):
+            for name in names:
+                if not isinstance(entry.get(name), str):
+                    raise RecordError(f"{where}: {key}[{number}].{name} must be a text; run again.")
+    for number, task in enumerate(run["tasks"]):
+        _check_word(task.get("outcome"), schema.OUTCOMES, f"{where}: tasks[{number}].outcome")
+        for gate, verdict in (task.get("gates") or {}).items():
+            _check_word(verdict, schema.VERDICTS, f"{where}: tasks[{number}].gates.{gate}")
+
+
+def _check_word(found: object, allowed: tuple[str, ...], where: str) -> None:
+    if found not in allowed:
+        raise RecordError(f"{where} is {found!r}, expected one of {', '.join(allowed)}.")
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(f"{name} is not a JSON value")
+
+
+def dump_json(value: object) -> str:
+    """Strict JSON: what is not finite becomes null, arrays and sets become lists."""
+    return json.dumps(_plain(value), indent=1, allow_nan=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, set | frozenset):
+        return [_plain(entry) for entry in sorted(value)]
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    if hasattr(value, "tolist"):  # a NumPy array or scalar
+        return _plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

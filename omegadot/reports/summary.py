@@ -1,0 +1,254 @@
+"""From a record to what a person must see first: verdicts, and the numbers behind them.
+
+Pure functions: the terminal's table and the page both show what stands here, and nothing else.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import polars as pl
+
+from omegadot.reports.record import Record
+
+# From the worst to the best. A skip is never a pass, and neither is a run that nobody judged.
+STATUSES = (
+    "fail",
+    "crashed",
+    "timeout",
+    "raised",
+    "diverged",
+    "interrupted",
+    "unsupported",
+    "not-installed",
+    "not-judged",
+    "declared",
+    "pass",
+    "absent",
+)
+YARDSTICKS = ("exact", "reference")
+
+
+@dataclass(frozen=True)
+class Column:
+    """One engine in one version and one setup. label: what stands over its column."""
+
+    engine: str
+    version: str
+    setup: str
+    label: str
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One number and the run that gave it. A value that is not finite counts as the largest."""
+
+    value: float
+    unit: str
+    scenario: str
+    engine: str
+    metric: str
+    integrator: str | None = None
+    timestep: float | None = None
+    accuracy: float | None = None
+    bound: float | None = None
+
+
+@dataclass(frozen=True)
+class Range:
+    """The best and the worst integrator of an engine, each at the finest step it was run with."""
+
+    best: Figure
+    worst: Figure
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One engine on one scenario.
+
+    status: the worst over its runs, of STATUSES.  runs: how many runs have which status.
+    residual: the worst omega-dot residual at identical states.  drift and attitude: the range over
+    the integrators, at the finest step, of the angular-momentum drift and the attitude error.
+    """
+
+    status: str
+    runs: Counter[str]
+    residual: Figure | None
+    drift: Range | None
+    attitude: Range | None
+
+
+@dataclass(frozen=True)
+class Missing:
+    """Runs of an engine that gave no verdict for the same reason; none were made of an engine
+    that is not installed.
+    """
+
+    engine: str
+    status: str
+    reason: str
+    runs: int
+    scenarios: tuple[str, ...]
+    integrators: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What the record says at a glance."""
+
+    complete: bool
+    scenarios: tuple[str, ...]
+    columns: tuple[Column, ...]
+    cells: Mapping[tuple[str, Column], Cell]
+    runs: Counter[str]
+    missing: tuple[Missing, ...]
+
+
+def worst(statuses: Iterable[str]) -> str:
+    """The worst of some statuses; absent where there is none."""
+    return min(statuses, key=STATUSES.index, default="absent")
+
+
+def task_status(task: Mapping[str, Any]) -> str:
+    """What one run came to: its outcome where it did not end, else the worst of its gates."""
+    verdicts = list((task.get("gates") or {}).values())
+    if "fail" in verdicts:
+        return "fail"
+    if task["outcome"] != "ok":
+        return str(task["outcome"])
+    return worst([v for v in verdicts if v != "info"] or ["not-judged"])
+
+
+def summarise(record: Record) -> Summary:
+    """The matrix of scenarios and engines, the counts, and what did not run."""
+    tasks = record.run["tasks"]
+    columns = _columns(tasks)
+    by_key = {(c.engine, c.version, c.setup): c for c in columns}
+    scenarios = [entry["name"] for entry in record.run["scenarios"]]
+    scenarios += [t["scenario"] for t in tasks if t["scenario"] not in scenarios]
+    scenarios = list(dict.fromkeys(scenarios))
+    statuses: dict[tuple[str, Column], list[str]] = {}
+    for task in tasks:
+        key = (task["scenario"], by_key[_identity(task)])
+        statuses.setdefault(key, []).append(task_status(task))
+    figures = _figures(record.metrics)
+    judged = _judged_rows(record.metrics)
+    cells = {
+        (scenario, column): _cell(
+            statuses.get((scenario, column), []),
+            judged.get((scenario, column.engine, column.version, column.setup), []),
+            figures.get((scenario, column.engine, column.version, column.setup), {}),
+        )
+        for scenario in scenarios
+        for column in columns
+    }
+    return Summary(
+        bool(record.run.get("complete", True)),
+        tuple(scenarios),
+        columns,
+        cells,
+        Counter(task_status(task) for task in tasks),
+        _missing(record.run),
+    )
+
+
+def _identity(task: Mapping[str, Any]) -> tuple[str, str, str]:
+    return task["engine"], task.get("engine_version") or "", task.get("setup") or "physics"
+
+
+def _columns(tasks: Iterable[Mapping[str, Any]]) -> tuple[Column, ...]:
+    keys = list(dict.fromkeys(_identity(task) for task in tasks))
+    columns = []
+    for engine, version, setup in keys:
+        several = len({v for e, v, _ in keys if e == engine}) > 1
+        label = f"{engine} {version}" if several else engine
+        columns.append(Column(engine, version, setup, label + (setup != "physics") * f" {setup}"))
+    return tuple(columns)
+
+
+def _cell(statuses: list[str], rows: list[str], figures: dict[str, list[Figure]]) -> Cell:
+    # A row's verdict counts even where the task above it is silent: no failure gets lost.
+    status = worst([*statuses, *(verdict for verdict in rows if verdict == "fail")])
+    residuals = figures.get("omega_dot", [])
+    return Cell(
+        status,
+        Counter(statuses),
+        max(residuals, key=size, default=None),
+        _range(figures.get("angular_momentum", [])),
+        _range(figures.get("attitude", [])),
+    )
+
+
+def size(figure: Figure) -> float:
+    """How large it is, for ordering: what is not a number is larger than any number."""
+    return abs(figure.value) if not math.isnan(figure.value) else float("inf")
+
+
+def _range(figures: list[Figure]) -> Range | None:
+    """Best and worst integrator, each at its finest step and there at its largest value."""
+    runs: dict[str, dict[float, Figure]] = {}
+    for figure in figures:
+        step = figure.timestep if figure.timestep is not None else figure.accuracy
+        at_step = runs.setdefault(figure.integrator or "", {})
+        present = at_step.get(step or 0.0)
+        if present is None or size(figure) > size(present):
+            at_step[step or 0.0] = figure
+    finest = [steps[min(steps)] for steps in runs.values()]
+    return Range(min(finest, key=size), max(finest, key=size)) if finest else None
+
+
+_SUMMARISED = (
+    ((pl.col("gate") == "equation") & (pl.col("channel") == "omega_dot"))
+    | ((pl.col("gate") == "invariants") & (pl.col("channel") == "angular_momentum"))
+    | ((pl.col("gate") == "trajectory") & (pl.col("channel") == "attitude"))
+)
+_METRIC = {"omega_dot": "residual", "angular_momentum": "drift", "attitude": "error"}
+
+_Key = tuple[str, str, str, str]
+
+
+def _figures(metrics: pl.DataFrame) -> dict[_Key, dict[str, list[Figure]]]:
+    found: dict[_Key, dict[str, list[Figure]]] = {}
+    for row in metrics.filter(_SUMMARISED).iter_rows(named=True):
+        if not row["metric"].startswith(_METRIC[row["channel"]]):
+            continue
+        key = (row["scenario"], row["engine"], row["engine_version"], row["setup"])
+        figure = Figure(
+            float("nan") if row["value"] is None else row["value"],
+            *(row[n] for n in ("unit", "scenario", "engine", "metric")),
+            row["integrator"] or None,
+            *(row[n] for n in ("timestep", "accuracy", "bound")),
+        )
+        found.setdefault(key, {}).setdefault(row["channel"], []).append(figure)
+    return found
+
+
+def _judged_rows(metrics: pl.DataFrame) -> dict[_Key, list[str]]:
+    names = ("scenario", "engine", "engine_version", "setup")
+    groups = metrics.group_by(*names, maintain_order=True).agg(pl.col("verdict").unique())
+    return {row[:4]: row[4] for row in groups.iter_rows()}
+
+
+def _missing(run: Mapping[str, Any]) -> tuple[Missing, ...]:
+    groups: dict[tuple[str, str, str], list[Mapping[str, Any]]] = {}
+    for task in run["tasks"]:
+        if task["outcome"] != "ok":
+            key = (task["engine"], task["outcome"], task.get("reason") or "")
+            groups.setdefault(key, []).append(task)
+    asked = {task["engine"] for task in run["tasks"]}
+    for engine in run["engines"]:
+        if engine.get("installed") is False and engine["name"] not in asked:
+            groups[engine["name"], "not-installed", engine.get("reason") or ""] = []
+    return tuple(
+        Missing(
+            *key,
+            len(tasks),
+            tuple(dict.fromkeys(task["scenario"] for task in tasks)),
+            tuple(dict.fromkeys(t["integrator"] for t in tasks if t.get("integrator"))),
+        )
+        for key, tasks in sorted(groups.items(), key=lambda item: STATUSES.index(item[0][1]))
+    )

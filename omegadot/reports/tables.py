@@ -1,0 +1,156 @@
+"""The page's tables as plain rows of cells: every number, also for readers without script."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import polars as pl
+
+from omegadot.reports.courses import Chart
+from omegadot.reports.numbers import knob, short
+from omegadot.reports.schema import GATES
+from omegadot.reports.summary import task_status
+
+CHANNEL_NAMES = {
+    "omega_dot": "omega-dot",
+    "omega": "omega",
+    "attitude": "attitude",
+    "energy": "energy",
+    "angular_momentum": "angular momentum",
+    "linear_momentum": "linear momentum",
+    "position": "position",
+    "torque": "torque",
+    "model": "model",
+    "time": "time",
+}
+# One value an engine, whatever it is stepped with; the others are one value a run.
+ENGINE_GATES = ("model", "equation")
+
+
+@dataclass(frozen=True)
+class Value:
+    """One cell: its text, and "fail" or "declared" where it must stand out."""
+
+    text: str
+    mark: str = ""
+
+
+@dataclass(frozen=True)
+class Row:
+    """heads: the cells that name the row.  values: the cells below the columns."""
+
+    heads: tuple[str, ...]
+    values: tuple[Value, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """groups: (title, how many columns) of the upper head row.  columns: the lower head row."""
+
+    heads: tuple[str, ...]
+    groups: tuple[tuple[str, int], ...]
+    columns: tuple[str, ...]
+    rows: tuple[Row, ...]
+
+
+EMPTY = Value("")
+
+
+def unit_text(unit: str) -> str:
+    """How a unit stands behind a column's name."""
+    return "relative" if unit == "1" else unit
+
+
+def engine_table(metrics: pl.DataFrame) -> Table:
+    """Model and equation, one row an engine: the worst value over its runs."""
+    heads = ["engine", "engine_version", "setup"]
+    return _pivot(metrics.filter(pl.col("gate").is_in(ENGINE_GATES)), heads, _engine_heads)
+
+
+def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]]) -> Table:
+    """What each run came to, one row a run, with its verdict and the reason of it."""
+    heads = ["engine", "engine_version", "setup", "integrator", "timestep", "accuracy"]
+    table = _pivot(metrics.filter(~pl.col("gate").is_in(ENGINE_GATES)), heads, _run_heads)
+    values = {row.heads: row.values for row in table.rows}
+    blank = (EMPTY,) * len(table.columns)
+    rows = []
+    for task in tasks:
+        names = _run_heads(tuple(task.get(name) for name in heads))
+        status = task_status(task)
+        reason = task.get("why") or task.get("reason") or ""
+        mark = status if status in ("fail", "declared") else ""
+        found = values.pop(names, blank)
+        rows.append(Row(names, (Value(status, mark), *found, Value(reason))))
+    rows += [Row(names, (EMPTY, *found, EMPTY)) for names, found in values.items()]
+    groups = (("", 1), *table.groups, ("", 1))
+    return Table(("engine", "run"), groups, ("verdict", *table.columns, "why"), tuple(rows))
+
+
+def course_table(chart: Chart) -> Table:
+    """The numbers behind a scenario's charts: each course's largest value, and its last."""
+    rows = [
+        Row(
+            _run_heads((c.engine, "", c.setup, c.integrator, c.timestep, c.accuracy)),
+            tuple(
+                Value(short(value))
+                for channel in chart.units
+                for value in (c.largest[channel], c.end[channel])
+            ),
+        )
+        for c in chart.courses
+    ]
+    groups = tuple(
+        (f"{CHANNEL_NAMES[channel]}, {unit_text(unit)}", 2) for channel, unit in chart.units.items()
+    )
+    return Table(("engine", "run"), groups, ("largest", "at the end") * len(groups), tuple(rows))
+
+
+def _engine_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
+    engine, version, setup = key
+    return (" ".join(filter(None, (engine, version, "" if setup == "physics" else setup))),)
+
+
+def _run_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
+    engine, _, setup, integrator, timestep, accuracy = key
+    name = engine if setup in ("physics", None) else f"{engine} {setup}"
+    return name, ", ".join(filter(None, (integrator, knob(timestep, accuracy))))
+
+
+def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any) -> Table:
+    """One row a key, one column a (gate, channel, metric, unit), each cell its worst row."""
+    keys = ["gate", "channel", "metric", "unit"]
+    found = metrics.select(keys).unique(maintain_order=True).rows()
+    columns = sorted(found, key=lambda column: GATES.index(column[0]))
+    places = {column: place for place, column in enumerate(columns)}
+    rows: dict[tuple[str, ...], list[Value]] = {}
+    sizes: dict[tuple[tuple[str, ...], int], tuple[bool, float]] = {}
+    for row in metrics.select(*heads, *keys, "value", "bound", "verdict").iter_rows():
+        names = name(row[: len(heads)])
+        place = places[row[len(heads) : len(heads) + 4]]
+        value, bound, verdict = row[-3:]
+        weight = (verdict == "fail", float("inf") if value is None or value != value else value)
+        if sizes.get((names, place), (False, float("-inf"))) <= weight:
+            sizes[names, place] = weight
+            line = rows.setdefault(names, [EMPTY] * len(columns))
+            line[place] = _value(value, bound, verdict)
+    titles = [f"{gate}: {CHANNEL_NAMES[channel]}" for gate, channel, _, _ in columns]
+    groups: list[tuple[str, int]] = []
+    for title in titles:
+        count = groups.pop()[1] if groups and groups[-1][0] == title else 0
+        groups.append((title, count + 1))
+    return Table(
+        ("engine",),
+        tuple(groups),
+        tuple(f"{metric.replace('_', ' ')}, {unit_text(unit)}" for _, _, metric, unit in columns),
+        tuple(Row(names, tuple(line)) for names, line in rows.items()),
+    )
+
+
+def _value(value: float | None, bound: float | None, verdict: str) -> Value:
+    text = short(value)
+    if verdict not in ("fail", "declared"):
+        return Value(text)
+    limit = "" if bound is None else f", bound {short(bound)}"
+    return Value(f"{text} {'✗' if verdict == 'fail' else '!'} {verdict}{limit}", verdict)

@@ -1,0 +1,121 @@
+"""Volume, mass and size of a part, and whether a set of parts is a body that can be turned.
+
+A body's inertia is ``trace(S) 1 - S`` with its second moment S, the integral of ``rho r r^T`` about
+the centre of mass: equation (5) with ``r_x^T r_x = |r|^2 1 - r r^T`` written out. Its smallest
+principal moment is therefore the sum of the two smaller eigenvalues of S, and it is singular
+exactly when all mass lies on one line. That is what is looked for here; the inertia itself is the
+reference's business.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.scenarios.errors import Spoken
+from omegadot.scenarios.parts import Box, Capsule, Cylinder, Ellipsoid, Part, Point, Sphere
+from omegadot.scenarios.quantities import LARGEST, SMALLEST, refuse
+
+EPS = float(np.finfo(float).eps)
+
+
+def volume(part: Part) -> float:
+    """The volume in m^3; zero for a point."""
+    match part:
+        case Box():
+            return math.prod(part.size)
+        case Cylinder():
+            return math.pi * part.radius**2 * part.length
+        case Sphere():
+            return 4 / 3 * math.pi * part.radius**3
+        case Ellipsoid():
+            return 4 / 3 * math.pi * math.prod(part.semi_axes)
+        case Capsule():
+            return math.pi * part.radius**2 * (part.length + 4 / 3 * part.radius)
+        case Point():
+            return 0.0
+
+
+def mass(part: Part) -> float:
+    """The mass in kg, as given or density times volume."""
+    if isinstance(part, Point) or part.density is None:
+        assert part.mass is not None  # the part was validated: one of the two is given
+        return part.mass
+    return part.density * volume(part)
+
+
+def mean_squares(part: Part) -> tuple[float, float, float]:
+    """Mean x^2, y^2 and z^2 over the solid in m^2, part axes, about the part's centre."""
+    match part:
+        case Box():
+            x, y, z = part.size
+            return x * x / 12, y * y / 12, z * z / 12
+        case Cylinder():
+            across = part.radius**2 / 4
+            return across, across, part.length**2 / 12
+        case Sphere():
+            across = part.radius**2 / 5
+            return across, across, across
+        case Ellipsoid():
+            x, y, z = part.semi_axes
+            return x * x / 5, y * y / 5, z * z / 5
+        case Capsule():
+            r, h = part.radius, part.length
+            middle = h / (h + 4 / 3 * r)  # the cylinder's share of the mass
+            caps = 1 - middle
+            across = (middle / 4 + caps / 5) * r * r
+            # the centre of a half ball lies 3/8 r beyond its flat face
+            along = middle * h * h / 12 + caps * (h * h / 4 + 3 / 8 * h * r + r * r / 5)
+            return across, across, along
+        case Point():
+            return 0.0, 0.0, 0.0
+
+
+def _axes(part: Part) -> NDArray[np.float64]:
+    """body_R_part, (3, 3)."""
+    w, v = part.orientation[0], np.array(part.orientation[1:])
+    x, y, z = v
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turned: NDArray[np.float64] = (w * w - v @ v) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * skew
+    return turned
+
+
+def check_body_of_parts(parts: tuple[Part, ...]) -> None:
+    """Refuse parts whose mass or inertia no engine could hold.
+
+    Raises the error of `refuse` when a mass or the inertia leaves the range of magnitudes, or when
+    all mass lies, to rounding, on one line.
+    """
+    masses = np.array([mass(part) for part in parts])
+    for index, (part, amount) in enumerate(zip(parts, masses, strict=True)):
+        if not SMALLEST <= amount <= LARGEST:
+            raise refuse(
+                f"choose sizes for a mass of {SMALLEST:g} to {LARGEST:g} kg",
+                key=f"part[{index}].density",
+                found=getattr(part, "density", None),
+            )
+    places = np.array([part.position for part in parts])
+    offsets = places - masses @ places / masses.sum()
+    second_moment = np.einsum("n,ni,nj->ij", masses, offsets, offsets)
+    for part, amount in zip(parts, masses, strict=True):
+        axes = _axes(part)
+        second_moment += amount * (axes * mean_squares(part)) @ axes.T
+    small, middle, large = np.linalg.eigvalsh(second_moment)
+    # eigvalsh is good to a few ulps of the largest eigenvalue, an offset to a few of the farthest
+    # place: what lies below that is a line
+    rounding = 16 * EPS * large + masses.sum() * (4 * EPS * np.abs(places).max()) ** 2
+    if small + middle <= rounding:
+        raise refuse(
+            "move a part off the line, or give it a thickness, so that the body has an inertia"
+            " about every axis",
+            key="part",
+            found=Spoken("a set of parts on one line"),
+        )
+    if small + middle < SMALLEST or middle + large > LARGEST:
+        raise refuse(
+            f"choose parts for an inertia of {SMALLEST:g} to {LARGEST:g} kg m^2",
+            key="part",
+            found=Spoken(f"a body with moments from {small + middle:.3g} to {middle + large:.3g}"),
+        )

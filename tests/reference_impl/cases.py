@@ -1,0 +1,106 @@
+"""Bodies, systems and states that the tests of the equations share."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import strategies as st
+
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.rotations import exp_quaternion, normalize, rotation_matrix
+from omegadot.reference_impl.system import Array, Body, Load, State, System
+
+EPS = np.finfo(float).eps
+
+numbers = st.floats(-3.0, 3.0, allow_nan=False, width=32)
+vectors = st.tuples(numbers, numbers, numbers).map(lambda v: np.array(v, float))
+quaternions = vectors.map(exp_quaternion)
+positive = st.floats(0.1, 5.0)
+
+
+@st.composite
+def inertias(draw: st.DrawFn) -> Array:
+    """Tensors of solids: ``tr(S) 1 - S`` with S positive definite, in any attitude."""
+    squares = np.array([draw(positive) for _ in range(3)])
+    axes = rotation_matrix(draw(quaternions))
+    second_moment = (axes * squares) @ axes.T
+    inertia = np.trace(second_moment) * np.eye(3) - second_moment
+    return (inertia + inertia.T) / 2
+
+
+@st.composite
+def systems(draw: st.DrawFn, pivoted: bool | None = None) -> System:
+    """Any body under all loads at once, free or pivoted."""
+    hung = draw(st.booleans()) if pivoted is None else pivoted
+    body = Body(np.array(draw(positive)), draw(vectors), draw(inertias()))
+    load = Load(
+        gravity=draw(vectors),
+        pivot=draw(vectors) if hung else None,
+        damping=np.array(draw(st.floats(0.0, 1.0))),
+        torque_body=draw(vectors),
+        torque_world=draw(vectors),
+    )
+    return System((body,), load)
+
+
+@st.composite
+def states(draw: st.DrawFn) -> State:
+    """Any state of a free body."""
+    return State(draw(quaternions), draw(vectors), draw(vectors), draw(vectors))
+
+
+def system(inertia: object, mass: float = 1.0, center: object = (0, 0, 0), **load: object) -> System:
+    """A system from plain numbers."""
+    tensor = np.array(inertia, float)
+    body = Body(
+        np.array(mass, float),
+        np.array(center, float),
+        np.diag(tensor) if tensor.ndim == 1 else tensor,
+    )
+    arrays = {name: np.array(value, float) for name, value in load.items()}
+    return System((body,), Load(**arrays))
+
+
+def start(
+    w: object,
+    orientation: object = (1, 0, 0, 0),
+    position: object = (0, 0, 0),
+    velocity: object = (0, 0, 0),
+    on: System | None = None,
+) -> State:
+    """A state from plain numbers; `on` a pivoted system the body is placed on its pivot."""
+    state = State(
+        normalize(np.array(orientation, float)),
+        np.array(w, float),
+        np.array(position, float),
+        np.array(velocity, float),
+    )
+    return state if on is None else place_on_pivot(on, state)
+
+
+TURNED = rotation_matrix(normalize(np.array([4.0, 1.0, -2.0, 0.5])))
+
+
+def turned(moments: object) -> Array:
+    """A tensor with these principal moments, its axes along no axis of the body."""
+    tensor = TURNED @ np.diag(np.array(moments, float)) @ TURNED.T
+    return (tensor + tensor.T) / 2
+
+
+FREE = system([1.0, 2.0, 2.5], mass=2.0, gravity=(0, 0, -9.81))
+TOP = system(
+    turned([0.4, 0.5, 0.7]), mass=1.5, center=(0.02, 0.01, 0.2), pivot=(0, 0, 0), gravity=(0, 1, -9)
+)
+DRIVEN = system(
+    [1.0, 2.0, 2.5], gravity=(0, 0, -9.81), torque_world=(0.9, -0.6, 1.2), torque_body=(0.3, 0, 0.4)
+)
+DAMPED = system([1.0, 2.0, 2.5], damping=0.4, torque_body=(0.3, 0.8, 0.4))
+
+
+def rows(state: State, index: object) -> State:
+    """The state at an index of the leading axes."""
+    return State(
+        state.orientation[index],
+        state.angular_velocity[index],
+        state.position[index],
+        state.linear_velocity[index],
+    )
