@@ -1,22 +1,27 @@
 """DART behind the protocol: its forward and inverse dynamics and its own stepper.
 
-`dart_joint` holds the world, the body and its joint. The stepper is semi-implicit Euler:
-accelerations, then velocities, then positions with the new velocities.
+`dart_model` builds the world, `dart_joint` talks to the body in it. The stepper is semi-implicit
+Euler: accelerations, then velocities, then positions with the new velocities.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from omegadot.adapters.dart_joint import SWITCHED_OFF, DartJoint
+from omegadot.adapters.dart_joint import DartJoint
+from omegadot.adapters.dart_model import SWITCHED_OFF, DartModel
 from omegadot.adapters.protocol import Description, Integrator, Setup, Trajectory, UnsupportedError
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import kept_steps, stack
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
-NAME = "semi-implicit"
-SCHEME = "semi-implicit-euler"
-NOTE = "World.step"
+SEMI_IMPLICIT = Integrator(
+    "semi-implicit",
+    "semi-implicit-euler",
+    dict(SCHEMES["semi-implicit-euler"].orders),
+    note="World.step",
+    steps_origin=True,
+)
 CONVENTIONS = (
     "FreeJoint velocities are in body axes up to 6.16 and in world axes from 6.17; BallJoint "
     "velocities are in body axes: the adapter asks for named frames or goes through the Jacobian",
@@ -30,27 +35,16 @@ CONVENTIONS = (
     "zero: where DART's own coordinates are not finite, the adapter gives NaN",
 )
 FEATURES = frozenset(
-    "free pivot gravity damping torque full_inertia offset_com forward_dynamics inverse_dynamics".split()
+    {
+        *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
+        *("forward_dynamics", "inverse_dynamics"),
+    }
 )
-LINKS = ("https://github.com/dartsim/dart", "https://docs.dartsim.org/")
-
-
-def _integrator(system: System | None) -> Integrator:
-    """The stepper; of a loaded system with the orders that its scheme has on it.
-
-    Channels without truncation error are left out. A free body with its centre of mass off the
-    origin has none of these: its momentum drifts.
-    """
-    scheme = SCHEMES[SCHEME]
-    orders: dict[str, int | None] = dict(scheme.orders)
-    if system is not None and not _steps_off_center(system):
-        orders = {channel: scheme.order(channel, system) for channel in orders}
-    declared = {channel: order for channel, order in orders.items() if order is not None}
-    return Integrator(NAME, SCHEME, declared, note=NOTE, steps_origin=True)
-
-
-def _steps_off_center(system: System) -> bool:
-    return system.load.pivot is None and bool(np.any(system.body.center_of_mass))
+LINKS = (
+    "https://github.com/dartsim/dart",
+    "https://github.com/dartsim/dart/blob/main/CHANGELOG.md",
+    "https://docs.dartsim.org/",
+)
 
 
 class DartAdapter:
@@ -62,15 +56,14 @@ class DartAdapter:
         self._engine = dartpy
         self._setup = setup
         self._joint: DartJoint | None = None
-        self._system: System | None = None
 
     @property
     def description(self) -> Description:
-        """DART as it is installed; once a system is loaded, its orders are those on that system."""
+        """DART as it is installed."""
         return Description(
             name="dart",
             version=str(self._engine.__version__),
-            integrators=(_integrator(self._system),),
+            integrators=(SEMI_IMPLICIT,),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
             features=FEATURES,
@@ -82,12 +75,12 @@ class DartAdapter:
         """Build a world with one body. Raises UnsupportedError for several bodies."""
         if len(system.bodies) != 1:
             raise UnsupportedError(f"dart takes one body here, not {len(system.bodies)}.")
-        self._system = system
-        self._joint = DartJoint(self._engine, system, physics=self._setup == "physics")
+        model = DartModel(self._engine, system, physics=self._setup == "physics")
+        self._joint = DartJoint(model, system)
 
     def model(self) -> tuple[Body, ...]:
         """The body node's inertia, read back."""
-        return (self._loaded().body(),)
+        return (self._loaded().model.body(),)
 
     def set_state(self, state: State) -> None:
         """Put the joint in the state."""
@@ -95,7 +88,7 @@ class DartAdapter:
 
     def get_state(self) -> State:
         """The body node's state in the project's frames."""
-        return State(*self._loaded().get_state())
+        return self._loaded().get_state()
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """`Skeleton.computeForwardDynamics` at n states."""
@@ -114,7 +107,8 @@ class DartAdapter:
         for n in range(len(torque)):
             state = _row(states, n)
             joint.set_state(state)
-            torque[n] = joint.inverse(state, acceleration.angular[n], acceleration.linear[n])
+            wanted = Acceleration(acceleration.angular[n], acceleration.linear[n])
+            torque[n] = joint.inverse(state, wanted)
         return torque
 
     def run(
@@ -124,7 +118,7 @@ class DartAdapter:
 
         A run that is no longer finite is not stepped on: its later samples are NaN.
         """
-        if integrator != NAME:
+        if integrator != SEMI_IMPLICIT.name:
             raise UnsupportedError(f"dart has no integrator {integrator!r}.")
         joint, kept = self._loaded(), kept_steps(steps, every)
         joint.start(initial, timestep)
@@ -133,7 +127,7 @@ class DartAdapter:
             if joint.is_finite():
                 joint.step(count)
             rows.append(joint.get_state())
-        return Trajectory(np.multiply(kept, timestep), stack([State(*row) for row in rows]))
+        return Trajectory(np.multiply(kept, timestep), stack(rows))
 
     def _loaded(self) -> DartJoint:
         if self._joint is None:

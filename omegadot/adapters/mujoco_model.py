@@ -26,17 +26,18 @@ _DISABLED = {
 def switched_off(mujoco: Any) -> tuple[str, ...]:
     """What the ``physics`` setup turns off in the installed version, one clause each."""
     known = [what for name, what in _DISABLED.items() if hasattr(mujoco.mjtDisableBit, name)]
-    return (*known, "every optional flag, sleep among them", "density and viscosity of a medium")
+    return (*known, "held at their default, off: sleep, other optional flags, a viscous medium")
 
 
 def _nearest_to_identity(axes: Array) -> Array:
-    """The columns of a (3, 3) orthogonal matrix, reordered and signed to a rotation near 1."""
+    """The columns of a (3, 3) orthogonal matrix, reordered and signed to a rotation near 1.
+
+    Over the six orders the sums of ``|diagonal|`` average at least 1, so the greatest exceeds 1;
+    made positive it is the trace, and an orthogonal matrix with a trace above 1 is a rotation.
+    """
     order = max(permutations(range(3)), key=lambda p: float(abs(axes[range(3), p]).sum()))
     axes = axes[:, order]
-    axes = axes * np.where(np.diagonal(axes) < 0, -1.0, 1.0)
-    if np.linalg.det(axes) < 0:
-        axes[:, np.argmin(np.diagonal(axes))] *= -1.0
-    return axes
+    return axes * np.where(np.diagonal(axes) < 0, -1.0, 1.0)
 
 
 def _quaternion(rotation: Array) -> Array:

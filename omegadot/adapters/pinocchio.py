@@ -27,22 +27,19 @@ CONVENTIONS = (
     "at every evaluation",
 )
 FEATURES = frozenset(
-    "free pivot gravity damping torque full_inertia offset_com forward_dynamics inverse_dynamics "
-    "batch".split()
+    {
+        *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
+        *("forward_dynamics", "inverse_dynamics"),
+    }
 )
 LINKS = (
     "https://github.com/stack-of-tasks/pinocchio",
-    "https://docs.ros.org/en/rolling/p/pinocchio/",
+    "https://gepettoweb.laas.fr/doc/stack-of-tasks/pinocchio/master/doxygen-html/",
 )
 
 
-def _integrator(scheme: Scheme, system: System | None) -> Integrator:
-    """One scheme over ABA; channels without truncation error on a loaded system are left out."""
-    orders: dict[str, int | None] = dict(scheme.orders)
-    if system is not None:
-        orders = {channel: scheme.order(channel, system) for channel in orders}
-    declared = {channel: order for channel, order in orders.items() if order is not None}
-    return Integrator(PREFIX + scheme.name, scheme.name, declared, note=NOTE)
+def _integrator(scheme: Scheme) -> Integrator:
+    return Integrator(PREFIX + scheme.name, scheme.name, dict(scheme.orders), note=NOTE)
 
 
 def _rows(states: State) -> State:
@@ -68,15 +65,14 @@ class PinocchioAdapter:
 
         self._engine = pinocchio
         self._joint: PinocchioJoint | None = None
-        self._system: System | None = None
 
     @property
     def description(self) -> Description:
-        """Pinocchio as installed; once a system is loaded, its orders are those on that system."""
+        """Pinocchio as it is installed."""
         return Description(
             name="pinocchio",
             version=str(self._engine.__version__),
-            integrators=tuple(_integrator(scheme, self._system) for scheme in SCHEMES.values()),
+            integrators=tuple(_integrator(scheme) for scheme in SCHEMES.values()),
             conventions=CONVENTIONS,
             features=FEATURES,
             licence="BSD-2-Clause",
@@ -87,7 +83,7 @@ class PinocchioAdapter:
         """Build a `pinocchio.Model` of one joint. Raises UnsupportedError for several bodies."""
         if len(system.bodies) != 1:
             raise UnsupportedError(f"pinocchio takes one body here, not {len(system.bodies)}.")
-        self._system, self._joint = system, PinocchioJoint(self._engine, system)
+        self._joint = PinocchioJoint(self._engine, system)
 
     def model(self) -> tuple[Body, ...]:
         """The inertia of the joint, read back."""

@@ -73,7 +73,8 @@ class PinocchioJoint:
         torque = self._torque(state, world_R_body) if self._loaded else self._no_torque
         a = self._pin.aba(self._model, self._data, q, v, torque)
         self._pin.centerOfMass(self._model, self._data, q, v, a, False)
-        return a[-3:], self._data.acom[0]
+        # both are Pinocchio's own memory, which its next call writes over
+        return a[-3:].copy(), self._data.acom[0].copy()
 
     def inverse(self, state: State, angular: Array, linear: Array) -> Array:
         """The torque (3,), body axes, by RNEA, about the centre of mass or about the pivot."""

@@ -47,7 +47,7 @@ class ReferenceAdapter:
         return self._system
 
     def load(self, system: System) -> None:
-        """Keep the system; there is no model to build. Raises UnsupportedError for several bodies."""
+        """Keep the system, no model being built. Raises UnsupportedError for several bodies."""
         if len(system.bodies) != 1:
             raise UnsupportedError(f"the equations are of one body, not of {len(system.bodies)}.")
         self._system, self._state = system, None

@@ -27,12 +27,16 @@ def case_truth(exact: Driver, case: Case) -> Truth | str:
 
 
 def case_companions(
-    reference: Driver, case: Case, truth: Truth | str, keys: Sequence[SchemeKey]
+    reference: Driver,
+    case: Case,
+    truth: Truth | str,
+    keys: Sequence[SchemeKey],
+    sweeps: Sequence[Sweep],
 ) -> dict[tuple[SchemeKey, float], Companion]:
-    """The reference's run for every scheme and step of a case; a scheme that fails is left out."""
+    """The reference's run for every scheme and step; a scheme that fails is left out."""
     if isinstance(truth, str):
         return {}
-    plan = [{"timestep": s.timestep, "steps": s.steps, "every": s.every} for s in case.sweeps]
+    plan = [{"timestep": s.timestep, "steps": s.steps, "every": s.every} for s in sweeps]
     found = {}
     for key in keys:
         answer = reference.request(
@@ -46,7 +50,7 @@ def case_companions(
             plan=plan,
         )
         if answer.ok:
-            for sweep, run in zip(case.sweeps, answer.result, strict=True):
+            for sweep, run in zip(sweeps, answer.result, strict=True):
                 companion = Companion(state_from(run["state"]), run["growth"], run["omega_dot"])
                 found[key, sweep.timestep] = companion
     return found

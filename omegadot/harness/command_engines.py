@@ -19,7 +19,7 @@ START_TIMEOUT = 60.0
 def _describe(choice: EngineChoice) -> Answer:
     worker = WorkerProcess(choice.target, "physics", START_TIMEOUT)
     answer = worker.start()
-    worker.stop()
+    worker.finish()
     return answer
 
 

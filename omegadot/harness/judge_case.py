@@ -15,7 +15,7 @@ from omegadot.harness.gates.course import (
     CHANNELS,
     Course,
     Declared,
-    finding_of,
+    findings_of,
     measure,
     order_of,
     orders_for,
@@ -137,7 +137,7 @@ def judge_integrator(
         if course is None:
             yield _failed(integrator, sweep, answer)
             continue
-        findings = {c: finding_of(course, declared, c, orders[c]) for c in CHANNELS}
+        findings = findings_of(course, declared, list(courses.values()))
         rows = [trajectory.time_row(sweep, answer.result["time"])]
         rows += invariants.rows(course, findings, sweep.times)
         rows += trajectory.rows(course, findings, orders)

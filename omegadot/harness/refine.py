@@ -8,8 +8,6 @@ from omegadot.harness.plan import Case, Sweep
 from omegadot.harness.worker_process import Answer
 
 MOST_HALVINGS = 4
-# Two starts of a sweep need this many to fit a slope and to see that it has settled.
-FEWEST_STEPS = 3
 Refinements = dict[str, dict[float, tuple[Sweep, Answer]]]
 
 
@@ -30,3 +28,8 @@ def refine(driver: Driver, case: Case, runs: list[JudgedRun], finer: Refinements
         known[sweep.timestep] = (sweep, driver.run(case, name, sweep))
         done.append(name)
     return done
+
+
+def refined_sweeps(finer: Refinements) -> list[Sweep]:
+    """The sweeps that were added to those of the case."""
+    return [sweep for known in finer.values() for sweep, _ in known.values()]

@@ -18,8 +18,8 @@ from omegadot.harness.drive import INTERRUPTED, CaseResult, Driver, Questions
 from omegadot.harness.gates.course import Companion, SchemeKey, scheme_key
 from omegadot.harness.gates.equation import random_acceleration, random_states
 from omegadot.harness.judge_case import JudgedRun, judge_case, shared_rows
-from omegadot.harness.plan import Case, Engine, EngineChoice
-from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.plan import Case, Engine, EngineChoice, Sweep
+from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine, refined_sweeps
 from omegadot.harness.rows import Row
 from omegadot.harness.truth import Truth, path_states
 from omegadot.harness.usage import check_integrators
@@ -117,12 +117,17 @@ class Runner:
                 self.engines.append(engine)
 
     def stop(self) -> None:
-        """End every worker; answers that were on their way become interruptions."""
+        """End every worker at once; answers that were on their way become interruptions."""
         self._stopping.set()
         for driver in self._drivers.values():
             driver.worker.stop()
+
+    def finish(self) -> None:
+        """End the threads, then the workers, which are idle by then or stopped already."""
         for threads in self._threads.values():
             threads.shutdown(wait=True, cancel_futures=True)
+        for driver in self._drivers.values():
+            driver.worker.finish()
 
     def _submit(self, name: str, call: Callable[[], Result]) -> Future[Result]:
         return self._threads[name].submit(call)
@@ -132,14 +137,18 @@ class Runner:
         named = {scheme_key(i, case.system) for engine in self.engines for i in engine.integrators}
         return sorted((key for key in named if key), key=str)
 
-    def _add_companions(self, case: Case, truth: Truth, results: list[CaseResult]) -> None:
-        """Companions for schemes that were declared only once the system was known."""
+    def _add_companions(
+        self, case: Case, truth: Truth, results: list[CaseResult], sweeps: list[Sweep]
+    ) -> None:
+        """Companions for schemes or steps that came up only when the engines had answered."""
         named = {scheme_key(i, case.system) for result in results for i in result.integrators}
-        missing = sorted({key for key in named if key} - {k for k, _ in truth.companions}, key=str)
-        if missing:
-            driver = self._drivers["reference"]
-            call = partial(case_companions, driver, case, truth, missing)
-            truth.companions.update(self._submit("reference", call).result())
+        for sweep in sweeps:
+            known = {key for key, step in truth.companions if step == sweep.timestep}
+            missing = sorted((key for key in named if key and key not in known), key=str)
+            if missing:
+                driver = self._drivers["reference"]
+                call = partial(case_companions, driver, case, truth, missing, [sweep])
+                truth.companions.update(self._submit("reference", call).result())
 
     def _examine(self, engine: Engine, case: Case, pending: PendingTruth) -> CaseResult:
         truth, driver = pending.truth.result(), self._drivers[engine.name]
@@ -161,7 +170,7 @@ class Runner:
         truth = self._submit("exact", lambda: case_truth(exact, case))
         keys = self._keys(case)
         companions = self._submit(
-            "reference", lambda: case_companions(reference, case, truth.result(), keys)
+            "reference", lambda: case_companions(reference, case, truth.result(), keys, case.sweeps)
         )
         known = PendingTruth(truth, companions)
         results = {
@@ -178,7 +187,9 @@ class Runner:
             unjudged = [EngineCase(e, results[e.name], [], []) for e in self.engines]
             return JudgedCase(case, None, truth, unjudged)
         truth.companions.update(pending.known.companions.result())
-        self._add_companions(case, truth, list(results.values()))
+        refined = [sweep for known in finer.values() for sweep in refined_sweeps(known)]
+        unique = {sweep.timestep: sweep for sweep in (*case.sweeps, *refined)}
+        self._add_companions(case, truth, list(results.values()), list(unique.values()))
         questions, judged = questions_of(case, truth, self.request.seed), []
         for engine in self.engines:
             result = results[engine.name]
@@ -222,8 +233,11 @@ class Runner:
             interrupted = True
             self.stop()
             judged += [self._leftover(case) for case in pending[len(judged) :]]
-        finally:
+        except BaseException:
             self.stop()
+            raise
+        finally:
+            self.finish()
         return Outcome(self.engines, self.missing, judged, interrupted)
 
     def _leftover(self, pending: PendingCase) -> JudgedCase:

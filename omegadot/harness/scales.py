@@ -58,16 +58,18 @@ def body_scale(system: System) -> BodyScale:
 def torque_size(system: System, state: State, acceleration: Acceleration) -> Array:
     """(...) N m: the terms of equation (8) added up by size, with what cancels among them.
 
-    ``J (|omega|^2 + |omega_dot|) + |tau| + m L (|g| + |omega| |v| + |a|)``, J the largest inertia
-    and L the lever of `body_scale`.
+    ``J (|omega|^2 + |omega_dot|) + |tau| + m L (|g| + |a|)``, J the largest inertia and L the lever
+    of `body_scale`; for a free body also ``m |v| (|v| + L |omega|)``: the spatial bias force of an
+    engine holds ``v x m v``, which vanishes on paper and leaves its rounding.
     """
     scale, load = body_scale(system), system.load
     rate = norm(state.angular_velocity)
     size = scale.largest * (rate**2 + norm(acceleration.angular)) + norm(torque(system, state))
-    linear = norm(load.gravity) + norm(acceleration.linear)
+    size = size + scale.mass * scale.lever * (norm(load.gravity) + norm(acceleration.linear))
     if load.pivot is None:
-        linear = linear + rate * norm(state.linear_velocity)
-    return np.asarray(size + scale.mass * scale.lever * linear)
+        speed = norm(state.linear_velocity)
+        size = size + scale.mass * speed * (speed + scale.lever * rate)
+    return np.asarray(size)
 
 
 def angular_size(system: System, state: State, acceleration: Acceleration) -> Array:

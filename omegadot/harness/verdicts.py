@@ -59,34 +59,49 @@ def observed_order(timesteps: Sequence[float], errors: Sequence[float]) -> Obser
     return ObservedOrder(float(slopes[0]), bool(resolved))
 
 
-def judge(
-    error: Array,
-    round_off: Array,
-    scheme: str | None,
-    against_scheme: Array | None,
-    declared: int | None,
-    order: ObservedOrder | None,
-) -> Finding:
-    """Give the reason why `error` may stand, or say that there is none.
+@dataclass(frozen=True)
+class Evidence:
+    """What is known of one channel of one run.
 
-    error, round_off and against_scheme: (n,), the distance from the exact course, its rounding
-    bound, the distance from the reference stepping `scheme`. A declared order of None means
-    conserved: then only rounding or the scheme can account for an error.
+    error: (n,), the distance from the exact course.  round_off: (n,), what rounding may grow to.
+    left: (n,), the distance from the reference stepping the declared scheme, where there is one.
+    orders: the observed orders of `error` and, where there is one, of `left`.
     """
-    if not np.all(np.isfinite(error)):
+
+    error: Array
+    round_off: Array
+    left: Array | None
+    orders: tuple[ObservedOrder | None, ...]
+
+
+def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Finding:
+    """Give the reason why an error may stand, or say that there is none.
+
+    An error that is not explained must shrink at the declared order, and so must what is left of
+    it after the declared scheme: two schemes of an order differ by a term of that order, a fault
+    does not. A declared order of None means conserved: only rounding or the scheme can account
+    for an error then.
+    """
+    if not np.all(np.isfinite(evidence.error)):
         return Finding("unexplained", "not finite")
-    if np.all(error <= round_off):
+    if np.all(evidence.error <= evidence.round_off):
         return Finding("round-off", "within round-off")
-    if scheme is not None and against_scheme is not None and np.all(against_scheme <= round_off):
-        largest = float(np.max(against_scheme))
+    if evidence.left is not None and np.all(evidence.left <= evidence.round_off):
+        largest = float(np.max(evidence.left))
         return Finding("explained", f"explained by {scheme}, to {largest:.1e}")
-    if order is not None and declared is not None:
-        seen = f"observed order {order.value:.2f}, declared {declared}"
-        if order.resolved and order.value >= declared - ORDER_TOLERANCE:
-            return Finding("consistent", f"consistent: {seen}")
-        if not order.resolved:
-            return Finding("unresolved", f"the sweep does not resolve the order: {seen}")
-        return Finding("unexplained", seen)
-    if declared is not None:
+    if declared is None:
+        return Finding("unexplained", "declared conserved, and it drifts")
+    return _by_order(evidence.orders, declared)
+
+
+def _by_order(orders: tuple[ObservedOrder | None, ...], declared: int) -> Finding:
+    seen = [order for order in orders if order is not None]
+    if len(seen) < len(orders):
         return Finding("unresolved", "one step size cannot show an order")
-    return Finding("unexplained", "declared conserved, and it drifts")
+    lowest = min(seen, key=lambda order: order.value)
+    said = f"observed order {lowest.value:.2f}, declared {declared}"
+    if not all(order.resolved for order in seen):
+        return Finding("unresolved", f"the sweep does not resolve the order: {said}")
+    if lowest.value >= declared - ORDER_TOLERANCE:
+        return Finding("consistent", f"consistent: {said}")
+    return Finding("unexplained", said)

@@ -17,6 +17,7 @@ from typing import Any
 from omegadot.adapters.wire import read_frame, write_frame
 
 STDERR_BYTES_KEPT = 4000
+SECONDS_TO_LEAVE = 2.0
 FAILED_TO_ANSWER = {"crashed", "timeout"}
 
 
@@ -125,8 +126,18 @@ class WorkerProcess:
         self._process = None
         return f"{how}; its last words: {said}" if said else how
 
+    def finish(self) -> None:
+        """Let an idle worker leave by itself, so that it may tidy up; end it if it does not."""
+        if self._process is None:
+            return
+        assert self._process.stdin is not None
+        with contextlib.suppress(OSError, subprocess.TimeoutExpired):
+            self._process.stdin.close()
+            self._process.wait(timeout=SECONDS_TO_LEAVE)
+        self.stop()
+
     def stop(self) -> None:
-        """End the process and everything it started."""
+        """End the process and everything it started, at once."""
         if self._process is None:
             return
         with contextlib.suppress(ProcessLookupError, PermissionError):

@@ -28,8 +28,8 @@ def step_through(
 ) -> tuple[Array, State]:
     """Times and states at step 0, each `every`-th and the last.
 
-    dt: s, a float, or an array that broadcasts over the lanes of `initial`; all lanes take as many
-    steps. Times are ``n * dt``, (samples,) or (samples, *dt.shape); states have the samples in
+    dt: s, a float, or an array; the lanes are those of dt and of `initial`, broadcast against each
+    other, and all take as many steps. Times are ``n * dt``, (samples,) or (samples, *dt.shape); states have the samples in
     front, (samples, ..., 3). A pivoted body's position and velocity follow from its attitude and
     ω. A run that diverges goes on with infinities and NaN, without warnings.
     Raises ValueError for negative steps or `every` below one.
@@ -37,7 +37,8 @@ def step_through(
     kept = kept_steps(steps, every)
     step = scheme.step
     h = float(dt) if np.ndim(dt) == 0 and not isinstance(dt, np.longdouble) else np.asarray(dt)
-    logged, done, state = [initial], 0, initial
+    state, done = _on_lanes(initial, np.shape(h)), 0
+    logged = [state]
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         for target in kept[1:]:
             for _ in range(target - done):
@@ -46,6 +47,12 @@ def step_through(
             done = target
         states = place_on_pivot(system, stack(logged))
     return np.multiply.outer(kept, h), states
+
+
+def _on_lanes(state: State, lanes: tuple[int, ...]) -> State:
+    fields = (state.orientation, state.angular_velocity, state.position, state.linear_velocity)
+    shape = np.broadcast_shapes(lanes, *(field.shape[:-1] for field in fields))
+    return State(*(np.broadcast_to(field, (*shape, field.shape[-1])) for field in fields))
 
 
 def stack(states: list[State]) -> State:

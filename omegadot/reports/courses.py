@@ -117,11 +117,11 @@ def _charts(measured: pl.DataFrame, units: Mapping[str, dict[str, str]]) -> dict
     grouped: dict[str, list[tuple[Course, int]]] = {}
     for row, start, stop in zip(runs.iter_rows(named=True), [0, *stops[:-1]], stops, strict=True):
         course = Course(
-            *(row[name] for name in _RUN[1:]),
-            times[start:stop],
-            {c: values[start:stop, k] for k, c in enumerate(CHANNELS)},
-            {c: row["largest_" + c] for c in CHANNELS},
-            {c: row["end_" + c] for c in CHANNELS},
+            **{name: row[name] for name in _RUN[1:]},
+            time=times[start:stop],
+            values={c: values[start:stop, k] for k, c in enumerate(CHANNELS)},
+            largest={c: row["largest_" + c] for c in CHANNELS},
+            end={c: row["end_" + c] for c in CHANNELS},
         )
         grouped.setdefault(row["scenario"], []).append((course, row["unmatched"]))
     return {

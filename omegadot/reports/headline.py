@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from omegadot.reports.figures import Figure, size
 from omegadot.reports.numbers import knob, short, times
-from omegadot.reports.summary import YARDSTICKS, Cell, Figure, Summary, size
+from omegadot.reports.summary import YARDSTICKS, Cell, Summary
 
 
 def headline(summary: Summary) -> str:

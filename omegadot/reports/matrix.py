@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from omegadot.reports.figures import Figure, Range
 from omegadot.reports.numbers import knob, short
-from omegadot.reports.summary import Cell, Column, Figure, Range, Summary
+from omegadot.reports.summary import Cell, Column, Summary
 
 MARKS = {"pass": "✓", "fail": "✗", "declared": "!", "absent": ""}
 # The numbers that the matrix can show, one at a time: the key of `Shown.numbers`, its name.
@@ -30,13 +31,15 @@ class Shown:
 
 @dataclass(frozen=True)
 class Line:
-    """One engine on one scenario, with the run behind each number."""
+    """One engine on one scenario, spelt out.
+
+    numbers: (value, the run behind it) of the worst residual, then best and worst of the drift and
+    best and worst of the attitude error.
+    """
 
     engine: str
     shown: Shown
-    residual: str
-    drift: str
-    attitude: str
+    numbers: list[tuple[str, str]]
 
 
 def shown(cell: Cell) -> Shown:
@@ -65,13 +68,13 @@ def lines(summary: Summary, scenario: str) -> list[Line]:
 
 
 def _line(column: Column, cell: Cell) -> Line:
-    return Line(
-        " ".join(filter(None, (column.label, "" if column.version in column.label else column.version))),
-        shown(cell),
-        "–" if cell.residual is None else _named(cell.residual),
-        _spelt(cell.drift),
-        _spelt(cell.attitude),
-    )
+    version = "" if column.version in column.label else f" {column.version}"
+    ends = [end for span in (cell.drift, cell.attitude) for end in _ends(span)]
+    return Line(column.label + version, shown(cell), [_named(f) for f in (cell.residual, *ends)])
+
+
+def _ends(span: Range | None) -> tuple[Figure | None, Figure | None]:
+    return (None, None) if span is None else (span.best, span.worst)
 
 
 def _span(span: Range | None) -> str:
@@ -81,19 +84,13 @@ def _span(span: Range | None) -> str:
     return best if best == worst else f"{best} … {worst}"
 
 
-def _spelt(span: Range | None) -> str:
-    if span is None:
-        return "–"
-    if span.best is span.worst:
-        return _named(span.worst)
-    return f"{_named(span.best)} to {_named(span.worst)}"
-
-
-def _named(figure: Figure) -> str:
+def _named(figure: Figure | None) -> tuple[str, str]:
+    if figure is None:
+        return "–", ""
     unit = "" if figure.unit == "1" else f" {figure.unit}"
-    run = filter(None, (figure.integrator, knob(figure.timestep, figure.accuracy)))
-    source = ", ".join([*run] if figure.metric != "residual_on_path" else ["along the path", *run])
-    return f"{short(figure.value)}{unit}" + (f" ({source})" if source else "")
+    path = "along the path" if figure.metric == "residual_on_path" else ""
+    run = (path, figure.integrator, knob(figure.timestep, figure.accuracy))
+    return short(figure.value) + unit, ", ".join(filter(None, run))
 
 
 def _word(status: str) -> str:

@@ -6,22 +6,18 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import polars as pl
-from jinja2 import Environment, PackageLoader
-from markupsafe import Markup
 
 from omegadot.reports import matrix, tables
 from omegadot.reports.courses import POINTS, Chart, chart_courses
 from omegadot.reports.headline import headline, remarks
-from omegadot.reports.numbers import knob, short
-from omegadot.reports.packing import FLOOR_DECADE, pack, pack_codes, pack_json
+from omegadot.reports.packing import FLOOR_DECADE, pack_codes, pack_json
 from omegadot.reports.payload import command_of, lines_of, payload, step_choices
 from omegadot.reports.record import Record
 from omegadot.reports.summary import STATUSES, Summary, summarise
+from omegadot.reports.templating import asset, environment, plotly
 
 _JUDGED_SHOWN = 50
 
@@ -61,7 +57,7 @@ def draw_page(record: Record) -> str:
     lines = lines_of(charts.values(), record.run["engines"])
     anchors = _anchors(summary.scenarios)
     description, codes = payload({anchors[name]: charts[name] for name in charts}, lines)
-    template = _environment().get_template("report.html.j2")
+    template = environment().get_template("report.html.j2")
     return template.render(
         run=record.run,
         command=command_of(record.run),
@@ -80,9 +76,9 @@ def draw_page(record: Record) -> str:
         chart_titles=CHART_TITLES,
         floor_decade=FLOOR_DECADE,
         points=POINTS,
-        css=Markup(_asset("report.css")),
-        js=Markup(_asset("report.js")),
-        plotly=_plotly() if charts else "",
+        css=asset("report.css"),
+        js=asset("report.js"),
+        plotly=plotly() if charts else "",
         payload=pack_json(description),
         codes=pack_codes(codes),
     )
@@ -149,34 +145,3 @@ def _line_groups(lines: list[Any]) -> list[tuple[str, list[tuple[int, Any]]]]:
     for number, line in enumerate(lines):
         groups.setdefault(line.engine, []).append((number, line))
     return list(groups.items())
-
-
-def without_scheme(value: Any) -> Any:
-    """A text without the ``https`` of its addresses: they are named, and nothing is fetched."""
-    if isinstance(value, str) and not isinstance(value, Markup):
-        return re.sub(r"https?://", "", value, flags=re.IGNORECASE)
-    return value
-
-
-@cache
-def _environment() -> Environment:
-    environment = Environment(
-        loader=PackageLoader("omegadot.reports"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        finalize=without_scheme,
-    )
-    environment.filters["short"] = short
-    environment.filters["knob"] = lambda row: knob(row["timestep"], row["accuracy"])
-    environment.filters["unit"] = tables.unit_text
-    return environment
-
-
-def _asset(name: str) -> str:
-    return files("omegadot.reports").joinpath("templates", name).read_text(encoding="utf-8")
-
-
-@cache
-def _plotly() -> str:
-    return pack(files("plotly").joinpath("package_data", "plotly.min.js").read_bytes())

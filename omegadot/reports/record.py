@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import math
 import os
 import secrets
 import shutil
@@ -17,6 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from omegadot.reports import schema
+from omegadot.reports.run_json import check_run, dump_json, read_run
 from omegadot.reports.schema import Field, RecordError
 
 RUN, METRICS, TRAJECTORIES, PAGE = (
@@ -108,9 +107,7 @@ def _write_parquet(frame: pl.DataFrame, fields: Mapping[str, Field], path: Path)
     table = frame.to_arrow(compat_level=pl.CompatLevel.oldest()).cast(schema.arrow_schema(fields))
     # Words and steps repeat and pack well; measured numbers do not, and trying costs time.
     repeating = [n for n, f in fields.items() if f.dtype is pl.String or n in _REPEATING]
-    pq.write_table(
-        table, path, compression="zstd", compression_level=1, use_dictionary=repeating
-    )
+    pq.write_table(table, path, compression="zstd", compression_level=1, use_dictionary=repeating)
 
 
 def read_record(folder: Path) -> Record:
@@ -120,7 +117,7 @@ def read_record(folder: Path) -> Record:
     for name in (RUN, METRICS, TRAJECTORIES):
         if not (folder / name).is_file():
             raise RecordError(f"{folder / name}: missing; give the folder of a whole run.")
-    run = _read_run(folder / RUN)
+    run = read_run(folder / RUN)
     return Record(
         run,
         _read_parquet(folder / METRICS, schema.METRICS),
@@ -138,65 +135,3 @@ def _read_parquet(path: Path, fields: Mapping[str, Field]) -> pl.DataFrame:
             f"{path}: not a readable Parquet file (truncated or damaged); run again."
         ) from error
     return schema.conform(frame, fields, str(path))
-
-
-def _read_run(path: Path) -> dict[str, Any]:
-    try:
-        run = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse_constant)
-    except (OSError, ValueError, RecursionError) as error:
-        raise RecordError(f"{path}: not readable as JSON ({error}); run again.") from error
-    if not isinstance(run, dict) or "schema" not in run:
-        raise RecordError(f"{path}: has no key 'schema', so it is not an omegadot record.")
-    if run["schema"] != schema.SCHEMA:
-        raise RecordError(
-            f"{path}: schema is {run['schema']!r}, this omegadot reads {schema.SCHEMA}; "
-            "use the version that wrote it."
-        )
-    check_run(run, str(path))
-    return run
-
-
-def check_run(run: dict[str, Any], where: str) -> None:
-    """Raise RecordError unless the parts that tables and page stand on are there."""
-    for key in ("engines", "scenarios", "tasks"):
-        entries = run.get(key)
-        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-            raise RecordError(f"{where}: {key} must be a list of objects; run again.")
-    needed = {"engines": ("name",), "scenarios": ("name",), "tasks": ("scenario", "engine")}
-    for key, names in needed.items():
-        for number, entry in enumerate(run[key]):
-            for name in names:
-                if not isinstance(entry.get(name), str):
-                    raise RecordError(f"{where}: {key}[{number}].{name} must be a text; run again.")
-    for number, task in enumerate(run["tasks"]):
-        _check_word(task.get("outcome"), schema.OUTCOMES, f"{where}: tasks[{number}].outcome")
-        for gate, verdict in (task.get("gates") or {}).items():
-            _check_word(verdict, schema.VERDICTS, f"{where}: tasks[{number}].gates.{gate}")
-
-
-def _check_word(found: object, allowed: tuple[str, ...], where: str) -> None:
-    if found not in allowed:
-        raise RecordError(f"{where} is {found!r}, expected one of {', '.join(allowed)}.")
-
-
-def _refuse_constant(name: str) -> None:
-    raise ValueError(f"{name} is not a JSON value")
-
-
-def dump_json(value: object) -> str:
-    """Strict JSON: what is not finite becomes null, arrays and sets become lists."""
-    return json.dumps(_plain(value), indent=1, allow_nan=False) + "\n"
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _plain(entry) for key, entry in value.items()}
-    if isinstance(value, set | frozenset):
-        return [_plain(entry) for entry in sorted(value)]
-    if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
-    if hasattr(value, "tolist"):  # a NumPy array or scalar
-        return _plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

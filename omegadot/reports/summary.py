@@ -5,7 +5,6 @@ Pure functions: the terminal's table and the page both show what stands here, an
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from typing import Any
 
 import polars as pl
 
+from omegadot.reports.figures import Figure, Key, Range, figures_of, range_of
 from omegadot.reports.record import Record
 
 # From the worst to the best. A skip is never a pass, and neither is a run that nobody judged.
@@ -41,29 +41,6 @@ class Column:
     version: str
     setup: str
     label: str
-
-
-@dataclass(frozen=True)
-class Figure:
-    """One number and the run that gave it. A value that is not finite counts as the largest."""
-
-    value: float
-    unit: str
-    scenario: str
-    engine: str
-    metric: str
-    integrator: str | None = None
-    timestep: float | None = None
-    accuracy: float | None = None
-    bound: float | None = None
-
-
-@dataclass(frozen=True)
-class Range:
-    """The best and the worst integrator of an engine, each at the finest step it was run with."""
-
-    best: Figure
-    worst: Figure
 
 
 @dataclass(frozen=True)
@@ -135,7 +112,7 @@ def summarise(record: Record) -> Summary:
     for task in tasks:
         key = (task["scenario"], by_key[_identity(task)])
         statuses.setdefault(key, []).append(task_status(task))
-    figures = _figures(record.metrics)
+    figures = figures_of(record.metrics)
     judged = _judged_rows(record.metrics)
     cells = {
         (scenario, column): _cell(
@@ -178,56 +155,12 @@ def _cell(statuses: list[str], rows: list[str], figures: dict[str, list[Figure]]
         status,
         Counter(statuses),
         max(residuals, key=size, default=None),
-        _range(figures.get("angular_momentum", [])),
-        _range(figures.get("attitude", [])),
+        range_of(figures.get("angular_momentum", [])),
+        range_of(figures.get("attitude", [])),
     )
 
 
-def size(figure: Figure) -> float:
-    """How large it is, for ordering: what is not a number is larger than any number."""
-    return abs(figure.value) if not math.isnan(figure.value) else float("inf")
-
-
-def _range(figures: list[Figure]) -> Range | None:
-    """Best and worst integrator, each at its finest step and there at its largest value."""
-    runs: dict[str, dict[float, Figure]] = {}
-    for figure in figures:
-        step = figure.timestep if figure.timestep is not None else figure.accuracy
-        at_step = runs.setdefault(figure.integrator or "", {})
-        present = at_step.get(step or 0.0)
-        if present is None or size(figure) > size(present):
-            at_step[step or 0.0] = figure
-    finest = [steps[min(steps)] for steps in runs.values()]
-    return Range(min(finest, key=size), max(finest, key=size)) if finest else None
-
-
-_SUMMARISED = (
-    ((pl.col("gate") == "equation") & (pl.col("channel") == "omega_dot"))
-    | ((pl.col("gate") == "invariants") & (pl.col("channel") == "angular_momentum"))
-    | ((pl.col("gate") == "trajectory") & (pl.col("channel") == "attitude"))
-)
-_METRIC = {"omega_dot": "residual", "angular_momentum": "drift", "attitude": "error"}
-
-_Key = tuple[str, str, str, str]
-
-
-def _figures(metrics: pl.DataFrame) -> dict[_Key, dict[str, list[Figure]]]:
-    found: dict[_Key, dict[str, list[Figure]]] = {}
-    for row in metrics.filter(_SUMMARISED).iter_rows(named=True):
-        if not row["metric"].startswith(_METRIC[row["channel"]]):
-            continue
-        key = (row["scenario"], row["engine"], row["engine_version"], row["setup"])
-        figure = Figure(
-            float("nan") if row["value"] is None else row["value"],
-            *(row[n] for n in ("unit", "scenario", "engine", "metric")),
-            row["integrator"] or None,
-            *(row[n] for n in ("timestep", "accuracy", "bound")),
-        )
-        found.setdefault(key, {}).setdefault(row["channel"], []).append(figure)
-    return found
-
-
-def _judged_rows(metrics: pl.DataFrame) -> dict[_Key, list[str]]:
+def _judged_rows(metrics: pl.DataFrame) -> dict[Key, list[str]]:
     names = ("scenario", "engine", "engine_version", "setup")
     groups = metrics.group_by(*names, maintain_order=True).agg(pl.col("verdict").unique())
     return {row[:4]: row[4] for row in groups.iter_rows()}

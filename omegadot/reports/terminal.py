@@ -9,10 +9,11 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
+from omegadot.reports.figures import Figure, size
 from omegadot.reports.headline import headline, remarks
 from omegadot.reports.numbers import short, times
 from omegadot.reports.record import Record
-from omegadot.reports.summary import Cell, Column, Figure, Missing, Summary, size, summarise
+from omegadot.reports.summary import Cell, Column, Missing, Summary, summarise
 
 _STYLES = {"pass": "green", "fail": "bold red", "declared": "yellow", "absent": "dim"}
 _NOT_RUN = "magenta"
@@ -126,7 +127,9 @@ def _extremes(summary: Summary) -> list[str]:
             continue
         worst, best = found
         span = _named(worst) if best is worst else f"{_named(best)} to {_named(worst)}"
-        lines.append(f"{column.label}: attitude error {span} on {worst.scenario}, at the finest step.")
+        lines.append(
+            f"{column.label}: attitude error {span} on {worst.scenario}, at the finest step."
+        )
     return lines
 
 

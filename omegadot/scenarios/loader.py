@@ -29,8 +29,6 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     Raises ScenarioError when the file cannot be read, is not TOML or is no valid scenario.
     """
     file = printable(os.fspath(path))
-    if "\0" in os.fspath(path):
-        raise ScenarioError(file, None, "not a path", "give the path of a TOML file")
     return scenario_of(_parse(_read(Path(path), file), file), file)
 
 
@@ -58,7 +56,7 @@ def find_scenario(name_or_path: str) -> Scenario:
     """
     if name_or_path in builtin_names():
         return load_builtin(name_or_path)
-    if re.search(r"[/\\.]", name_or_path) or os.path.lexists(name_or_path.replace("\0", "")):
+    if re.search(r"[/\\.]", name_or_path) or os.path.lexists(name_or_path):
         return load_scenario(name_or_path)
     found = "neither a built-in scenario nor a file"
     raise ScenarioError(describe(name_or_path), None, found, _other_name(name_or_path))
@@ -87,17 +85,19 @@ def _read(path: Path, file: str) -> str:
     toml = "give the path of a TOML file"
     try:
         status = path.stat()
-        if stat.S_ISDIR(status.st_mode):
-            raise ScenarioError(file, None, "a directory", f"{toml} in it")
-        if not stat.S_ISREG(status.st_mode):  # a pipe would be waited for, a device never ends
-            raise ScenarioError(file, None, "not a regular file", toml)
-        with path.open("rb") as stream:
-            content = stream.read(LARGEST_FILE + 1)
+        mode = status.st_mode
+        # a pipe would be waited for, a device never ends
+        content = _first_bytes(path) if stat.S_ISREG(mode) else b""
     except FileNotFoundError:
         raise ScenarioError(file, None, "missing", toml) from None
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise ScenarioError(file, None, f"not readable ({reason})", toml) from None
+    except ValueError:  # a NUL, or a character that no file name can hold
+        raise ScenarioError(file, None, "not a path", toml) from None
+    if not stat.S_ISREG(mode):
+        found = "a directory" if stat.S_ISDIR(mode) else "not a regular file"
+        raise ScenarioError(file, None, found, toml)
     if len(content) > LARGEST_FILE:
         found = f"a file of {max(status.st_size, len(content)):,} bytes"
         advice = f"give a scenario of at most {LARGEST_FILE:,} bytes"
@@ -108,6 +108,11 @@ def _read(path: Path, file: str) -> str:
         line = content.count(b"\n", 0, error.start) + 1
         found = f"not UTF-8 text (byte 0x{content[error.start]:02x} in line {line})"
         raise ScenarioError(file, None, found, "save it in UTF-8") from None
+
+
+def _first_bytes(path: Path) -> bytes:
+    with path.open("rb") as stream:
+        return stream.read(LARGEST_FILE + 1)
 
 
 def _parse(text: str, file: str) -> dict[str, Any]:

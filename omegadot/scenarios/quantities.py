@@ -92,12 +92,15 @@ def read_quaternion(value: object) -> tuple[float, float, float, float]:
         read_number(item, key=f"[{i}]")
         for i, item in enumerate(read_list(value, 4, "a quaternion as four numbers w, x, y, z"))
     )
-    norm = math.hypot(w, x, y, z)
-    if norm == 0.0:
+    if not any((w, x, y, z)):
         raise refuse("give a quaternion other than zero, such as [1, 0, 0, 0]", found=value)
     # the norm of a quotient by its own norm: half an ulp a component, one each for the two norms
-    if abs(norm - 1.0) <= 4.0 * sys.float_info.epsilon:
+    if abs(math.hypot(w, x, y, z) - 1.0) <= 4.0 * sys.float_info.epsilon:
         return w, x, y, z
+    _, exponent = math.frexp(max(abs(w), abs(x), abs(y), abs(z)))
+    # by a power of two, so without rounding: the smallest doubles have too few digits for a norm
+    w, x, y, z = (math.ldexp(component, -exponent) for component in (w, x, y, z))
+    norm = math.hypot(w, x, y, z)
     return w / norm, x / norm, y / norm, z / norm
 
 

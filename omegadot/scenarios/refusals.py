@@ -85,11 +85,10 @@ def _known(table: str) -> list[str]:
 
 
 def _description(location: Location) -> str:
-    model = TABLES[_table(location[:-1])]
-    for name, field in model.model_fields.items():
-        if location[-1] in (name, field.alias):
-            return field.description or name
-    raise KeyError(location)
+    """What belongs at the place of a missing key."""
+    fields = TABLES[_table(location[:-1])].model_fields
+    given = {field.alias or name: field.description for name, field in fields.items()}
+    return given[str(location[-1])] or str(location[-1])
 
 
 def _shapes() -> str:

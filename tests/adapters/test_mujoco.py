@@ -24,7 +24,7 @@ from mujoco_cases import (
 )
 
 from omegadot.adapters.mujoco import MujocoAdapter
-from omegadot.adapters.mujoco_model import principal_frame
+from omegadot.adapters.mujoco_model import _nearest_to_identity, apply_setup, principal_frame
 from omegadot.adapters.protocol import Adapter, UnsupportedError
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
@@ -75,6 +75,14 @@ def test_setups_set_the_flags_they_say() -> None:
     assert physics._model.opt.enableflags == 0
 
 
+def test_physics_holds_off_what_a_version_might_turn_on() -> None:
+    model = mujoco.MjSpec().compile()
+    model.opt.enableflags = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    model.opt.density = model.opt.viscosity = 1.0
+    apply_setup(mujoco, model, "physics")
+    assert (model.opt.enableflags, model.opt.density, model.opt.viscosity) == (0, 0.0, 0.0)
+
+
 # -- model
 
 
@@ -106,6 +114,16 @@ def test_principal_frame_leaves_a_diagonal_tensor_alone() -> None:
     moments, q = principal_frame(np.diag([3.0, 1.0, 2.0]))
     np.testing.assert_array_equal(moments, [3.0, 1.0, 2.0])
     np.testing.assert_array_equal(q, [1.0, 0.0, 0.0, 0.0])
+
+
+@given(SEEDS)
+@settings(max_examples=200, derandomize=True, deadline=None)
+def test_axes_near_the_identity_are_a_rotation(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    mirrored = np.linalg.qr(rng.normal(size=(3, 3)))[0] * rng.choice([-1.0, 1.0], 3)
+    axes = _nearest_to_identity(mirrored)
+    assert np.linalg.det(axes) > 0
+    assert np.trace(axes) > 1
 
 
 def test_principal_frame_of_a_body_turned_by_half_a_turn_and_permuted() -> None:
@@ -143,6 +161,13 @@ def test_states_come_back(seed: int, load: str) -> None:
     sizes = (1.0, 1.0, 80.0 + norm(OFFSET), 50.0 + reach)
     for back, sent, size in zip(parts(found), parts(asked), sizes, strict=True):
         assert np.abs(back - sent).max() <= 8 * EPS * size
+
+
+def test_setting_a_state_starts_the_clock_anew() -> None:
+    adapter, many = loaded(system()), states(1)
+    adapter.run(at(many, 0), "Euler", 0.1, 10, 1)
+    adapter.set_state(at(many, 0))
+    assert adapter._data.time == 0
 
 
 def test_mujoco_sees_the_body_where_the_state_puts_it() -> None:

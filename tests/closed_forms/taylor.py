@@ -28,7 +28,7 @@ def _matvec(matrix: Sequence[Vector], v: Vector) -> Vector:
     return [mp.fdot(row, v) for row in matrix]
 
 
-class Motion:
+class TaylorSeries:
     """inertia 3x3, damping d, and (optionally) moment ``m g`` (world) with lever r (body)."""
 
     def __init__(

@@ -93,7 +93,7 @@ TOP = system(
 DRIVEN = system(
     [1.0, 2.0, 2.5], gravity=(0, 0, -9.81), torque_world=(0.9, -0.6, 1.2), torque_body=(0.3, 0, 0.4)
 )
-DAMPED = system([1.0, 2.0, 2.5], damping=0.4, torque_body=(0.3, 0.8, 0.4))
+DAMPED = system([1.0, 2.0, 2.5], gravity=(0, 0, -9.81), damping=0.4, torque_body=(0.3, 0.8, 0.4))
 
 
 def rows(state: State, index: object) -> State:

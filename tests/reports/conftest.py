@@ -4,6 +4,6 @@ import pytest
 from synthetic_record import build
 
 
-@pytest.fixture()
+@pytest.fixture
 def record():
     return build()

@@ -159,7 +159,9 @@ def build(scenarios=("sphere", "spun-again"), engines=INTEGRATORS, steps=STEPS, 
                         metric(*add, "equation", "omega_dot", "residual", 3.1e-15 * (place + 1)),
                         metric(*add, "invariants", "angular_momentum", "drift_full", h**order),
                         metric(*add, "trajectory", "attitude", "error_max", late[-1], unit="rad"),
-                        metric(*add, "cost", "time", "time_per_step", 2e-6, unit="s", verdict="info"),
+                        metric(
+                            *add, "cost", "time", "time_per_step", 2e-6, unit="s", verdict="info"
+                        ),
                     ]
     run = {
         "schema": schema.SCHEMA,

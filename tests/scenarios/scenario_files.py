@@ -22,7 +22,9 @@ timesteps = [0.02, 0.01]
 sample = 0.02
 """
 
-PARTS = SOUND.replace("mass = 1.0\ninertia = [1.0, 2.0, 2.5]\n", "").replace("[body]\n", "{parts}\n")
+PARTS = SOUND.replace("mass = 1.0\ninertia = [1.0, 2.0, 2.5]\n", "").replace(
+    "[body]\n", "{parts}\n"
+)
 
 
 def with_line(old: str, new: str) -> str:

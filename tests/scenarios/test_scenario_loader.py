@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -34,10 +35,22 @@ ANYTHING = st.recursive(
     max_leaves=8,
 )
 SOLID = st.one_of(
-    st.fixed_dictionaries({"shape": st.just("box"), "size": st.lists(POSITIVE, min_size=3, max_size=3)}),
-    st.fixed_dictionaries({"shape": st.sampled_from(["cylinder", "capsule"]), "radius": POSITIVE, "length": POSITIVE}),
+    st.fixed_dictionaries(
+        {"shape": st.just("box"), "size": st.lists(POSITIVE, min_size=3, max_size=3)}
+    ),
+    st.fixed_dictionaries(
+        {"shape": st.sampled_from(["cylinder", "capsule"]), "radius": POSITIVE, "length": POSITIVE}
+    ),
     st.fixed_dictionaries({"shape": st.just("sphere"), "radius": POSITIVE}),
-)  # fmt: skip
+)
+
+
+def outcome(load: Callable[[], Scenario]) -> str:
+    """The loaded scenario's name, or the sentence; any other exception goes through."""
+    try:
+        return load().name
+    except ScenarioError as error:
+        return str(error)
 
 
 @st.composite
@@ -81,12 +94,11 @@ def test_every_builtin_survives_json_and_pickle(name: str) -> None:
 def test_anything_in_any_place_is_a_scenario_or_a_sentence(data: st.DataObject) -> None:
     table = tomllib.loads(SOUND)
     home = data.draw(st.sampled_from([table, table["body"], table["initial"], table["run"]]))
-    key = data.draw(st.sampled_from([*home, "load", "part", "pivot", "torque"]) | st.text(max_size=9))
+    key = data.draw(
+        st.sampled_from([*home, "load", "part", "pivot", "torque"]) | st.text(max_size=9)
+    )
     home[key] = data.draw(ANYTHING)
-    try:
-        assert isinstance(scenario_of(table, "drawn"), Scenario)
-    except ScenarioError as error:
-        assert str(error).isprintable()
+    assert outcome(lambda: scenario_of(table, "drawn")).isprintable()
 
 
 @settings(derandomize=True, max_examples=150, deadline=None)
@@ -96,10 +108,7 @@ def test_garbage_in_a_file_is_a_scenario_or_a_sentence(
 ) -> None:
     sound = SOUND.encode()
     path = write(tmp_path_factory.getbasetemp(), sound[:place] + garbage + sound[place:])
-    try:
-        assert isinstance(load_scenario(path), Scenario)
-    except ScenarioError as error:
-        assert str(error).isprintable()
+    assert outcome(lambda: load_scenario(path)).isprintable()
 
 
 @settings(derandomize=True, max_examples=150, deadline=None)
@@ -133,9 +142,11 @@ def test_a_mistyped_builtin_is_offered_the_nearest(asked: str, near: str) -> Non
 
 
 def test_a_word_like_no_builtin_is_told_what_to_give() -> None:
-    with pytest.raises(ScenarioError, match="'zzz' is neither a built-in scenario nor a file; give"):
+    with pytest.raises(
+        ScenarioError, match="'zzz' is neither a built-in scenario nor a file; give"
+    ):
         find_scenario("zzz")
-    with pytest.raises(ScenarioError, match="zzz.toml is missing"):
+    with pytest.raises(ScenarioError, match=r"zzz\.toml is missing"):
         find_scenario("zzz.toml")
 
 
@@ -146,7 +157,9 @@ def test_markup_and_other_alphabets_are_plain_text(tmp_path: Path) -> None:
 
 def test_editors_of_all_systems(tmp_path: Path) -> None:
     windows = b"\xef\xbb\xbf" + SOUND.replace("\n", "\r\n").encode()
-    assert load_scenario(write(tmp_path, windows)) == load_scenario(write(tmp_path, SOUND, "b.toml"))
+    assert load_scenario(write(tmp_path, windows)) == load_scenario(
+        write(tmp_path, SOUND, "b.toml")
+    )
 
 
 def test_importing_the_room_brings_in_nothing_heavy() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import math
 import tomllib
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -89,7 +90,7 @@ def test_any_quaternion_but_zero_is_normalised_in_its_own_direction(q: list[floa
     for i in range(4):
         # the smallest floats have no relative precision: 4 times the smallest of them
         assert unit[i] == pytest.approx(q[i] / q[largest] * unit[largest], rel=8 * eps, abs=2e-323)
-    assert unit[largest] * q[largest] > 0
+    assert math.copysign(1, unit[largest]) == math.copysign(1, q[largest])
     assert changed("initial", orientation=unit).initial.orientation == unit
 
 
@@ -152,14 +153,16 @@ SLICES: list[tuple[dict[str, Any], Any]] = [
 
 
 @pytest.mark.parametrize(("sizes", "area"), SLICES, ids=lambda item: str(item)[:20])
-def test_volume_and_mean_squares_are_integrals_over_slices(sizes: dict[str, Any], area: Any) -> None:
+def test_volume_and_mean_squares_are_integrals_over_slices(
+    sizes: dict[str, Any], area: Any
+) -> None:
     part: Part = TypeAdapter(Part).validate_python({**sizes, "density": 2.0})
     half = area(0.0)[1]
 
     def over_slices(weight: Any) -> float:
         # halves of the capsule's and the solid's own ends apart, so that quad meets no kink
         ends = sorted({-half, -min(half, 0.6), 0.0, min(half, 0.6), half})
-        return sum(quad(weight, a, b, epsabs=0, epsrel=1e-13)[0] for a, b in zip(ends, ends[1:]))  # noqa: B905, RUF007
+        return sum(quad(weight, a, b, epsabs=0, epsrel=1e-13)[0] for a, b in pairwise(ends))
 
     assert volume(part) == pytest.approx(over_slices(lambda z: area(z)[0]), rel=1e-12)
     assert mass(part) == pytest.approx(2 * volume(part), rel=1e-15)
@@ -173,6 +176,11 @@ def test_volume_and_mean_squares_are_integrals_over_slices(sizes: dict[str, Any]
         key = "size" if part.shape == "box" else "semi_axes"
         exchanged = {**sizes, key: sizes[key][::-1], "density": 2.0}
         assert mean_squares(TypeAdapter(Part).validate_python(exchanged)) == (z2, y2, x2)
+
+
+def test_a_point_has_mass_and_no_size() -> None:
+    point: Part = TypeAdapter(Part).validate_python({"shape": "point", "mass": 2})
+    assert (mass(point), volume(point), mean_squares(point)) == (2.0, 0.0, (0.0, 0.0, 0.0))
 
 
 def test_points_make_a_body_once_they_leave_the_line() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.harness.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS, Yardstick
 from omegadot.harness.plan import Sweep
-from omegadot.harness.verdicts import Finding, ObservedOrder, judge, observed_order
+from omegadot.harness.verdicts import Evidence, Finding, ObservedOrder, judge, observed_order
 from omegadot.reference_impl.body_origin import is_offset
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
@@ -51,11 +51,23 @@ def measure(
     )
 
 
+def _order(courses: list[Course], sizes: list[float], channel: str) -> ObservedOrder | None:
+    """The order of some sizes, one a course, where they stand above rounding."""
+    bounds = [float(np.max(course.round_off[channel])) for course in courses]
+    steps = [course.sweep.timestep for course in courses]
+    clear = [(h, e) for h, e, b in zip(steps, sizes, bounds, strict=True) if e > b]
+    return observed_order([h for h, _ in clear], [e for _, e in clear])
+
+
 def order_of(courses: list[Course], channel: str) -> ObservedOrder | None:
-    """The order seen over the steps of one integrator, where errors stand above rounding."""
-    clear = [c for c in courses if np.max(c.error[channel]) > np.max(c.round_off[channel])]
-    steps = [course.sweep.timestep for course in clear]
-    return observed_order(steps, [float(np.max(course.error[channel])) for course in clear])
+    """The order of the error over the steps of one integrator."""
+    return _order(courses, [float(np.max(c.error[channel])) for c in courses], channel)
+
+
+def order_left(courses: list[Course], channel: str) -> ObservedOrder | None:
+    """The order of what is left after the declared scheme."""
+    known = [course for course in courses if course.against_scheme]
+    return _order(known, [float(np.max(c.against_scheme[channel])) for c in known], channel)
 
 
 @dataclass(frozen=True)
@@ -97,15 +109,18 @@ def orders_for(integrator: Integrator, system: System) -> dict[str, int | None]:
     return found
 
 
-def finding_of(
-    course: Course, declared: Declared, channel: str, order: ObservedOrder | None
-) -> Finding:
-    """Judge one channel of one run."""
-    return judge(
-        course.error[channel],
-        course.round_off[channel],
-        declared.scheme,
-        course.against_scheme.get(channel),
-        declared.orders[channel],
-        order,
-    )
+def findings_of(
+    course: Course, declared: Declared, courses: list[Course]
+) -> dict[str, Finding]:
+    """Judge every channel of one run; the other runs of its sweep show the orders."""
+    found = {}
+    for channel in CHANNELS:
+        left = course.against_scheme.get(channel)
+        orders = [order_of(courses, channel)]
+        if left is not None:
+            orders.append(order_left(courses, channel))
+        evidence = Evidence(
+            course.error[channel], course.round_off[channel], left, tuple(orders)
+        )
+        found[channel] = judge(evidence, declared.scheme, declared.orders[channel])
+    return found

@@ -1,0 +1,78 @@
+"""Motions known in closed form, the truth that engines are held against.
+
+``closed_form_of(system, initial)`` gives the motion as a function of time, or None where no closed
+form is known; ``floor(system, initial, times)`` says how far a perfect answer in double precision
+may be off. Inputs are taken as exact (the orientation after normalisation); times may be negative.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from omegadot.reference_impl.closed_forms.fixed_axis import fixed_axis_of
+from omegadot.reference_impl.closed_forms.floor import Floor, floor_of
+from omegadot.reference_impl.closed_forms.free_rotation import free_rotation_of
+from omegadot.reference_impl.closed_forms.lagrange_top import lagrange_top_of
+from omegadot.reference_impl.closed_forms.problem import Problem
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.system import Array, State, System
+
+__all__ = ["Floor", "closed_form_of", "floor", "problem_of"]
+
+_FORMS = (free_rotation_of, fixed_axis_of, lagrange_top_of)
+
+
+def problem_of(system: System, initial: State) -> Problem | None:
+    """Which closed form the motion has, with its numbers; None where none is known.
+
+    Raises ValueError where the arrays hold more than one body or state.
+    """
+    for name, array, shape in (
+        ("inertia", system.body.inertia, (3, 3)),
+        ("angular velocity", initial.angular_velocity, (3,)),
+        ("orientation", initial.orientation, (4,)),
+    ):
+        if np.shape(array) != shape:
+            raise ValueError(
+                f"a closed form is for one body and one initial state: the {name} has the shape "
+                f"{np.shape(array)}, {shape} was expected"
+            )
+    found = (form(system, initial) for form in _FORMS)
+    return next((problem for problem in found if problem is not None), None)
+
+
+def closed_form_of(system: System, initial: State) -> Callable[[Array], State] | None:
+    """The exact motion as a function of times (n,) s, or None where no closed form is known.
+
+    The state's arrays have the times as their leading axis. A free body's centre of mass falls,
+    ``x = x0 + v0 t + g t²/2``; a pivoted one's follows from the attitude.
+    """
+    problem = problem_of(system, initial)
+    if problem is None:
+        return None
+    motion = problem.solve(problem.numbers)
+
+    def states(times: Array) -> State:
+        times = np.atleast_1d(np.asarray(times, float))
+        orientation, angular_velocity = motion(times)
+        t = times[:, None]
+        gravity = np.asarray(system.load.gravity, float)
+        velocity = initial.linear_velocity + gravity * t
+        position = initial.position + t * (initial.linear_velocity + 0.5 * gravity * t)
+        fallen = State(orientation, angular_velocity, position, velocity)
+        return place_on_pivot(system, fallen)
+
+    return states
+
+
+def floor(system: System, initial: State, times: Array) -> Floor:
+    """The resolvable floor of angular velocity and attitude at times (n,) s.
+
+    Raises ValueError where the motion has no closed form.
+    """
+    problem = problem_of(system, initial)
+    if problem is None:
+        raise ValueError("the motion has no closed form, so its floor is not known")
+    return floor_of(problem, np.atleast_1d(np.asarray(times, float)))

@@ -29,6 +29,7 @@ from omegadot.reference_impl.system import Array
 
 PRECISION = 80
 ZERO, ONE, TWO, HALF = Decimal(0), Decimal(1), Decimal(2), Decimal("0.5")
+EPSILON = Decimal(2) ** -52  # of double precision
 INFINITY = Decimal("Infinity")
 RESOLUTION = Decimal(10) ** (5 - PRECISION)  # relative size of what rounding may leave of a zero
 

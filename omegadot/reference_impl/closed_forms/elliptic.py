@@ -45,7 +45,7 @@ class Modulus:
 
     @classmethod
     def of(cls, m: Decimal, m1: Decimal) -> Modulus:
-        """m and m1 are given both, each free of cancellation; one of them may be zero."""
+        """M and m1 are given both, each free of cancellation; one of them may be zero."""
         half_pi = pi() / 2
         mean, complementary_mean = agm(ONE, m1.sqrt()), agm(ONE, m.sqrt())
         return cls(
@@ -109,7 +109,7 @@ class Clock:
 
     @classmethod
     def of(cls, modulus: Modulus, rate: Decimal, start: Decimal) -> Clock:
-        """rate in 1/s; start is u at time zero."""
+        """Rate in 1/s; start is u at time zero."""
         if modulus.m1 == 0:
             return cls(Phase.of(rate, start), True, np.inf)
         if modulus.hyperbolic:

@@ -14,10 +14,7 @@ derived from ``dψ/dt = (2T + L ω_c) / (L + I_c ω_c)``.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from decimal import Decimal
-from typing import TypeAlias
 
 import numpy as np
 
@@ -28,84 +25,72 @@ from omegadot.reference_impl.closed_forms.digits import (
     Row,
     dot,
     doubles,
+    exact,
+    exact_matrix,
     many_digits,
     pi,
 )
 from omegadot.reference_impl.closed_forms.elliptic import Clock
 from omegadot.reference_impl.closed_forms.euler_poinsot import Constants, constants_of
 from omegadot.reference_impl.closed_forms.phase import Phase, Times, unit_circle
+from omegadot.reference_impl.closed_forms.problem import (
+    IDENTITY,
+    UPRIGHT,
+    Course,
+    Motion,
+    Problem,
+    inertia_about,
+    lever_of,
+    place,
+    quaternion_of,
+)
 from omegadot.reference_impl.closed_forms.shifted_theta import (
     ShiftedTheta,
     theta4_of_double_lattice,
 )
 from omegadot.reference_impl.closed_forms.theta import jacobi
-from omegadot.reference_impl.rotations import conjugate, normalize, quaternion_product
-from omegadot.reference_impl.system import Array
-
-# Times to the direction of the momentum (3, n) and the attitude (4, n), both in the frame of the
-# constants; a uniform rotation gives ω in place of the direction.
-Course: TypeAlias = Callable[[Times], tuple[Array, Array]]
-
-_CHUNK = 8192  # times worked at once, so that intermediate arrays stay in the cache
+from omegadot.reference_impl.system import Array, State, System
 
 
-@dataclass(frozen=True)
-class FreeRotation:
-    """A free rotation ready to be read at any times, before and after zero.
+def free_rotation_of(system: System, initial: State) -> Problem | None:
+    """The free rotation of the system, or None where a torque acts.
 
-    constants: None for a uniform rotation.  course: the motion in the frame of the constants.
-    scaled_axes: (3, 3), the linear map from the course's first vector to ω in body axes.  placing: (4, 4), the linear map from the
-    frame's quaternion to the attitude (world-from-frame before it, frame-from-body after it).
+    Free are bodies in any gravity, and pivoted ones without gravity or held at their centre of
+    mass; damping and applied torques must be zero. Their numbers: the lower triangle of the inertia
+    about the point that matters (6), angular velocity (3), orientation (4).
     """
-
-    constants: Constants | None
-    course: Course
-    scaled_axes: Array
-    placing: Array
-
-    def at(self, times: Array) -> tuple[Array, Array]:
-        """Attitude (n, 4) and angular velocity (n, 3) rad/s, body frame, at times (n,) s."""
-        orientation = np.empty((times.size, 4))
-        angular_velocity = np.empty((times.size, 3))
-        for first in range(0, times.size, _CHUNK):
-            part = slice(first, first + _CHUNK)
-            w, q = self.course(Times.of(times[part]))
-            np.matmul(w.T, self.scaled_axes, out=angular_velocity[part])
-            np.matmul(q.T, self.placing, out=orientation[part])
-        return orientation, angular_velocity
-
-
-def free_rotation(inertia: Matrix, omega: Row, orientation: Array) -> FreeRotation:
-    """The rotation that starts at ``omega`` (3,) rad/s and ``orientation`` (4,) at time zero.
-
-    inertia: about the centre of mass or a fixed point, body axes, kg m^2.
-    """
+    body, load = system.body, system.load
+    if np.any(load.damping) or np.any(load.torque_body) or np.any(load.torque_world):
+        return None
     with many_digits():
-        constants = constants_of(inertia, omega)
+        lever = lever_of(body, load)
+        if any(lever) and np.any(load.gravity):
+            return None
+        about = inertia_about(exact_matrix(body.inertia), exact(body.mass), lever)
+        triangle = [(about[i][j] + about[j][i]) / 2 for i in range(3) for j in range(i + 1)]
+        numbers = triangle + exact(initial.angular_velocity) + exact(initial.orientation)
+    return Problem("free rotation", numbers, _solve)
+
+
+def _solve(numbers: Row) -> Motion:
+    with many_digits():
+        orientation = numbers[9:]
+        constants = constants_of(*inertia_and_omega(numbers))
         if constants is None:
-            axes = np.eye(3)
-            course = _uniform(omega)
-            frame = np.array([1.0, 0.0, 0.0, 0.0])
-        else:
-            scales = [constants.momentum / moment for moment in constants.inertia]
-            axes = np.array(
-                [
-                    doubles([s * x for x in row])
-                    for s, row in zip(scales, constants.axes, strict=True)
-                ]
-            )
-            course = _course(constants)
-            frame = doubles(quaternion_of(constants.axes))
-    _, q = course(Times.of(np.zeros(1)))
-    body = quaternion_product(q[:, 0], frame)
-    world = quaternion_product(normalize(orientation), conjugate(body))
-    basis = np.eye(4)
-    placing = quaternion_product(quaternion_product(world, basis), frame)
-    return FreeRotation(constants, course, axes, placing)
+            return place(uniform(numbers[6:9]), IDENTITY, UPRIGHT, orientation)
+        scales = [constants.momentum / moment for moment in constants.inertia]
+        turning = [[s * x for x in row] for s, row in zip(scales, constants.axes, strict=True)]
+        return place(_course(constants), turning, quaternion_of(constants.axes), orientation)
 
 
-def _uniform(omega: Row) -> Course:
-    """ω constant: ``q = (cos |ω|t/2, sin |ω|t/2 ω/|ω|)``."""
+def inertia_and_omega(numbers: Row) -> tuple[Matrix, Row]:
+    """The inertia (3, 3) and the angular velocity (3,) among a free rotation's numbers."""
+    a, b, c, d, e, f = numbers[:6]
+    return [[a, b, d], [b, c, e], [d, e, f]], numbers[6:9]
+
+
+def uniform(omega: Row) -> Course:
+    """ω constant: ``q = (cos |ω|t/2, sin |ω|t/2 ω/|ω|)``, the vector of the course is ω."""
     speed = dot(omega, omega).sqrt()
     angle = Phase.of(speed / (4 * pi()), ZERO)
     direction = doubles([x / speed for x in omega] if speed else omega)[:, None]
@@ -146,10 +131,10 @@ def encircling_theta(c: Constants) -> ShiftedTheta:
 
 
 def _course(c: Constants) -> Course:
+    """The direction of the momentum and the attitude, both in the frame of the constants."""
     theta = encircling_theta(c)
     clock = Clock.of(c.modulus, c.rate, c.start)
     angle = Phase.of(mean_rate(c, theta) / (4 * pi()), ZERO)
-    # the direction of the momentum in the frame: h = I ω / L
     functions = jacobi(c.modulus, *[c.inertia[i] * c.amplitude[i] / c.momentum for i in (1, 0, 2)])
     skew, opposite = c.turn * theta.skew, c.turn < 0
 
@@ -181,25 +166,3 @@ def _course(c: Constants) -> Course:
         return h, q
 
     return course
-
-
-def quaternion_of(axes: Matrix) -> Row:
-    """The quaternion of the rotation whose matrix has these rows: frame-from-body.
-
-    The greatest of the four components is found first, the rest by division (Shepperd 1978).
-    """
-    m = axes
-    squares = [ONE + sum(s * m[i][i] for i, s in enumerate(signs)) for signs in _SIGNS]
-    products = [
-        [squares[0], m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]],
-        [m[2][1] - m[1][2], squares[1], m[0][1] + m[1][0], m[0][2] + m[2][0]],
-        [m[0][2] - m[2][0], m[0][1] + m[1][0], squares[2], m[1][2] + m[2][1]],
-        [m[1][0] - m[0][1], m[0][2] + m[2][0], m[1][2] + m[2][1], squares[3]],
-    ]
-    greatest = max(range(4), key=lambda i: squares[i])
-    row = products[greatest]
-    size = dot(row, row).sqrt()
-    return [x / size for x in row]
-
-
-_SIGNS = ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))

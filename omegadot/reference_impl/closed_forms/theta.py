@@ -85,10 +85,10 @@ def _circular_jacobi(q: Decimal, sn: Decimal, cn: Decimal, dn: Decimal) -> Jacob
     def evaluate(frame: Frame) -> tuple[Array, Array, Array]:
         assert isinstance(frame, CircularFrame)
         y = frame.square
-        inverse = 1.0 / denominator(y)
+        divisor = denominator(y)
         values = poly_sn(y), poly_cn(y), poly_dn(y)
         for value in values:
-            value *= inverse
+            value /= divisor
         np.multiply(values[0], frame.sine, out=values[0])
         np.multiply(values[1], frame.cosine, out=values[1])
         return values
@@ -119,18 +119,17 @@ def _hyperbolic_jacobi(q: Decimal, sn: Decimal, cn: Decimal, dn: Decimal) -> Jac
     def evaluate(frame: Frame) -> tuple[Array, Array, Array]:
         assert isinstance(frame, HyperbolicFrame)
         a, g = frame.near * frame.near, frame.far * frame.far
-        inverse = far0(g)
-        inverse += near0(a)
-        np.divide(1.0, inverse, out=inverse)
+        divisor = far0(g)
+        divisor += near0(a)
         values = far1(g), far2(g), far3(g)
         for value, near in zip(values, (near1(a), near2(a), near3(a)), strict=True):
             value += near
-        values[0][...] *= frame.side * inverse
-        inverse *= frame.near
-        values[2][...] *= inverse
-        values[1][...] *= inverse
-        for value in values[:2]:
-            value *= frame.sign
+            value /= divisor
+        sides = frame.side * frame.sign
+        small = frame.near * frame.sign
+        np.multiply(values[0], sides, out=values[0])
+        np.multiply(values[1], small, out=values[1])
+        np.multiply(values[2], frame.near, out=values[2])
         return values
 
     return evaluate

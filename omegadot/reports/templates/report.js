@@ -143,7 +143,7 @@
   }
   step.addEventListener("change", redraw);
   dark.addEventListener("change", redraw);
-  element("controls").open = !narrow.matches;
+  element("lines").open = !narrow.matches;
   addEventListener("beforeprint", () => { printing = true; sections.forEach((s) => { s.dirty = true; draw(s); }); });
   addEventListener("afterprint", () => { printing = false; redraw(); });
 })();

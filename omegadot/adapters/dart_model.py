@@ -1,0 +1,69 @@
+"""The DART world of one body: a FreeJoint at the body origin, or a BallJoint at the pivot."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from omegadot.reference_impl.system import Array, Body, System
+
+SWITCHED_OFF = (
+    "deactivation of slow bodies (World.setDeactivationOptions, where the version has it)",
+    "enforcement of joint limits (Joint.setLimitEnforcement)",
+    "collision: bodies have no shapes",
+    "joint frames in line with the world: they are turned by 120 degrees about (1, 1, 1), so that "
+    "attitudes near the identity are not rotation vectors below 1e-3 rad, which DART expands to "
+    "second order",
+)
+# math::expMapRot takes 1 + [r] + [r]^2/2 for |r| < 1e-3, off by |r|^3/6. A permutation of the axes
+# turns without rounding.
+TURN = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+
+
+class DartModel:
+    """world, skeleton, joint and node are DART's objects; frame is DART's world frame.
+
+    turn: (3, 3), the attitude of the joint's frame in the world.
+    """
+
+    def __init__(self, engine: ModuleType, system: System, *, physics: bool) -> None:
+        body, load = system.body, system.load
+        dynamics: Any = engine.dynamics
+        self._isometry: Any = engine.math.Isometry3
+        self.world: Any = engine.simulation.World()
+        self.world.setGravity(np.array(load.gravity, float))
+        self.frame: Any = dynamics.Frame.World()
+        self.skeleton: Any = dynamics.Skeleton()
+        if load.pivot is None:
+            self.joint, self.node = self.skeleton.createFreeJointAndBodyNodePair()
+        else:
+            self.joint, self.node = self.skeleton.createBallJointAndBodyNodePair()
+            pivot = self.transform(np.eye(3), np.array(load.pivot, float))
+            self.joint.setTransformFromChildBodyNode(pivot)
+        center, inertia = np.array(body.center_of_mass, float), np.array(body.inertia, float)
+        self.node.setInertia(dynamics.Inertia(float(body.mass), center, inertia))
+        self.world.addSkeleton(self.skeleton)
+        self.turn: Array = np.eye(3)
+        if physics:
+            self._switch_off()
+
+    def _switch_off(self) -> None:
+        """What ``SWITCHED_OFF`` lists; old versions lack some of it."""
+        if hasattr(self.world, "setDeactivationOptions"):
+            options = self.world.getDeactivationOptions()
+            options.mEnabled = False
+            self.world.setDeactivationOptions(options)
+        self.joint.setLimitEnforcement(False)
+        self.turn = TURN
+        self.joint.setTransformFromParentBodyNode(self.transform(TURN, np.zeros(3)))
+
+    def transform(self, rotation: Array, translation: Array) -> Any:
+        """An Isometry3 of DART's: (3, 3) and (3,)."""
+        return self._isometry(rotation, translation)
+
+    def body(self) -> Body:
+        """Mass, centre of mass and inertia about it, as the body node holds them."""
+        inertia = self.node.getInertia()
+        return Body(np.array(inertia.getMass()), inertia.getLocalCOM(), inertia.getMoment())

@@ -1,0 +1,128 @@
+"""What every closed form is made of: exact numbers in, a motion out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, Matrix, Row, dot, exact
+from omegadot.reference_impl.closed_forms.phase import Times
+from omegadot.reference_impl.system import Array, Body, Load
+
+# Times (n,) s to the attitude (n, 4) and the angular velocity (n, 3) rad/s, body frame.
+Motion: TypeAlias = Callable[[Array], tuple[Array, Array]]
+
+# The same in a frame of its own, ready to be placed: a vector (3, n) and a quaternion (4, n).
+Course: TypeAlias = Callable[[Times], tuple[Array, Array]]
+
+_CHUNK = 4000  # times worked at once: intermediate arrays stay in the cache and below 128 KB
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A motion that has a closed form.
+
+    kind: its name.  numbers: all it depends on, taken as exact.  solve: makes the motion of any
+    such numbers, which is how its sensitivity to their rounding is found.
+    """
+
+    kind: str
+    numbers: Row
+    solve: Callable[[Row], Motion]
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A course seen from the world and the body.
+
+    turning: (3, 3), the linear map of the course's vector to ω in body axes.  placing: (4, 4), that
+    of its quaternion to the attitude.
+    """
+
+    course: Course
+    turning: Array
+    placing: Array
+
+    def __call__(self, times: Array) -> tuple[Array, Array]:
+        """Attitude (n, 4) and angular velocity (n, 3)."""
+        orientation = np.empty((times.size, 4))
+        angular_velocity = np.empty((times.size, 3))
+        for first in range(0, times.size, _CHUNK):
+            part = slice(first, first + _CHUNK)
+            w, q = self.course(Times.of(times[part]))
+            np.matmul(w.T, self.turning, out=angular_velocity[part])
+            np.matmul(q.T, self.placing, out=orientation[part])
+        return orientation, angular_velocity
+
+
+def place(course: Course, turning: Matrix, frame: Row, orientation: Row) -> Placed:
+    """The course with the given attitude at time zero.
+
+    frame: the quaternion of frame-from-body.  Attitudes are ``W q(t) frame``, with the constant W
+    such that the first one is ``orientation``.
+    """
+    _, q = course(Times.of(np.zeros(1)))
+    body = product(exact(q), frame)
+    start = [x / dot(orientation, orientation).sqrt() for x in orientation]
+    world = product(start, [body[0], -body[1], -body[2], -body[3]])
+    rows = [product(product(world, unit), frame) for unit in _UNITS]
+    return Placed(course, np.array(turning, float), np.array(rows, float))
+
+
+_UNITS: Matrix = [[ONE if i == j else ZERO for j in range(4)] for i in range(4)]
+IDENTITY: Matrix = [[ONE if i == j else ZERO for j in range(3)] for i in range(3)]
+UPRIGHT: Row = [ONE, ZERO, ZERO, ZERO]
+
+
+def product(a: Row, b: Row) -> Row:
+    """Hamilton's product of two quaternions of many digits."""
+    return [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] + a[2] * b[0] + a[3] * b[1] - a[1] * b[3],
+        a[0] * b[3] + a[3] * b[0] + a[1] * b[2] - a[2] * b[1],
+    ]
+
+
+def quaternion_of(axes: Matrix) -> Row:
+    """The quaternion of the rotation whose matrix has these rows: frame-from-body.
+
+    The row of ``q qᵀ`` with the greatest diagonal element is taken, so that nothing cancels
+    (S. W. Shepperd, Quaternion from rotation matrix, J. Guidance and Control 1 (1978) 223-224).
+    """
+    m = axes
+    squares = [ONE + sum(s * m[i][i] for i, s in enumerate(signs)) for signs in _SIGNS]
+    products = [
+        [squares[0], m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]],
+        [m[2][1] - m[1][2], squares[1], m[0][1] + m[1][0], m[0][2] + m[2][0]],
+        [m[0][2] - m[2][0], m[0][1] + m[1][0], squares[2], m[1][2] + m[2][1]],
+        [m[1][0] - m[0][1], m[0][2] + m[2][0], m[1][2] + m[2][1], squares[3]],
+    ]
+    row = products[max(range(4), key=lambda i: squares[i])]
+    size = dot(row, row).sqrt()
+    return [x / size for x in row]
+
+
+_SIGNS = ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))
+
+
+def lever_of(body: Body, load: Load) -> Row:
+    """From the pivot to the centre of mass, body axes; zero for a free body."""
+    center = exact(body.center_of_mass)
+    pivot = center if load.pivot is None else exact(load.pivot)
+    return [a - b for a, b in zip(center, pivot, strict=True)]
+
+
+def inertia_about(inertia: Matrix, mass: Row, lever: Row) -> Matrix:
+    """``I + m (d·d 1 - d dᵀ)``: about the point from which the centre of mass is at d."""
+    square = dot(lever, lever)
+    return [
+        [
+            inertia[i][j] + mass[0] * ((square if i == j else 0) - lever[i] * lever[j])
+            for j in range(3)
+        ]
+        for i in range(3)
+    ]

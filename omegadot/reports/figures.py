@@ -1,0 +1,75 @@
+"""The few numbers that stand for an engine on a scenario, each with the run that gave it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import polars as pl
+
+_SUMMARISED = (
+    ((pl.col("gate") == "equation") & (pl.col("channel") == "omega_dot"))
+    | ((pl.col("gate") == "invariants") & (pl.col("channel") == "angular_momentum"))
+    | ((pl.col("gate") == "trajectory") & (pl.col("channel") == "attitude"))
+)
+_METRIC = {"omega_dot": "residual", "angular_momentum": "drift", "attitude": "error"}
+_COPIED = ("unit", "scenario", "engine", "metric", "timestep", "accuracy", "bound")
+
+Key = tuple[str, str, str, str]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One number and the run that gave it. A value that is not finite counts as the largest."""
+
+    value: float
+    unit: str
+    scenario: str
+    engine: str
+    metric: str
+    integrator: str | None = None
+    timestep: float | None = None
+    accuracy: float | None = None
+    bound: float | None = None
+
+
+@dataclass(frozen=True)
+class Range:
+    """The best and the worst integrator of an engine, each at the finest step it was run with."""
+
+    best: Figure
+    worst: Figure
+
+
+def size(figure: Figure) -> float:
+    """How large it is, for ordering: what is not a number is larger than any number."""
+    return abs(figure.value) if not math.isnan(figure.value) else float("inf")
+
+
+def range_of(figures: list[Figure]) -> Range | None:
+    """Best and worst integrator, each at its finest step and there at its largest value."""
+    runs: dict[str, dict[float, Figure]] = {}
+    for figure in figures:
+        step = figure.timestep if figure.timestep is not None else figure.accuracy
+        at_step = runs.setdefault(figure.integrator or "", {})
+        present = at_step.get(step or 0.0)
+        if present is None or size(figure) > size(present):
+            at_step[step or 0.0] = figure
+    finest = [steps[min(steps)] for steps in runs.values()]
+    return Range(min(finest, key=size), max(finest, key=size)) if finest else None
+
+
+def figures_of(metrics: pl.DataFrame) -> dict[Key, dict[str, list[Figure]]]:
+    """By engine and scenario, and there by channel: what the summary shows of the metrics."""
+    found: dict[Key, dict[str, list[Figure]]] = {}
+    for row in metrics.filter(_SUMMARISED).iter_rows(named=True):
+        if not row["metric"].startswith(_METRIC[row["channel"]]):
+            continue
+        key = (row["scenario"], row["engine"], row["engine_version"], row["setup"])
+        figure = Figure(
+            value=float("nan") if row["value"] is None else row["value"],
+            integrator=row["integrator"] or None,
+            **{name: row[name] for name in _COPIED},
+        )
+        found.setdefault(key, {}).setdefault(row["channel"], []).append(figure)
+    return found

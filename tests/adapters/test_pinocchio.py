@@ -1,0 +1,122 @@
+"""The reference's schemes over Pinocchio's ABA, and the shapes that they ask it for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pinocchio
+import pytest
+from mujoco_cases import EPS, at, norm, states, system
+
+from omegadot.adapters.pinocchio import PREFIX, PinocchioAdapter
+from omegadot.adapters.protocol import UnsupportedError
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.momentum import angular_momentum
+from omegadot.reference_impl.motion import acceleration_of, forward_dynamics
+from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.system import Body, State, System
+
+T_HANDLE = System((Body(np.array(1.0), np.zeros(3), np.diag([1.0, 2.0, 3.0])),))
+
+
+def aba(of: System) -> PinocchioAdapter:
+    adapter = PinocchioAdapter()
+    adapter.load(of)
+    return adapter
+
+
+def growth(of: System, start: State, time: float) -> float:
+    """How far a change may grow: ω̇ is quadratic in ω, ``|∂ω̇/∂ω| <= 2 cond(I) |ω|``."""
+    moments = np.linalg.eigvalsh(moving_inertia(of))
+    rate = 2 * moments[-1] / moments[0] * float(norm(start.angular_velocity))
+    return float(np.exp(rate * time)) * (1 + time)
+
+
+def test_every_scheme_is_an_integrator_named_for_what_it_is() -> None:
+    told = PinocchioAdapter().description
+    assert {i.name: i.scheme for i in told.integrators} == {PREFIX + name: name for name in SCHEMES}
+    assert all(i.orders == SCHEMES[str(i.scheme)].orders for i in told.integrators)
+    assert told.version == pinocchio.__version__
+    assert told.switched_off == ()
+
+
+@pytest.mark.parametrize("scheme", sorted(SCHEMES))
+@pytest.mark.parametrize("load", ["none", "all", "pivot_all"])
+def test_loops_over_aba_are_the_references_loops(scheme: str, load: str) -> None:
+    of = system("full", load)
+    start = place_on_pivot(of, at(states(1, seed=21, far=1.0, fast=2.0), 0))
+    found = aba(of).run(start, PREFIX + scheme, 0.005, 40, 5).state
+    _, expected = step_through(SCHEMES[scheme], of, acceleration_of(of), start, 0.005, 40, 5)
+    # a step asks for at most some twenty accelerations, and each errs by a few roundings
+    allowed = 64 * EPS * 40 * 20 * growth(of, start, 0.2)
+    assert np.max(attitude_angle(found.orientation, expected.orientation)) <= allowed
+    for one, other in (
+        (found.angular_velocity, expected.angular_velocity),
+        (found.position, expected.position),
+        (found.linear_velocity, expected.linear_velocity),
+    ):
+        assert np.max(norm(one - other)) <= allowed * np.max(norm(other))
+
+
+@pytest.mark.parametrize("load", ["all", "pivot_all"])
+def test_lanes_of_states_are_answered_one_by_one(load: str) -> None:
+    of = system("full", load)
+    many = place_on_pivot(of, states(6, seed=22, fast=2.0))
+    adapter = aba(of)
+    flat = adapter.forward_dynamics(many)
+    table = State(
+        many.orientation.reshape(2, 3, 4),
+        many.angular_velocity.reshape(2, 3, 3),
+        many.position.reshape(2, 3, 3),
+        many.linear_velocity.reshape(2, 3, 3),
+    )
+    found = adapter.forward_dynamics(table)
+    single = adapter.forward_dynamics(at(many, 4))
+    assert np.array_equal(found.angular.reshape(6, 3), flat.angular)
+    assert np.array_equal(found.linear.reshape(6, 3), flat.linear)
+    assert np.array_equal(single.angular, flat.angular[4])
+    assert np.array_equal(single.linear, flat.linear[4])
+
+
+def test_an_answer_is_not_overwritten_by_the_next() -> None:
+    adapter, many = aba(system("full", "all")), states(2, seed=23, fast=2.0)
+    first = adapter.forward_dynamics(at(many, 0))
+    kept = replace(first, angular=first.angular.copy(), linear=first.linear.copy())
+    adapter.forward_dynamics(at(many, 1))
+    assert np.array_equal(first.angular, kept.angular)
+    assert np.array_equal(first.linear, kept.linear)
+
+
+def test_rounding_does_not_grow_with_the_distance_from_the_origin() -> None:
+    """ABA in the world's frame would lose (m d^2 / I) eps; at 1e5 m that is a part in a million."""
+    of = system("full", "none")
+    many = states(20, seed=24, far=1e5, fast=0.0)
+    found, expected = aba(of).forward_dynamics(many).angular, forward_dynamics(of, many).angular
+    assert np.max(norm(found - expected)) <= 1e-13 * np.max(norm(expected))
+
+
+def test_only_its_own_names_are_integrators() -> None:
+    start = at(states(1, seed=25), 0)
+    with pytest.raises(UnsupportedError, match="semi-implicit-euler"):
+        aba(system()).run(start, "semi-implicit-euler", 0.01, 2, 1)
+
+
+def test_nothing_runs_before_a_system_is_loaded() -> None:
+    with pytest.raises(RuntimeError, match="load"):
+        PinocchioAdapter().get_state()
+
+
+def test_the_flip_at_a_millisecond_drifts_as_first_order_does() -> None:
+    """|H| grows by 2.3e-3 in 20 s: three equal first-order loops are not three votes."""
+    start = State(np.array([1.0, 0, 0, 0]), np.array([0.01, 2.0, 0.01]), np.zeros(3), np.zeros(3))
+    adapter = aba(T_HANDLE)
+    found = adapter.run(start, "aba+semi-implicit-euler", 0.001, 20_000, 500).state
+    size = norm(angular_momentum(T_HANDLE, found))
+    assert size[-1] / size[0] - 1 == pytest.approx(2.3e-3, abs=0.05e-3)
+    expected = forward_dynamics(T_HANDLE, found).angular
+    omega_dot = adapter.forward_dynamics(found).angular
+    assert np.max(norm(omega_dot - expected)) <= 3e-15 * np.max(norm(expected))

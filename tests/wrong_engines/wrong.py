@@ -1,0 +1,198 @@
+"""Engines whose answers are wrong: a sound one with one thing broken in each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.adapters.protocol import Description, Trajectory
+from omegadot.adapters.reference import ReferenceAdapter
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.rotations import conjugate, rotate
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
+
+ONE_SCHEME = "semi-implicit-euler"
+
+
+class Wrong(ReferenceAdapter):
+    """The reference with one scheme, over an acceleration that a subclass may spoil."""
+
+    @property
+    def description(self) -> Description:
+        whole = super().description
+        kept = tuple(i for i in whole.integrators if i.name == ONE_SCHEME)
+        return Description(type(self).__name__.lower(), "1.0", kept, features=whole.features)
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        return acceleration_of(system)
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        return self.acceleration_of(self.system)(states)
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        acceleration = self.acceleration_of(self.system)
+        scheme = SCHEMES[ONE_SCHEME]
+        times, states = step_through(
+            scheme, self.system, acceleration, initial, timestep, steps, every
+        )
+        return Trajectory(times, states)
+
+
+class Sound(Wrong):
+    """Nothing is broken: it must not be accused."""
+
+
+class Gyroscopic(Wrong):
+    """The gyroscopic term times `factor` instead of one."""
+
+    factor = 1.0
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        right, inertia = acceleration_of(system), moving_inertia(system)
+        inverse = np.linalg.inv(inertia)
+
+        def acceleration(state: State) -> Acceleration:
+            found, w = right(state), state.angular_velocity
+            gyroscopic = cross(w, (inertia @ w[..., None])[..., 0])
+            more = (1.0 - self.factor) * (inverse @ gyroscopic[..., None])[..., 0]
+            return Acceleration(found.angular + more, found.linear)
+
+        return acceleration
+
+
+class SignAsPrinted(Gyroscopic):
+    """Equation (9) as the paper prints it, without its minus sign."""
+
+    factor = -1.0
+
+
+class NoGyroscopic(Gyroscopic):
+    factor = 0.0
+
+
+class GyroscopicSlightlyOff(Gyroscopic):
+    factor = 1.0001
+
+
+class OmegaDotInWorld(Wrong):
+    """omega-dot is right and told in the wrong axes."""
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        found = super().forward_dynamics(states)
+        return Acceleration(rotate(states.orientation, found.angular), found.linear)
+
+
+class MassSlightlyOff(Wrong):
+    def model(self) -> tuple[Body, ...]:
+        return (replace(self.system.body, mass=1.001 * self.system.body.mass),)
+
+
+class DiagonalInertia(Wrong):
+    """Only the diagonal of the tensor is taken over."""
+
+    def load(self, system: System) -> None:
+        body = system.body
+        diagonal = replace(body, inertia=np.diag(np.diag(body.inertia)))
+        super().load(replace(system, bodies=(diagonal,)))
+
+
+class TransposedAttitude(Wrong):
+    def get_state(self) -> State:
+        state = super().get_state()
+        return replace(state, orientation=conjugate(state.orientation))
+
+
+class GravityUpwards(Wrong):
+    def load(self, system: System) -> None:
+        super().load(replace(system, load=replace(system.load, gravity=-system.load.gravity)))
+
+
+class SecretDamping(Wrong):
+    """1e-4 N m s/rad that nobody asked for, in the stepping only."""
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        return acceleration_of(replace(system, load=replace(system.load, damping=np.array(1e-4))))
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        return acceleration_of(self.system)(states)
+
+
+class StepSlightlyLong(Wrong):
+    """Steps are 0.1 % longer than it says."""
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        found = super().run(initial, integrator, 1.001 * timestep, steps, every)
+        return Trajectory(found.time / 1.001, found.state)
+
+
+class FirstSampleMissing(Wrong):
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        found = super().run(initial, integrator, timestep, steps, every)
+        rest = State(*(values[1:] for values in vars(found.state).values()))
+        return Trajectory(found.time[1:], rest)
+
+
+class LogsOneSampleLate(Wrong):
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        found = super().run(initial, integrator, timestep, steps, every)
+
+        def late(values: Array) -> Array:
+            return np.concatenate([values[:1], values[:-1]])
+
+        return Trajectory(found.time, State(*(late(v) for v in vars(found.state).values())))
+
+
+class EnergyCorrected(Wrong):
+    """Omega is rescaled so that the energy looks right."""
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        found = super().run(initial, integrator, timestep, steps, every)
+        w, inertia = found.state.angular_velocity, self.system.body.inertia
+        energy = np.einsum("ni,ij,nj->n", w, inertia, w)
+        scaled = w * np.sqrt(energy[0] / energy)[:, None]
+        return Trajectory(found.time, replace(found.state, angular_velocity=scaled))
+
+
+class FallsAsleep(Wrong):
+    """Below 0.05 rad/s the body is put to rest."""
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        found = super().run(initial, integrator, timestep, steps, every)
+        w = found.state.angular_velocity.copy()
+        w[np.linalg.norm(w, axis=-1) < 0.05] = 0.0
+        return Trajectory(found.time, replace(found.state, angular_velocity=w))
+
+
+CAUGHT_BY: dict[type[Wrong], str] = {
+    SignAsPrinted: "equation",
+    NoGyroscopic: "equation",
+    GyroscopicSlightlyOff: "equation",
+    OmegaDotInWorld: "equation",
+    MassSlightlyOff: "model",
+    DiagonalInertia: "model",
+    TransposedAttitude: "model",
+    GravityUpwards: "equation",
+    SecretDamping: "trajectory",
+    StepSlightlyLong: "trajectory",
+    FirstSampleMissing: "trajectory",
+    LogsOneSampleLate: "trajectory",
+    EnergyCorrected: "trajectory",
+}
