@@ -84,19 +84,26 @@ class DartJoint:
     def inverse(self, state: State, wanted: Acceleration) -> Array:
         """The torque (3,), body axes, about the centre of mass or about the pivot.
 
-        The joint's forces are ``Q = J^T W`` with W = (torque, force) at the body origin. The joint
-        must be in the state.
+        The joint must be in the state.
+        """
+        return self.wrench(state, wanted)[:3]
+
+    def wrench(self, state: State, wanted: Acceleration) -> Array:
+        """Torque and force (6,) at a free body's centre of mass, body axes; torque (3,) if pivoted.
+
+        The joint's forces are ``Q = J^T W`` with W = (torque, force) at the body origin.
         """
         if not self.is_finite():
-            return np.full(3, np.nan)
+            return np.full(6 if self._free else 3, np.nan)
         joint, target = self._joint, self._spatial(state, wanted)
         J = joint.getRelativeJacobian()[: len(target)]
         bias = joint.getRelativeJacobianTimeDeriv()[: len(target)] @ joint.getVelocities()
         joint.setAccelerations(np.linalg.solve(J, target - bias))
         self.model.skeleton.computeInverseDynamics()
-        wrench: Array = np.linalg.solve(J.T, joint.getForces())
-        joint.resetForces()  # else they would push the body in the next step
-        return wrench[:3] - cross(self._com, wrench[3:]) if self._free else wrench
+        found: Array = np.linalg.solve(J.T, joint.getForces())
+        if self._free:
+            found[:3] -= cross(self._com, found[3:])
+        return found
 
     def _spatial(self, state: State, wanted: Acceleration) -> Array:
         """The spatial acceleration (6,) of the body origin in body axes; angular alone if pivoted.

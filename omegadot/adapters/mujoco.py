@@ -15,8 +15,9 @@ from omegadot.adapters.mujoco_integrators import (
     version_of,
 )
 from omegadot.adapters.mujoco_model import BODY, apply_setup, body_of, build_model, switched_off
-from omegadot.adapters.mujoco_stepping import Stepper, logged_steps
+from omegadot.adapters.mujoco_stepping import Stepper
 from omegadot.adapters.protocol import Description, Setup, Trajectory, UnsupportedError
+from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
 
 _CONVENTIONS = (
@@ -78,6 +79,7 @@ class MujocoAdapter:
     def load(self, system: System) -> None:
         """Build the model, forgetting any earlier one. Raises what `build_model` raises."""
         mujoco = self._mujoco
+        self._model, self._load = None, Load()  # a refused system leaves nothing behind either
         self._model = build_model(mujoco, system)
         apply_setup(mujoco, self._model, self._setup)
         self._load = system.load
@@ -150,9 +152,9 @@ class MujocoAdapter:
         """Step natively. Raises UnsupportedError for an integrator this version lacks."""
         self._reset(integrator)
         self._model.opt.timestep = timestep
-        self._data.qpos[:], self._data.qvel[:] = self._coordinates.of_state(initial)
-        rows = self._stepper.run(steps, every)
         places = self._model.nq
         with np.errstate(over="ignore", invalid="ignore"):  # a diverged run is shown as it is
+            self._data.qpos[:], self._data.qvel[:] = self._coordinates.of_state(initial)
+            rows = self._stepper.run(steps, every)
             state = self._coordinates.to_state(rows[:, :places], rows[:, places:])
-        return Trajectory(time=logged_steps(steps, every) * timestep, state=state)
+        return Trajectory(time=np.array(kept_steps(steps, every)) * timestep, state=state)

@@ -7,11 +7,9 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Array
-
-Steps = NDArray[np.int64]
 
 CHUNK = 4096  # steps a call: the call's cost vanishes, and its buffer stays in the cache
 
@@ -25,12 +23,6 @@ def quietly(mujoco: Any) -> Iterator[None]:
         yield
     finally:
         mujoco.set_mju_user_warning(before)
-
-
-def logged_steps(steps: int, every: int) -> Steps:
-    """0, every, 2 every, ... and the last: the steps of which the state is kept."""
-    regular = np.arange(0, steps + 1, every, dtype=np.int64)
-    return regular if regular[-1] == steps else np.append(regular, steps)
 
 
 class Stepper:
@@ -58,8 +50,8 @@ class Stepper:
         return vector
 
     def run(self, steps: int, every: int) -> Array:
-        """Rows (qpos, qvel) at `logged_steps`, from the data's present state and applied forces."""
-        wanted = logged_steps(steps, every)
+        """Rows (qpos, qvel) at `kept_steps`, from the data's present state and applied forces."""
+        wanted = np.array(kept_steps(steps, every))
         rows = np.empty((len(wanted), self._kept.stop - self._kept.start))
         rows[0] = self._vector(self._physics)[self._kept]
         with quietly(self._mujoco):
@@ -67,7 +59,7 @@ class Stepper:
             self._run_step_by_step(done, steps, wanted, rows)
         return rows
 
-    def _run_native(self, steps: int, wanted: Steps, rows: Array) -> int:
+    def _run_native(self, steps: int, wanted: Array, rows: Array) -> int:
         """Fill rows chunk by chunk; return the step reached.
 
         The native loop stops at MuJoCo's first warning (a huge number suffices) and repeats that
@@ -101,7 +93,7 @@ class Stepper:
         self._mujoco.mj_setState(self._model, self._data, physics, self._physics)
         self._mujoco.mj_setState(self._model, self._data, applied, self._applied)
 
-    def _run_step_by_step(self, done: int, steps: int, wanted: Steps, rows: Array) -> None:
+    def _run_step_by_step(self, done: int, steps: int, wanted: Array, rows: Array) -> None:
         step, model, data = self._mujoco.mj_step, self._model, self._data
         row = int(np.searchsorted(wanted, done, side="right"))
         for number in range(done + 1, steps + 1):

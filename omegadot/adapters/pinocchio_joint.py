@@ -78,16 +78,24 @@ class PinocchioJoint:
 
     def inverse(self, state: State, angular: Array, linear: Array) -> Array:
         """The torque (3,), body axes, by RNEA, about the centre of mass or about the pivot."""
+        if self._free:
+            return self.wrench(state, angular, linear)[3:]
+        q, v, _ = self._coordinates(state)
+        torque: Array = self._pin.rnea(self._model, self._data, q, v, np.array(angular))
+        return torque.copy()
+
+    def wrench(self, state: State, angular: Array, linear: Array) -> Array:
+        """Force and torque (6,) on a free body by RNEA, at its centre of mass, in body axes.
+
+        ``a_spatial`` of the centre of mass is ``R^T a - omega x R^T v``.
+        """
         q, v, world_R_body = self._coordinates(state)
-        if not self._free:
-            torque: Array = self._pin.rnea(self._model, self._data, q, v, np.array(angular))
-            return torque
-        omega, velocity = state.angular_velocity, state.linear_velocity @ world_R_body
-        spatial = linear @ world_R_body - self._pin.skew(omega) @ velocity
-        a = self._joint_M_com.act(self._pin.Motion(spatial, np.array(angular))).vector
-        wrench = self._pin.Force(self._pin.rnea(self._model, self._data, q, v, a))
-        about_com: Array = self._joint_M_com.actInv(wrench).angular
-        return about_com
+        turning = self._pin.skew(state.angular_velocity) @ (state.linear_velocity @ world_R_body)
+        at_com = self._pin.Motion(linear @ world_R_body - turning, np.array(angular))
+        a = self._joint_M_com.act(at_com).vector
+        at_joint = self._pin.Force(self._pin.rnea(self._model, self._data, q, v, a))
+        found: Array = self._joint_M_com.actInv(at_joint).vector
+        return found.copy()
 
     def _coordinates(self, state: State) -> tuple[Array, Array, Array]:
         """q, v of the joint, and world_R_body."""

@@ -95,7 +95,7 @@ class Driver:
             return Answer("timeout", f"not tried: {self._timeouts_in_a_row} time-outs in a row")
         if self._stopping.is_set():
             return INTERRUPTED
-        if not self.worker.alive:
+        if not self.worker.started:
             self._loaded = None
             started = self.worker.start()
             if not started.ok:

@@ -88,6 +88,7 @@ class Runner:
         self.on_advance: Callable[[int], object] = lambda _: None
         self._stopping = threading.Event()
         self._slots = threading.Semaphore(request.jobs)
+        self._workers: dict[str, WorkerProcess] = {}
         self._drivers: dict[str, Driver] = {}
         self._threads: dict[str, ThreadPoolExecutor] = {}
         self.engines: list[Engine] = []
@@ -97,12 +98,11 @@ class Runner:
         """Start every engine asked for, and the two that know the truth."""
         wanted = {choice.name: choice for choice in self.request.choices}
         helpers = [EngineChoice(n, BUILT_IN[n]) for n in ("exact", "reference") if n not in wanted]
-        workers = {
-            c.name: WorkerProcess(c.target, self.request.setup, self.request.timeout)
-            for c in (*wanted.values(), *helpers)
-        }
-        self._threads = {name: ThreadPoolExecutor(1, name) for name in workers}
-        started = {n: self._threads[n].submit(worker.start) for n, worker in workers.items()}
+        setup, timeout = self.request.setup, self.request.timeout
+        for choice in (*wanted.values(), *helpers):
+            self._workers[choice.name] = WorkerProcess(choice.target, setup, timeout)
+            self._threads[choice.name] = ThreadPoolExecutor(1, choice.name)
+        started = {n: self._threads[n].submit(worker.start) for n, worker in self._workers.items()}
         for choice in (*wanted.values(), *helpers):
             answer = started[choice.name].result()
             if not answer.ok:
@@ -111,7 +111,7 @@ class Runner:
             description = description_of(answer.result)
             check_integrators(choice, description)
             engine = Engine(choice, description, integrators_chosen(choice, description))
-            worker = workers[choice.name]
+            worker = self._workers[choice.name]
             self._drivers[choice.name] = Driver(engine, worker, self._slots, self._stopping)
             if choice.name in wanted:
                 self.engines.append(engine)
@@ -119,15 +119,15 @@ class Runner:
     def stop(self) -> None:
         """End every worker at once; answers that were on their way become interruptions."""
         self._stopping.set()
-        for driver in self._drivers.values():
-            driver.worker.stop()
+        for worker in self._workers.values():
+            worker.stop()
 
     def finish(self) -> None:
         """End the threads, then the workers, which are idle by then or stopped already."""
         for threads in self._threads.values():
             threads.shutdown(wait=True, cancel_futures=True)
-        for driver in self._drivers.values():
-            driver.worker.finish()
+        for worker in self._workers.values():
+            worker.finish()
 
     def _submit(self, name: str, call: Callable[[], Result]) -> Future[Result]:
         return self._threads[name].submit(call)

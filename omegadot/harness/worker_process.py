@@ -62,9 +62,9 @@ class WorkerProcess:
         return self._process.pid if self._process else None
 
     @property
-    def alive(self) -> bool:
-        """Whether a process is up and has described itself."""
-        return self._process is not None and self._process.poll() is None
+    def started(self) -> bool:
+        """Whether there is a process to ask; one that died since then will be found out there."""
+        return self._process is not None
 
     def start(self) -> Answer:
         """Start the process; the result is the engine's description."""

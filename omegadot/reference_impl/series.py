@@ -20,6 +20,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.precision import cast, extended
+from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.series_equations import Equations, G, Q, T, W, equations_of
 from omegadot.reference_impl.system import Array, State, System
 
@@ -97,7 +98,7 @@ def _segments(equations: Equations, x: Array, end: np.longdouble) -> Iterator[Se
             yield Segment(start, sign * left, series)
             return
         if not length > EPS * abs(start):
-            raise ArithmeticError(f"the series stands still at {float(start)} s")
+            raise ArithmeticError("the motion leaves the range of numbers")
         segment = Segment(start, sign * length, series)
         yield segment
         x = equations.refreshed(segment.at(np.array([segment.length]))[0])
@@ -130,21 +131,23 @@ def solve_series(
     dtype: the type of the result, ``np.longdouble`` keeps all digits. Raises ValueError for a
     system with leading axes or a state or time that is not finite.
     """
-    equations = equations_of(system)
-    x0 = equations.unknown(initial)
-    moments = np.asarray(times, np.longdouble)
-    if moments.ndim != 1 or not (np.all(np.isfinite(x0)) and np.all(np.isfinite(moments))):
+    seconds = np.asarray(times, np.longdouble)
+    fields = (initial.orientation, initial.angular_velocity, seconds)
+    if seconds.ndim != 1 or not all(np.all(np.isfinite(field)) for field in fields):
         raise ValueError("the times are to be a list, and they and the state finite")
-    lanes = x0.shape[:-1]
-    found = np.empty((len(moments), max(1, int(np.prod(lanes))), 13), np.longdouble)
-    flat = x0.reshape(-1, 13)
+    equations = equations_of(system)
+    equations = equations.in_own_time(equations.unknown(initial))
+    x0, moments = equations.unknown(initial), seconds / equations.unit
+    lanes, flat = x0.shape[:-1], x0.reshape(-1, 13)
+    found = np.empty((len(moments), *flat.shape), np.longdouble)
     order = np.argsort(moments, kind="stable")
     split = int(np.searchsorted(moments[order], 0))
     _fill(equations, flat, moments, order[split:], found)
     _fill(equations, flat, moments, order[:split][::-1], found)
     x = found.reshape(len(moments), *lanes, 13)
-    unit = x[..., Q] / np.sqrt(np.add.reduce(x[..., Q] ** 2, -1, keepdims=True))
-    state = _translated(system, initial, moments, unit, equations.angular_velocity(x))
+    state = _translated(
+        system, initial, seconds, normalize(x[..., Q]), equations.angular_velocity(x)
+    )
     return cast(state, dtype)
 
 

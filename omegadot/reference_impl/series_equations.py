@@ -12,7 +12,7 @@ last two move as ``u̇ = u × ω``, constant vectors of the world seen from the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 
 import numpy as np
@@ -27,7 +27,7 @@ from omegadot.reference_impl.closed_forms.digits import (
     many_digits,
 )
 from omegadot.reference_impl.closed_forms.principal_axes import principal_axes
-from omegadot.reference_impl.rotations import quaternion_product, rotate_inverse
+from omegadot.reference_impl.rotations import normalize, quaternion_product, rotate_inverse
 from omegadot.reference_impl.system import Array, State, System
 
 Q, W, G, T = slice(0, 4), slice(4, 7), slice(7, 10), slice(10, 13)
@@ -38,7 +38,8 @@ class Equations:
     """``ẋ_a = Σ_bc quadratic[b, c, a] x_b ω_c + Σ_b linear[b, a] x_b + constant[a]``.
 
     axes: (3, 3), the principal axes, row by row, in body axes.  gravity and torque_world: (3,),
-    world axes, what x's last six components follow.  All in long double.
+    world axes, what x's last six components follow.  unit: s, what time is counted in here.  All in
+    long double.
     """
 
     quadratic: Array
@@ -47,6 +48,27 @@ class Equations:
     axes: Array
     gravity: Array
     torque_world: Array
+    unit: float = 1.0
+
+    def rates(self, x: Array) -> Array:
+        """The ẋ of x, (..., 13)."""
+        products = (x[..., :, None] * x[..., None, W]).reshape(*x.shape[:-1], 39)
+        rates: Array = products @ self.quadratic.reshape(39, 13) + x @ self.linear + self.constant
+        return rates
+
+    def in_own_time(self, x: Array) -> Equations:
+        """The same with time in a unit of the motion's own, a power of two near ``1/rate``.
+
+        Coefficients of high order are powers of the rate: in seconds those of a molecule would
+        leave the range of numbers. The rate is ``max(|ω|, |ω̇|^½)``, the largest over the lanes.
+        """
+        rate = max(np.max(np.abs(x[..., W])), np.sqrt(np.max(np.abs(self.rates(x)[..., W]))))
+        unit = float(np.ldexp(1.0, 1 - int(np.frexp(rate)[1]))) if rate > 0 else 1.0
+        linear, constant = self.linear.copy(), self.constant * unit**2
+        linear[W, W] *= unit
+        linear[G, W] *= unit**2
+        linear[T, W] *= unit**2
+        return replace(self, linear=linear, constant=constant, unit=unit)
 
     def unknown(self, state: State) -> Array:
         """The x of states, (..., 13); the quaternion is made unit in long double."""
@@ -55,21 +77,20 @@ class Equations:
         shape = np.broadcast_shapes(q.shape[:-1], w.shape[:-1])
         x = np.zeros((*shape, 13), np.longdouble)
         x[..., Q] = q
-        x[..., W] = w @ self.axes.T
+        x[..., W] = w @ self.axes.T * self.unit
         return self.refreshed(x)
 
     def refreshed(self, x: Array) -> Array:
         """The x with a unit quaternion, and the world's vectors turned into the body by it anew."""
-        q = x[..., Q] / np.sqrt(np.add.reduce(x[..., Q] ** 2, -1, keepdims=True))
-        x = x.copy()
+        q, x = normalize(x[..., Q]), x.copy()
         x[..., Q] = q
         x[..., G] = rotate_inverse(q, self.gravity) @ self.axes.T
         x[..., T] = rotate_inverse(q, self.torque_world) @ self.axes.T
         return x
 
     def angular_velocity(self, x: Array) -> Array:
-        """ω in body axes, (..., 3)."""
-        w: Array = x[..., W] @ self.axes
+        """ω in body axes, (..., 3) rad/s."""
+        w: Array = x[..., W] @ self.axes / self.unit
         return w
 
 

@@ -29,9 +29,10 @@ def step_through(
     """Times and states at step 0, each `every`-th and the last.
 
     dt: s, a float, or an array; the lanes are those of dt and of `initial`, broadcast against each
-    other, and all take as many steps. Times are ``n * dt``, (samples,) or (samples, *dt.shape); states have the samples in
-    front, (samples, ..., 3). A pivoted body's position and velocity follow from its attitude and
-    ω. A run that diverges goes on with infinities and NaN, without warnings.
+    other, and all take as many steps. Times are ``n * dt``, (samples,) or (samples, *dt.shape);
+    states have the samples in front, (samples, ..., 3). A pivoted body's position and velocity
+    follow from its attitude and ω. A run that diverges goes on with infinities and NaN, without
+    warnings.
     Raises ValueError for negative steps or `every` below one.
     """
     kept = kept_steps(steps, every)

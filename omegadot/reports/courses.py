@@ -49,6 +49,8 @@ class Chart:
 
 def chart_courses(record: Record) -> dict[str, Chart]:
     """Every scenario's courses, by name; a scenario without trajectories is left out."""
+    if record.trajectories.is_empty():
+        return {}
     samples = _beside_truth(record.trajectories)
     errors = np.full((len(samples), len(CHANNELS)), np.nan)
     units: dict[str, dict[str, str]] = {}

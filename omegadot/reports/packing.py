@@ -19,7 +19,7 @@ _LARGEST_CODE = _MISSING - 1
 
 def pack(data: bytes) -> str:
     """Gzip and base64, the same text for the same bytes."""
-    return base64.b64encode(gzip.compress(data, compresslevel=9, mtime=0)).decode("ascii")
+    return base64.b64encode(gzip.compress(data, compresslevel=6, mtime=0)).decode("ascii")
 
 
 def pack_json(value: object) -> str:

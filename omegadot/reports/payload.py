@@ -91,7 +91,7 @@ def payload(charts: Mapping[str, Chart], lines: list[Line]) -> tuple[dict[str, A
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
     times: dict[bytes, int] = {}
     clocks: list[list[float]] = []
-    codes: list[Array] = []
+    values: list[Array] = []
     used = 0
     scenarios: dict[str, Any] = {}
     for name, chart in charts.items():
@@ -106,7 +106,7 @@ def payload(charts: Mapping[str, Chart], lines: list[Line]) -> tuple[dict[str, A
             knobs = rank[course.timestep, course.accuracy]
             entries.append([line, knobs, times[key], used, count])
             for channel in chart.units:
-                codes.append(_codes(course, channel))
+                values.append(drawn(course, channel))
                 used += count
         scenarios[name] = {
             "charts": [_axis(chart, channel) for channel in chart.units],
@@ -122,7 +122,7 @@ def payload(charts: Mapping[str, Chart], lines: list[Line]) -> tuple[dict[str, A
         "times": clocks,
         "scenarios": scenarios,
     }
-    return description, np.concatenate(codes) if codes else np.empty(0, np.uint16)
+    return description, codes_of(np.concatenate([np.empty(0), *values]))
 
 
 def drawn(course: Course, channel: str) -> Array:
@@ -130,10 +130,6 @@ def drawn(course: Course, channel: str) -> Array:
     values = course.values[channel]
     start = (course.time == 0.0) & (values <= FLOOR)
     return np.where(start, np.nan, values)
-
-
-def _codes(course: Course, channel: str) -> Array:
-    return codes_of(drawn(course, channel))
 
 
 def _axis(chart: Chart, channel: str) -> dict[str, Any]:

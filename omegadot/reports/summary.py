@@ -12,7 +12,7 @@ from typing import Any
 
 import polars as pl
 
-from omegadot.reports.figures import Figure, Key, Range, figures_of, range_of
+from omegadot.reports.figures import Figure, Key, Range, figures_of, range_of, size
 from omegadot.reports.record import Record
 
 # From the worst to the best. A skip is never a pass, and neither is a run that nobody judged.

@@ -17,7 +17,7 @@ from omegadot.reports.tables import unit_text
 
 def without_scheme(value: Any) -> Any:
     """A text without the ``https`` of its addresses: they are named, and nothing is fetched."""
-    if isinstance(value, str) and not isinstance(value, Markup):
+    if isinstance(value, str) and "://" in value and not isinstance(value, Markup):
         return re.sub(r"https?://", "", value, flags=re.IGNORECASE)
     return value
 

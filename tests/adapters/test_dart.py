@@ -15,10 +15,10 @@ from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.motion import acceleration_of, forward_dynamics
-from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.rotations import attitude_angle, rotate_inverse
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through
-from omegadot.reference_impl.system import Array, Body, State, System
+from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 CENTRED = np.zeros(3)
 SCHEME = SCHEMES["semi-implicit-euler"]
@@ -161,6 +161,19 @@ def test_dynamics_of_a_state_that_is_not_finite_are_nan() -> None:
     torque = dart(of).inverse_dynamics(many, found)
     assert np.all(np.isnan(torque[0]))
     assert np.all(np.isfinite(torque[1]))
+
+
+def test_the_force_of_inverse_dynamics_is_newtons() -> None:
+    """``F = m (a - g)``: the joint acceleration that is set is, in every version, the one asked."""
+    of = system("full", "all")
+    many, adapter = states(10, seed=17, fast=2.0), dart(of)
+    wanted = np.random.default_rng(18).normal(size=(10, 2, 3))
+    for n in range(10):
+        adapter.set_state(at(many, n))
+        force = adapter._loaded().wrench(at(many, n), Acceleration(*wanted[n]))[3:]
+        expected = of.body.mass * (wanted[n, 1] - of.load.gravity)
+        expected = rotate_inverse(at(many, n).orientation, expected)
+        assert norm(force - expected) <= 1e-13 * (norm(expected) + 50)
 
 
 def test_nothing_runs_before_a_system_is_loaded() -> None:

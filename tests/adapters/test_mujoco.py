@@ -140,6 +140,14 @@ def test_refuses_more_than_one_body() -> None:
         MujocoAdapter().load(System((body, body)))
 
 
+def test_a_refused_load_forgets_the_earlier_one() -> None:
+    adapter, body = loaded(system(load="pivot_damping")), system().body
+    with pytest.raises(UnsupportedError):
+        adapter.load(System((body, body)))
+    assert adapter._model is None
+    assert adapter.description == MujocoAdapter().description
+
+
 @pytest.mark.parametrize(("mass", "scale"), [(1.0, 1e-16), (1e-16, 1.0)])
 def test_refuses_what_mujoco_would_clamp(mass: float, scale: float) -> None:
     body = Body(np.array(mass), np.zeros(3), np.eye(3) * scale)

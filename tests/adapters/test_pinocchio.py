@@ -10,12 +10,13 @@ import pytest
 from mujoco_cases import EPS, at, norm, states, system
 
 from omegadot.adapters.pinocchio import PREFIX, PinocchioAdapter
+from omegadot.adapters.pinocchio_joint import PinocchioJoint
 from omegadot.adapters.protocol import UnsupportedError
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.motion import acceleration_of, forward_dynamics
-from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.rotations import attitude_angle, rotate_inverse
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Body, State, System
@@ -89,6 +90,18 @@ def test_an_answer_is_not_overwritten_by_the_next() -> None:
     adapter.forward_dynamics(at(many, 1))
     assert np.array_equal(first.angular, kept.angular)
     assert np.array_equal(first.linear, kept.linear)
+
+
+def test_the_force_of_rnea_is_newtons() -> None:
+    """``F = m (a - g)``: the spatial acceleration that RNEA is given is the one that was asked."""
+    of = system("full", "all")
+    many, joint = states(10, seed=26, fast=2.0), PinocchioJoint(pinocchio, of)
+    wanted = np.random.default_rng(27).normal(size=(10, 2, 3))
+    for n in range(10):
+        force = joint.wrench(at(many, n), *wanted[n])[:3]
+        expected = of.body.mass * (wanted[n, 1] - of.load.gravity)
+        expected = rotate_inverse(at(many, n).orientation, expected)
+        assert norm(force - expected) <= 1e-13 * (norm(expected) + 50)
 
 
 def test_rounding_does_not_grow_with_the_distance_from_the_origin() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import EPS, rows, start, system, turned
+from reference_cases import EPS, rows, start, system, turned
 
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.momentum import angular_momentum

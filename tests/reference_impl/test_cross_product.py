@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import EPS, vectors
 from hypothesis import given, settings
+from reference_cases import EPS, vectors
 
 from omegadot.reference_impl.cross_product import (
     cross,

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from cases import EPS, rows, states, vectors
 from hypothesis import given, settings
-from hypothesis import strategies as st
+from reference_cases import COUNT, EPS, cloud, pivots, rows, seeds, states
 
-from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.energy import (
     kinetic_energy,
     linear_kinetic_energy,
@@ -21,32 +19,17 @@ from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot, point_position, point_velocity
 from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
 from omegadot.reference_impl.rotations import rotate, turn_in_body
-from omegadot.reference_impl.system import Array, Body, Load, State, System
+from omegadot.reference_impl.system import Array, State, System
 
 few = settings(max_examples=40, derandomize=True, deadline=None)
-COUNT = 10
-
-
-def cloud(seed: int, pivot: Array | None) -> tuple[System, Array, Array]:
-    """A body of point masses: the system, the masses, and their places from the centre of mass."""
-    rng = np.random.default_rng(seed)
-    masses, points = rng.uniform(0.2, 2.0, COUNT), rng.normal(size=(COUNT, 3))
-    center = masses @ points / masses.sum()
-    r = points - center
-    r_x = skew(r)
-    inertia = np.einsum("n,nji,njk->ik", masses, r_x, r_x)
-    body = Body(masses.sum(), center, inertia)
-    return System((body,), Load(gravity=rng.normal(size=3), pivot=pivot)), masses, r
-
-
-pivots = st.one_of(st.none(), vectors)
-seeds = st.integers(0, 1000)
 
 
 def sizes(system: System, state: State, r: Array) -> tuple[float, float]:
     """Upper bounds of mass times speed and of speed, for rounding bounds."""
     reach = np.max(np.abs(r)) + np.linalg.norm(lever(system))
-    speed = 2 * np.linalg.norm(state.angular_velocity) * reach + np.linalg.norm(state.linear_velocity)
+    speed = 2 * np.linalg.norm(state.angular_velocity) * reach + np.linalg.norm(
+        state.linear_velocity
+    )
     return float(speed) + EPS, float(reach)
 
 
@@ -97,7 +80,9 @@ def test_momentum_is_the_gradient_and_inertia_the_hessian(
     system, *_ = cloud(seed, pivot)
 
     def energy(change: Array) -> Array:
-        return kinetic_energy(system, replace(state, angular_velocity=state.angular_velocity + change))
+        return kinetic_energy(
+            system, replace(state, angular_velocity=state.angular_velocity + change)
+        )
 
     gradient = np.array([(energy(e) - energy(-e)) / 2 for e in np.eye(3)])
     hessian = np.array(
@@ -124,6 +109,7 @@ def test_velocity_is_the_derivative_of_position() -> None:
         np.array([0.2, 0.4, -0.1]),
     )
     r, h = np.array([0.3, -1.0, 0.6]), 1e-5
+
     def moved(t: float) -> Array:
         later = replace(
             state,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import EPS, quaternions, vectors
 from hypothesis import given, settings
+from reference_cases import EPS, quaternions, vectors
 
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.from_scenario import body_of_part
@@ -154,7 +154,9 @@ def test_placing_a_part_turns_its_tensor_into_body_axes() -> None:
 
 
 def test_dumbbell_of_points() -> None:
-    ends = [Point(shape="point", mass=m, position=(0.0, 0.0, z)) for m, z in ((1.0, 0.0), (3.0, 4.0))]
+    ends = [
+        Point(shape="point", mass=m, position=(0.0, 0.0, z)) for m, z in ((1.0, 0.0), (3.0, 4.0))
+    ]
     body = assemble([body_of_part(end) for end in ends])
     assert body.mass == 4.0
     assert np.array_equal(body.center_of_mass, [0.0, 0.0, 3.0])

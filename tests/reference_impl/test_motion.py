@@ -8,9 +8,24 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
-from cases import DAMPED, DRIVEN, EPS, FREE, TOP, rows, start, states, system, systems, turned, vectors
 from hypothesis import given, settings
-from test_energy_momentum import cloud, pivots, seeds
+from reference_cases import (
+    DAMPED,
+    DRIVEN,
+    EPS,
+    FREE,
+    TOP,
+    cloud,
+    pivots,
+    rows,
+    seeds,
+    start,
+    states,
+    system,
+    systems,
+    turned,
+    vectors,
+)
 
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia
@@ -47,7 +62,9 @@ def wrong_sign(system: System, state: State) -> Acceleration:
     return replace(right, angular=apply(inverse(inertia), tau))
 
 
-def excess_over_particles(dynamics: AccelerationAt, seed: int, pivot: Array | None, s: State) -> float:
+def excess_over_particles(
+    dynamics: AccelerationAt, seed: int, pivot: Array | None, s: State
+) -> float:
     """How far d'Alembert's sum over the particles is off, in units of its rounding.
 
     Each particle has ``a = R (ω̇ × r + ω × (ω × r)) + ẍ``, the derivative of (3); the moments of
@@ -157,7 +174,9 @@ def _lagrange(system: System, angles: list[float], rates: list[float]) -> list[m
 def test_lagranges_equations_give_the_same_omega_dot() -> None:
     angles, rates = [0.3, 0.9, -0.7], [1.2, -0.4, 2.0]
     phi, theta, psi = angles
-    body = system(turned([0.4, 0.5, 0.7]), 1.5, (0.02, 0.01, 0.2), pivot=(0, 0, 0), gravity=(0, 1, -9))
+    body = system(
+        turned([0.4, 0.5, 0.7]), 1.5, (0.02, 0.01, 0.2), pivot=(0, 0, 0), gravity=(0, 1, -9)
+    )
     with mp.workdps(40):
         expected = np.array([float(x) for x in _lagrange(body, angles, rates)])
     q = start([0, 0, 0]).orientation

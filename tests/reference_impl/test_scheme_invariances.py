@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import EPS, quaternions, rows, start, states, system, systems
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference_cases import EPS, quaternions, rows, start, states, system, systems
 
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import acceleration_of

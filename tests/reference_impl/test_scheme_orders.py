@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import DAMPED, DRIVEN, EPS, FREE, TOP, rows, start
+from reference_cases import DAMPED, DRIVEN, EPS, FREE, TOP, rows, start
 
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.momentum import angular_momentum, linear_momentum

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases import TOP, rows, start, system
+from reference_cases import TOP, rows, start, system
 
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import acceleration_of
@@ -17,7 +17,13 @@ FREE = system([1.0, 2.0, 2.5])
 
 @pytest.mark.parametrize(
     ("steps", "every", "expected"),
-    [(0, 1, [0]), (4, 1, [0, 1, 2, 3, 4]), (10, 4, [0, 4, 8, 10]), (8, 4, [0, 4, 8]), (3, 9, [0, 3])],
+    [
+        (0, 1, [0]),
+        (4, 1, [0, 1, 2, 3, 4]),
+        (10, 4, [0, 4, 8, 10]),
+        (8, 4, [0, 4, 8]),
+        (3, 9, [0, 3]),
+    ],
 )
 def test_kept_steps(steps: int, every: int, expected: list[int]) -> None:
     assert kept_steps(steps, every) == expected

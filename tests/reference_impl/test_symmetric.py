@@ -5,7 +5,7 @@ from __future__ import annotations
 import mpmath as mp
 import numpy as np
 import pytest
-from cases import turned
+from reference_cases import turned
 
 from omegadot.reference_impl.symmetric import apply, inverse
 
@@ -13,7 +13,9 @@ from omegadot.reference_impl.symmetric import apply, inverse
 def _exact_inverse(matrix: np.ndarray) -> np.ndarray:
     with mp.workdps(60):
         exact = mp.matrix(matrix.astype(float).tolist()) ** -1
-        return np.array([[np.longdouble(mp.nstr(exact[i, j], 30)) for j in range(3)] for i in range(3)])
+        return np.array(
+            [[np.longdouble(mp.nstr(exact[i, j], 30)) for j in range(3)] for i in range(3)]
+        )
 
 
 @pytest.mark.parametrize("moments", [(1, 2, 2.5), (1e-6, 1, 1), (1e6, 1, 1e6), (3, 3, 3)])

@@ -181,18 +181,3 @@ class FallsAsleep(Wrong):
         return Trajectory(found.time, replace(found.state, angular_velocity=w))
 
 
-CAUGHT_BY: dict[type[Wrong], str] = {
-    SignAsPrinted: "equation",
-    NoGyroscopic: "equation",
-    GyroscopicSlightlyOff: "equation",
-    OmegaDotInWorld: "equation",
-    MassSlightlyOff: "model",
-    DiagonalInertia: "model",
-    TransposedAttitude: "model",
-    GravityUpwards: "equation",
-    SecretDamping: "trajectory",
-    StepSlightlyLong: "trajectory",
-    FirstSampleMissing: "trajectory",
-    LogsOneSampleLate: "trajectory",
-    EnergyCorrected: "trajectory",
-}

@@ -3,8 +3,8 @@
 Every function here is a quotient of theta series. With the nome q the series run in
 circular functions of ``z = π u / 2K``; with the complementary nome q1 (Jacobi's imaginary
 transformation, DLMF 20.7(viii)) in exponentials of ``v = π u / 2K'``. One of the two is short:
-either q is at most ``exp(-π/2) = 0.21`` or q1 at most ``exp(-2π) = 0.002``. The separatrix m1 = 0 is
-the plain limit ``q1 = 0`` of the second kind.
+either q is at most ``exp(-π/2) = 0.21`` or q1 at most ``exp(-2π) = 0.002``. The separatrix m1 = 0
+is the plain limit ``q1 = 0`` of the second kind.
 """
 
 from __future__ import annotations

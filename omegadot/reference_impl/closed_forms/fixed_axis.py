@@ -1,10 +1,113 @@
-"""Rotation about an axis that stays: damped and driven spin of a sphere or about a principal axis."""
+"""Spin about an axis that stays: driven and damped, of a sphere or about a principal axis."""
 
 from __future__ import annotations
 
-from omegadot.reference_impl.closed_forms.problem import Problem
-from omegadot.reference_impl.system import State, System
+from math import factorial
+
+import numpy as np
+
+from omegadot.reference_impl.closed_forms.digits import (
+    RESOLUTION,
+    ZERO,
+    Row,
+    apply,
+    cross,
+    dot,
+    doubles,
+    exact,
+    exact_matrix,
+    many_digits,
+)
+from omegadot.reference_impl.closed_forms.phase import Times, unit_circle
+from omegadot.reference_impl.closed_forms.problem import (
+    IDENTITY,
+    UPRIGHT,
+    Course,
+    Motion,
+    Problem,
+    inertia_about,
+    lever_of,
+    place,
+    product,
+)
+from omegadot.reference_impl.system import Array, State, System
 
 
 def fixed_axis_of(system: System, initial: State) -> Problem | None:
-    return None
+    """The spin about one axis, or None where the axis moves.
+
+    Angular velocity, applied torques and ``I n`` must all lie along one axis n, exactly, and
+    gravity must have no moment. Numbers: moment about n, torque along n, damping, speed about n,
+    n (3) in body axes, orientation (4).
+    """
+    body, load = system.body, system.load
+    with many_digits():
+        lever = lever_of(body, load)
+        if any(lever) and np.any(load.gravity):
+            return None
+        inertia = inertia_about(exact_matrix(body.inertia), exact(body.mass), lever)
+        orientation, omega = exact(initial.orientation), exact(initial.angular_velocity)
+        torque = exact(load.torque_body)
+        turned = _to_body(orientation, exact(load.torque_world))
+        torque = [a + b for a, b in zip(torque, turned, strict=True)]
+        axis = max(omega, torque, key=lambda v: dot(v, v))
+        size = dot(axis, axis).sqrt()
+        n = [x / size for x in axis] if size else IDENTITY[0]
+        along = apply(inertia, n) if size else n
+        if not all(_parallel(v, n) for v in (along, omega, torque, turned)):
+            return None
+        numbers = [dot(along, n), dot(torque, n), *exact(load.damping), dot(omega, n)]
+        return Problem("fixed axis", [*numbers, *n, *orientation], _solve)
+
+
+def _solve(numbers: Row) -> Motion:
+    with many_digits():
+        return place(_course(numbers[:4], numbers[4:7]), IDENTITY, UPRIGHT, numbers[7:])
+
+
+def _course(numbers: Row, axis: Row) -> Course:
+    """``I dω/dt = τ - d ω``, with ``x = d t / I``, ``φ_1 = (1 - e^-x)/x``, ``φ_2 = (1 - φ_1)/x``:
+
+    ω = ω_0 e^-x + (τ/I) t φ_1,  angle = ω_0 t φ_1 + (τ/I) t² φ_2.
+    """
+    inertia, torque, damping, speed = numbers
+    decay, drive, start = float(damping / inertia), float(torque / inertia), float(speed)
+    n = doubles(axis)[:, None]
+
+    def course(times: Times) -> tuple[Array, Array]:
+        t = times.value
+        x = decay * t
+        first, second = _phi(x)
+        omega = start * np.exp(-x) + drive * t * first
+        angle = t * (start * first + drive * t * second)
+        turns = angle / (4 * np.pi)
+        half = unit_circle(turns - np.rint(turns))
+        q = np.empty((4, t.size))
+        q[0] = half.real
+        q[1:] = n * half.imag
+        return n * omega, q
+
+    return course
+
+
+def _phi(x: Array) -> tuple[Array, Array]:
+    """``(1 - e^-x)/x`` and ``(1 - first)/x``; below 1 the second by its series Σ (-x)^k/(k+2)!."""
+    near = np.abs(x) < 1.0
+    safe = np.where(x == 0, 1.0, x)
+    first = np.where(x == 0, 1.0, -np.expm1(-safe) / safe)
+    series = np.zeros_like(x)
+    small = np.where(near, x, 0.0)
+    for k in range(17, -1, -1):  # 1/19! is below 1e-17
+        series = 1.0 / factorial(k + 2) - small * series
+    return first, np.where(near, series, (1.0 - first) / np.where(near, 1.0, safe))
+
+
+def _to_body(q: Row, v: Row) -> Row:
+    back = [q[0], -q[1], -q[2], -q[3]]
+    turned = product(product(back, [ZERO, *v]), q)
+    return [x / dot(q, q) for x in turned[1:]]
+
+
+def _parallel(v: Row, n: Row) -> bool:
+    off = cross(v, n)
+    return dot(off, off) <= RESOLUTION**2 * dot(v, v)

@@ -1,10 +1,113 @@
-"""Rotation about an axis that stays: damped and driven spin of a sphere or about a principal axis."""
+"""The heavy symmetric top of Lagrange: nutation, precession and spin.
+
+Nutation: Landau and Lifshitz, Mechanics, section 35, problem 1; Whittaker, A Treatise on the
+Analytical Dynamics of Particles and Rigid Bodies, section 71. Precession and spin are third-kind
+integrals; with the Cayley-Klein parameters of Klein and Sommerfeld (Über die Theorie des Kreisels)
+each of them is one theta quotient times an exponential of the time,
+
+    α ~ exp(iμt) θ1(z ± iη)/θ4(z),  |α|² = (1 + u)/2,
+    β ~ exp(iμt) θ2(z ± iη)/θ4(z),  |β|² = (1 - u)/2,
+    ω_1 + i ω_2 ~ exp(iμt) θ2(z ± iη)/θ4(z),  |ω_1 + i ω_2|² = strength (height - u),
+
+with an η and a μ of its own each. Nothing is divided by sin θ, so the top may pass through the
+vertical. The constants follow from the phases' derivatives, derived in
+``lagrange_factors.py``.
+"""
 
 from __future__ import annotations
 
-from omegadot.reference_impl.closed_forms.problem import Problem
-from omegadot.reference_impl.system import State, System
+import numpy as np
+
+from omegadot.reference_impl.closed_forms.digits import (
+    RESOLUTION,
+    Row,
+    apply,
+    exact,
+    exact_matrix,
+    many_digits,
+)
+from omegadot.reference_impl.closed_forms.elliptic import Clock
+from omegadot.reference_impl.closed_forms.free_rotation import uniform
+from omegadot.reference_impl.closed_forms.lagrange_constants import (
+    Nutation,
+    Top,
+    nutation_of,
+    top_of,
+    triad,
+)
+from omegadot.reference_impl.closed_forms.lagrange_factors import factors_of
+from omegadot.reference_impl.closed_forms.lagrange_phases import phases_of
+from omegadot.reference_impl.closed_forms.phase import Times
+from omegadot.reference_impl.closed_forms.problem import (
+    IDENTITY,
+    UNITS,
+    UPRIGHT,
+    Course,
+    Motion,
+    Placed,
+    Problem,
+    inertia_about,
+    lever_of,
+    place,
+    product,
+)
+from omegadot.reference_impl.system import Array, State, System
 
 
 def lagrange_top_of(system: System, initial: State) -> Problem | None:
-    return None
+    """The system as a Lagrange top, or None where it is none.
+
+    The lever from the pivot to the centre of mass must be an axis of symmetry of the inertia about
+    the pivot, as the given numbers stand; a tensor that is symmetric up to rounding only is not.
+    Numbers: transverse and axial moment about the pivot, mass, lever (3), gravity (3), angular
+    velocity (3), orientation (4).
+    """
+    body, load = system.body, system.load
+    torques = np.any(load.torque_body) or np.any(load.torque_world)
+    if load.pivot is None or torques or np.any(load.damping):
+        return None
+    with many_digits():
+        lever, mass = lever_of(body, load), exact(body.mass)
+        if not any(lever) or not np.any(load.gravity):
+            return None
+        about = inertia_about(exact_matrix(body.inertia), mass, lever)
+        axes = triad(lever)
+        rows = [apply(axes, row) for row in zip(*[apply(about, x) for x in axes], strict=True)]
+        transverse, axial = rows[0][0], rows[2][2]
+        off = [rows[0][1], rows[1][0], rows[0][2], rows[1][2], rows[2][0], rows[2][1]]
+        off.append(rows[1][1] - transverse)
+        if max(abs(x) for x in off) > RESOLUTION * transverse:
+            return None
+        numbers = [transverse, axial, *mass, *lever, *exact(load.gravity)]
+        numbers += exact(initial.angular_velocity) + exact(initial.orientation)
+    return Problem("Lagrange top", numbers, _solve)
+
+
+def _solve(numbers: Row) -> Motion:
+    with many_digits():
+        top = top_of(numbers[2:], numbers[0], numbers[1])
+        nutation = nutation_of(top)
+        if nutation is None:
+            return place(uniform(numbers[9:12]), IDENTITY, UPRIGHT, numbers[12:16])
+        rows = [product(product(top.world, unit), top.body) for unit in UNITS]
+        return Placed(_course(top, nutation), np.array(top.axes, float), np.array(rows, float))
+
+
+def _course(top: Top, n: Nutation) -> Course:
+    clock = Clock.of(n.modulus, n.rate, n.start)
+    courses = [factor.course() for factor in factors_of(top, n)]
+    phases = phases_of(top, n, clock, courses)
+    spin = float(top.spin)
+
+    def course(times: Times) -> tuple[Array, Array]:
+        frame = clock.read(times)
+        alpha, beta, across = (
+            phase * factor(times, frame) for phase, factor in zip(phases, courses, strict=True)
+        )
+        w = np.empty((3, times.value.size))
+        w[0], w[1], w[2] = across.real, across.imag, spin
+        q = np.array([alpha.real, beta.real, beta.imag, alpha.imag])
+        q /= np.sqrt(np.add.reduce(q * q, 0))
+        return w, q
+
+    return course

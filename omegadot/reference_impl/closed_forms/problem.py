@@ -68,11 +68,11 @@ def place(course: Course, turning: Matrix, frame: Row, orientation: Row) -> Plac
     body = product(exact(q), frame)
     start = [x / dot(orientation, orientation).sqrt() for x in orientation]
     world = product(start, [body[0], -body[1], -body[2], -body[3]])
-    rows = [product(product(world, unit), frame) for unit in _UNITS]
+    rows = [product(product(world, unit), frame) for unit in UNITS]
     return Placed(course, np.array(turning, float), np.array(rows, float))
 
 
-_UNITS: Matrix = [[ONE if i == j else ZERO for j in range(4)] for i in range(4)]
+UNITS: Matrix = [[ONE if i == j else ZERO for j in range(4)] for i in range(4)]
 IDENTITY: Matrix = [[ONE if i == j else ZERO for j in range(3)] for i in range(3)]
 UPRIGHT: Row = [ONE, ZERO, ZERO, ZERO]
 

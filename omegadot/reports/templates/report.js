@@ -12,8 +12,9 @@
     const text = atob(element(id).textContent.trim());
     const bytes = new Uint8Array(text.length);
     for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-    return new Response(stream);
+    const gzip = new DecompressionStream("gzip"), writer = gzip.writable.getWriter();
+    writer.write(bytes).then(() => writer.close());
+    return new Response(gzip.readable);
   }
 
   // High bytes first, low bytes after, differences modulo 65536.

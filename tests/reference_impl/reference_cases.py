@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
+from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import exp_quaternion, normalize, rotation_matrix
 from omegadot.reference_impl.system import Array, Body, Load, State, System
@@ -48,7 +49,9 @@ def states(draw: st.DrawFn) -> State:
     return State(draw(quaternions), draw(vectors), draw(vectors), draw(vectors))
 
 
-def system(inertia: object, mass: float = 1.0, center: object = (0, 0, 0), **load: object) -> System:
+def system(
+    inertia: object, mass: float = 1.0, center: object = (0, 0, 0), **load: object
+) -> System:
     """A system from plain numbers."""
     tensor = np.array(inertia, float)
     body = Body(
@@ -104,3 +107,22 @@ def rows(state: State, index: object) -> State:
         state.position[index],
         state.linear_velocity[index],
     )
+
+
+COUNT = 10
+
+
+def cloud(seed: int, pivot: Array | None) -> tuple[System, Array, Array]:
+    """A body of point masses: the system, the masses, and their places from the centre of mass."""
+    rng = np.random.default_rng(seed)
+    masses, points = rng.uniform(0.2, 2.0, COUNT), rng.normal(size=(COUNT, 3))
+    center = masses @ points / masses.sum()
+    r = points - center
+    r_x = skew(r)
+    inertia = np.einsum("n,nji,njk->ik", masses, r_x, r_x)
+    body = Body(masses.sum(), center, inertia)
+    return System((body,), Load(gravity=rng.normal(size=3), pivot=pivot)), masses, r
+
+
+pivots = st.one_of(st.none(), vectors)
+seeds = st.integers(0, 1000)

@@ -71,15 +71,29 @@ class TaylorSeries:
     def _gravity(self, p: dict[tuple[int, int], mp.mpf]) -> Vector:
         """``r × R^T m g`` from the products of the quaternion's components."""
         rotation = [
-            [p[0, 0] + p[1, 1] - p[2, 2] - p[3, 3], 2 * (p[1, 2] - p[0, 3]), 2 * (p[1, 3] + p[0, 2])],
-            [2 * (p[1, 2] + p[0, 3]), p[0, 0] - p[1, 1] + p[2, 2] - p[3, 3], 2 * (p[2, 3] - p[0, 1])],
-            [2 * (p[1, 3] - p[0, 2]), 2 * (p[2, 3] + p[0, 1]), p[0, 0] - p[1, 1] - p[2, 2] + p[3, 3]],
+            [
+                p[0, 0] + p[1, 1] - p[2, 2] - p[3, 3],
+                2 * (p[1, 2] - p[0, 3]),
+                2 * (p[1, 3] + p[0, 2]),
+            ],
+            [
+                2 * (p[1, 2] + p[0, 3]),
+                p[0, 0] - p[1, 1] + p[2, 2] - p[3, 3],
+                2 * (p[2, 3] - p[0, 1]),
+            ],
+            [
+                2 * (p[1, 3] - p[0, 2]),
+                2 * (p[2, 3] + p[0, 1]),
+                p[0, 0] - p[1, 1] - p[2, 2] + p[3, 3],
+            ],
         ]
         g = [mp.fdot((rotation[j][i], self.weight[j]) for j in range(3)) for i in range(3)]
         r = self.lever
         return [r[i - 2] * g[i - 1] - r[i - 1] * g[i - 2] for i in range(3)]
 
-    def states(self, q: Sequence[float], w: Sequence[float], times: Sequence[float]) -> list[Vector]:
+    def states(
+        self, q: Sequence[float], w: Sequence[float], times: Sequence[float]
+    ) -> list[Vector]:
         """(q, ω) at the times, in their order from zero, each as seven numbers.
 
         The order is that of the working precision; the step is where the last terms fall below it.

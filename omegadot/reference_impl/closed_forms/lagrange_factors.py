@@ -1,0 +1,110 @@
+"""Attitude and angular velocity of a Lagrange top, factor by factor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from decimal import Decimal
+
+import numpy as np
+
+from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, pi
+from omegadot.reference_impl.closed_forms.lagrange_constants import Nutation, Top
+from omegadot.reference_impl.closed_forms.phase import Phase, Times, unit_circle
+from omegadot.reference_impl.closed_forms.shifted_theta import ShiftedTheta
+from omegadot.reference_impl.closed_forms.shifted_theta_single import (
+    theta1_quotient,
+    theta2_quotient,
+)
+from omegadot.reference_impl.closed_forms.theta import Frame
+from omegadot.reference_impl.system import Array
+
+
+@dataclass(frozen=True)
+class Factor:
+    """One of α, β and ω_1 + i ω_2: ``scale exp(i rate t) Θ`` with Θ or Θ* as opposite says."""
+
+    theta: ShiftedTheta
+    rate: Decimal
+    scale: Decimal
+    opposite: bool
+
+    def mean_rate(self, nutation: Nutation) -> Decimal:
+        """Mean rate of its argument, rad/s."""
+        sign = -1 if self.opposite else 1
+        return self.rate - sign * nutation.rate * self.theta.winding
+
+    def course(self) -> Callable[[Times, Frame], Array]:
+        """The factor as a function of time, up to a constant phase."""
+        angle = Phase.of(self.rate / (2 * pi()), ZERO)
+        skew = -self.theta.skew if self.opposite else self.theta.skew
+        scale = float(self.scale)
+
+        def value(times: Times, frame: Frame) -> Array:
+            turns = angle.reduced(times)[1]
+            turns += skew * frame.turn
+            spin = unit_circle(turns)
+            theta = self.theta.value(frame)
+            spin *= theta if self.opposite else np.conjugate(theta, out=theta)
+            spin *= scale
+            return spin
+
+        return value
+
+
+def factors_of(top: Top, n: Nutation) -> tuple[Factor, Factor, Factor]:
+    """α, β and ω_1 + i ω_2.
+
+    With ``φ̇ = (b - a u)/(1 - u²)`` and ``ψ̇ = ω_3 - u φ̇`` the arguments change by
+
+        α: (φ̇ + ψ̇)/2 = (ω_3 - a)/2 + (a + b) / 2(1 + u)
+        β: (φ̇ - ψ̇)/2 = -(ω_3 - a)/2 + (b - a) / 2(1 - u)
+        ω_1 + i ω_2:    -(ω_3 - a) - a/2 + (a height - b) / 2(height - u)
+
+    the last from Euler's equations, ``d(ω_1 + iω_2)/dt = -i(ω_3 - a)(ω_1 + iω_2) - i(m g l/I_1)
+    (v_1 + iv_2)`` with the vertical v in body axes. For each, ``u̇² = -k²`` where its denominator
+    vanishes, k being the numerator.
+    """
+    u1, u2, u3 = n.roots
+    rest = top.spin - n.a
+    depth = n.modulus.argument(
+        ((u3 - u1) / (ONE + u3)).sqrt(), (ONE + u1) / (ONE + u3), (ONE + u2) / (ONE + u3)
+    )
+    alpha = _factor(
+        n, theta1_quotient(n.modulus, depth), rest / 2, n.a + n.b, ONE + u2, (ONE + u2) / 2
+    )
+    beta = _factor(n, _theta2(n, ONE), -rest / 2, n.b - n.a, ONE - u1, (ONE - u1) / 2)
+    across = _factor(
+        n,
+        _theta2(n, n.height),
+        -rest - n.a / 2,
+        n.a * n.height - n.b,
+        n.height - u1,
+        n.strength * (n.height - u1),
+    )
+    return alpha, beta, across
+
+
+def _theta2(n: Nutation, top: Decimal) -> ShiftedTheta:
+    """The theta quotient whose square is ``(top - u)/(top - u_1)``, u_2 <= top <= u_3."""
+    u1, u2, u3 = n.roots
+    if u3 == u2:
+        return theta2_quotient(n.modulus, n.modulus.complementary)
+    above, below = max(u3 - top, ZERO), max(top - u2, ZERO)
+    depth = n.modulus.argument(
+        (above / (u3 - u2)).sqrt(), below / (u3 - u2), (top - u1) / (u3 - u1)
+    )
+    return theta2_quotient(n.modulus, depth)
+
+
+def _factor(
+    n: Nutation, theta: ShiftedTheta, base: Decimal, k: Decimal, there: Decimal, square: Decimal
+) -> Factor:
+    """The factor whose argument changes by ``base + k / 2D``, D being ``there`` at the reference.
+
+    ``k / 2D`` has the residues ``∓ sign(k) i/2`` of ``- sign(k) d arg Θ/dt`` at the two zeros of D,
+    so the two differ by a constant, found at the reference, u = 0 or K, where the slope is known.
+    """
+    sign = -1 if k < 0 else 1
+    rate = base + k / (2 * there) + sign * n.rate * (theta.slope - theta.gain)
+    return Factor(theta, rate, square.sqrt(), k < 0)

@@ -1,0 +1,157 @@
+"""The summary shows the worst, and says no more than the record holds."""
+
+from dataclasses import replace
+
+import pytest
+from synthetic_record import INTEGRATORS, build, metric, task, with_metrics
+
+from omegadot.reports import Record, summarise
+from omegadot.reports.headline import headline, remarks
+from omegadot.reports.schema import METRICS, OUTCOMES, TRAJECTORIES, empty
+from omegadot.reports.summary import STATUSES, task_status, worst
+
+
+def cell(record, scenario, engine):
+    summary = summarise(record)
+    (column,) = [c for c in summary.columns if c.label == engine]
+    return summary.cells[scenario, column]
+
+
+def change(record, place, **more):
+    tasks = [dict(entry) for entry in record.run["tasks"]]
+    tasks[place].update(more)
+    return replace(record, run={**record.run, "tasks": tasks})
+
+
+def first_of(record, engine):
+    return next(k for k, entry in enumerate(record.run["tasks"]) if entry["engine"] == engine)
+
+
+def test_every_gate_holding_is_a_pass(record):
+    found = cell(record, "sphere", "mujoco")
+    assert found.status == "pass"
+    assert found.runs == {"pass": 6}
+
+
+@pytest.mark.parametrize("outcome", [word for word in OUTCOMES if word != "ok"])
+def test_a_skip_is_never_a_pass(record, outcome):
+    changed = change(record, first_of(record, "dart"), outcome=outcome, reason="because", gates={})
+    found = cell(changed, "sphere", "dart")
+    assert found.status == outcome
+    assert found.runs == {outcome: 1, "pass": 2}
+    (missing,) = summarise(changed).missing
+    assert (missing.engine, missing.status, missing.reason) == ("dart", outcome, "because")
+    assert missing.scenarios == ("sphere",)
+
+
+def test_the_worst_status_is_shown(record):
+    place = first_of(record, "dart")
+    declared = change(record, place, gates={"equation": "declared", "model": "pass"})
+    assert cell(declared, "sphere", "dart").status == "declared"
+    skipped = change(declared, place + 1, outcome="unsupported", gates={})
+    assert cell(skipped, "sphere", "dart").status == "unsupported"
+    failed = change(skipped, place + 2, gates={"equation": "fail"})
+    assert cell(failed, "sphere", "dart").status == "fail"
+
+
+def test_the_order_of_statuses():
+    assert worst(["pass", "declared"]) == "declared"
+    assert worst(["declared", "unsupported"]) == "unsupported"
+    assert worst(["crashed", "fail"]) == "fail"
+    assert worst([]) == "absent"
+    assert set(OUTCOMES) - {"ok"} <= set(STATUSES)
+
+
+def test_a_run_that_nobody_judged_is_not_a_pass():
+    measured = task("s", "e", "i", 0.1, gates={"cost": "info"})
+    assert task_status(measured) == "not-judged"
+    assert task_status(task("s", "e", "i", 0.1, gates={})) == "not-judged"
+    assert task_status(task("s", "e", "i", 0.1, gates={"a": "fail"}, outcome="diverged")) == "fail"
+
+
+def test_a_failing_row_counts_though_its_task_says_pass(record):
+    row = metric("sphere", "dart", None, None, "model", "model", "mass", 1.0, verdict="fail")
+    assert cell(with_metrics(record, row), "sphere", "dart").status == "fail"
+
+
+def test_numbers_name_the_run_they_come_from(record):
+    found = cell(record, "spun-again", "mujoco")
+    assert found.residual.value == 6.2e-15
+    # Each integrator at its finest step, 0.005 s: first and fourth order.
+    assert (found.drift.worst.integrator, found.drift.worst.timestep) == ("Euler", 0.005)
+    assert found.drift.worst.value == 0.005
+    assert (found.drift.best.integrator, found.drift.best.value) == ("RK4", 0.005**4)
+    assert found.attitude.worst.unit == "rad"
+
+
+def test_the_finest_step_counts_and_its_largest_value(record):
+    add = ["sphere", "dart", "semi-implicit", 0.005, "invariants", "angular_momentum"]
+    more = with_metrics(record, metric(*add, "drift_quarter", 0.7), metric(*add, "other", 9.0))
+    assert cell(more, "sphere", "dart").drift.worst.value == 0.7
+
+
+def test_what_is_not_a_number_is_the_largest(record):
+    row = ["sphere", "dart", "semi-implicit", 0.005, "equation", "omega_dot", "residual_on_path"]
+    found = cell(with_metrics(record, metric(*row, float("nan"))), "sphere", "dart")
+    assert found.residual.metric == "residual_on_path"
+
+
+def test_versions_and_setups_are_columns_of_their_own(record):
+    tasks = [
+        *record.run["tasks"],
+        task("sphere", "dart", "semi-implicit", 0.01, engine_version="2.0"),
+        task("sphere", "mujoco", "Euler", 0.01, setup="as-shipped"),
+    ]
+    summary = summarise(replace(record, run={**record.run, "tasks": tasks}))
+    labels = [column.label for column in summary.columns]
+    assert labels == ["reference", "mujoco", "dart 1.0", "dart 2.0", "mujoco as-shipped"]
+    assert summary.cells["spun-again", summary.columns[3]].status == "absent"
+
+
+def test_an_engine_that_is_not_installed_is_named(record):
+    drake = {"name": "drake", "installed": False, "reason": "no module named pydrake"}
+    run = {**record.run, "engines": [*record.run["engines"], drake]}
+    (missing,) = summarise(replace(record, run=run)).missing
+    assert (missing.engine, missing.status, missing.runs) == ("drake", "not-installed", 0)
+
+
+def test_the_headline_of_a_sound_run(record):
+    said = headline(summarise(record))
+    assert said.startswith("Both engines agree with the Newton–Euler equations")
+    assert "6.2e-15 (mujoco on spun-again)" in said
+    (spread,) = remarks(summarise(record))
+    assert "spun-again" in spread
+    assert "1.5e-9 rad (mujoco RK4" in spread
+
+
+def test_the_headline_of_a_failing_run(record):
+    failed = change(record, first_of(record, "dart"), gates={"equation": "fail"})
+    said = headline(summarise(failed))
+    assert said == "1 of 2 engines fails a gate: dart, on sphere."
+
+
+def test_a_failing_yardstick_is_not_hidden(record):
+    failed = change(record, first_of(record, "reference"), gates={"equation": "fail"})
+    assert "reference" in headline(summarise(failed))
+
+
+def test_an_engine_without_a_verdict_does_not_agree(record):
+    crashed = record
+    for place, entry in enumerate(record.run["tasks"]):
+        if entry["engine"] == "dart":
+            crashed = change(crashed, place, outcome="crashed", gates={})
+    said = headline(summarise(crashed))
+    assert said.startswith("mujoco (of 2 engines) agrees")
+    assert "6 of 30 runs gave no verdict; the reasons are below." in remarks(summarise(crashed))
+
+
+def test_a_partial_and_an_empty_record():
+    run = {"schema": 1, "complete": False, "engines": [], "scenarios": [], "tasks": []}
+    summary = summarise(Record(run, empty(METRICS), empty(TRAJECTORIES)))
+    assert headline(summary).startswith("No verdict")
+    assert remarks(summary) == ["Partial record: the run was cut short."]
+
+
+def test_yardsticks_alone_speak_for_themselves():
+    alone = build(engines={"reference": INTEGRATORS["reference"]})
+    assert headline(summarise(alone)).startswith("reference agrees")

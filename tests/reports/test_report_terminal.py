@@ -1,0 +1,75 @@
+"""The terminal's table: whole where there is room, honest where there is none."""
+
+import io
+from dataclasses import replace
+
+import pytest
+from rich.console import Console
+from synthetic_record import INTEGRATORS, build
+
+from omegadot.reports import print_summary
+
+FIVE = dict.fromkeys(("reference", "mujoco", "pinocchio", "dart", "drake"), INTEGRATORS["mujoco"])
+NAMES = ("sleeping-top-unstable", "sphere")
+
+
+def printed(record, width, encoding="utf-8"):
+    raw = io.BytesIO()
+    file = io.TextIOWrapper(raw, encoding=encoding)
+    print_summary(record, Console(file=file, width=width))
+    file.flush()
+    return raw.getvalue().decode(encoding)
+
+
+def row(text, name):
+    return next(line for line in text.splitlines() if line.startswith(name))
+
+
+@pytest.mark.parametrize(("engines", "width"), [(4, 100), (5, 120)])
+def test_all_three_numbers_fit(engines, width):
+    some = dict(list(FIVE.items())[:engines])
+    text = printed(build(NAMES, engines=some), width)
+    assert row(text, "sphere").count("✓ 6e-15 5e-3 1e-2") == engines
+    assert max(map(len, text.splitlines())) <= width
+
+
+@pytest.mark.parametrize("width", [45, 60, 80, 100])
+def test_verdicts_survive_a_narrow_terminal(width):
+    text = printed(build(NAMES, engines=FIVE), width)
+    assert row(text, "sphere").count("✓") == 5
+    assert max(map(len, text.splitlines())) <= width
+
+
+def test_piped_output_is_plain_and_whole(capsys, record):
+    print_summary(record)
+    text = capsys.readouterr().out
+    assert "\x1b" not in text
+    assert row(text, "sphere").count("3e-15") == 3
+    assert "30 runs: 30 pass" in text
+    assert "Both engines agree" in text
+
+
+def test_an_encoding_without_signs(record):
+    tasks = [dict(entry) for entry in record.run["tasks"]]
+    tasks[0]["gates"] = {"model": "fail"}
+    text = printed(replace(record, run={**record.run, "tasks": tasks}), 120, "latin-1")
+    assert "ok 3e-15" in text
+    assert "FAIL 3e-15" in text
+
+
+def test_what_did_not_run_is_a_word_and_a_reason(record):
+    tasks = [dict(entry) for entry in record.run["tasks"]]
+    tasks[-1].update(outcome="crashed", reason="signal 9 [bold]", gates={})
+    drake = {"name": "drake", "installed": False, "reason": "no pydrake"}
+    run = {**record.run, "tasks": tasks, "engines": [*record.run["engines"], drake]}
+    text = printed(replace(record, run=run), 160)
+    assert "crashed 2/3" in row(text, "spun-again")
+    assert "dart: crashed, 1 run on spun-again: signal 9 [bold]" in text
+    assert "drake: not-installed: no pydrake" in text
+    assert "1 crashed" in text
+
+
+def test_an_empty_record_says_so(record):
+    run = {**record.run, "tasks": [], "scenarios": [], "engines": []}
+    text = printed(replace(record, run=run, metrics=record.metrics.clear()), 80)
+    assert "No run was made." in text
