@@ -17,8 +17,8 @@ from omegadot.reference_impl.system import Acceleration, Array, Body, State, Sys
 
 SEMI_IMPLICIT = Integrator(
     "semi-implicit",
-    "semi-implicit-euler",
-    dict(SCHEMES["semi-implicit-euler"].orders),
+    "semi-implicit-euler-short-turns",
+    dict(SCHEMES["semi-implicit-euler-short-turns"].orders),
     note="World.step",
     steps_origin=True,
 )

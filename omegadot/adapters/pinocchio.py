@@ -37,6 +37,16 @@ LINKS = (
     "https://gepettoweb.laas.fr/doc/stack-of-tasks/pinocchio/master/doxygen-html/",
 )
 
+# The reference's other schemes tell what some engine's stepper does; nobody would loop them here.
+LOOPED = (
+    "semi-implicit-euler",
+    "linearly-implicit-euler",
+    "rk4-quaternion",
+    "lie-rk4",
+    "lie-rk4-naive",
+    "implicit-midpoint",
+)
+
 
 def _integrator(scheme: Scheme) -> Integrator:
     return Integrator(PREFIX + scheme.name, scheme.name, dict(scheme.orders), note=NOTE)
@@ -72,7 +82,7 @@ class PinocchioAdapter:
         return Description(
             name="pinocchio",
             version=str(self._engine.__version__),
-            integrators=tuple(_integrator(scheme) for scheme in SCHEMES.values()),
+            integrators=tuple(_integrator(SCHEMES[name]) for name in LOOPED),
             conventions=CONVENTIONS,
             features=FEATURES,
             licence="BSD-2-Clause",
@@ -102,13 +112,14 @@ class PinocchioAdapter:
         joint = self._loaded()
         if states.angular_velocity.ndim == 1 == states.orientation.ndim:
             return Acceleration(*joint.forward(states))
-        rows = _rows(states)
+        lead = states.angular_velocity.shape[:-1]
+        alike = len(lead) == 1 and all(f.shape[:-1] == lead for f in vars(states).values())
+        rows = states if alike else _rows(states)
         answers = np.empty((2, *rows.angular_velocity.shape))
         for n in range(answers.shape[1]):
             answers[:, n] = joint.forward(_row(rows, n))
-        lead = np.broadcast_shapes(
-            states.orientation.shape[:-1], states.angular_velocity.shape[:-1]
-        )
+        if not alike:
+            lead = np.broadcast_shapes(states.orientation.shape[:-1], lead)
         angular, linear = answers.reshape(2, *lead, 3)
         return Acceleration(angular, linear)
 

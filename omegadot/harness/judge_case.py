@@ -76,10 +76,10 @@ def _is_finite(state: State) -> bool:
 
 def _why(findings: dict[str, Finding]) -> str:
     """One reason for the whole run: the least favourable among its channels."""
-    order = ["unexplained", "unresolved", "consistent", "explained", "round-off"]
+    order = ["unexplained", "unresolved", "beyond", "consistent", "explained", "round-off"]
     channel = min(findings, key=lambda c: order.index(findings[c].kind))
     finding = findings[channel]
-    alone = finding.kind in ("explained", "round-off")
+    alone = finding.kind in ("explained", "round-off", "beyond")
     return finding.note if alone else f"{channel}: {finding.note}"
 
 

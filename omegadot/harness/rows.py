@@ -22,17 +22,9 @@ class Row:
     note: str = ""
 
 
-def judged(row: Row, holds: bool, note: str = "") -> Row:
-    """The same row with the verdict pass or fail."""
-    verdict = "pass" if holds else "fail"
-    return Row(
-        row.gate, row.channel, row.metric, row.value, row.unit, row.bound, verdict, note or row.note
-    )
-
-
 def within(gate: str, channel: str, metric: str, value: float, unit: str, bound: float) -> Row:
     """A row that passes where the value is at most its bound; NaN fails."""
-    return judged(Row(gate, channel, metric, value, unit, bound), value <= bound)
+    return Row(gate, channel, metric, value, unit, bound, "pass" if value <= bound else "fail")
 
 
 def worst(verdicts: Iterable[str]) -> str | None:

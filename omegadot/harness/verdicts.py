@@ -23,7 +23,8 @@ ORDER_TOLERANCE = 0.15
 class Finding:
     """One channel of one run, judged.
 
-    kind: "round-off", "explained", "consistent", "unresolved" or "unexplained".
+    kind: "round-off", "explained", "consistent", "beyond" (there is nothing to judge by),
+    "unresolved" or "unexplained".
     note: the reason in words.
     """
 
@@ -31,9 +32,11 @@ class Finding:
     note: str
 
     @property
-    def holds(self) -> bool:
-        """Whether the error may stand."""
-        return self.kind in ("round-off", "explained", "consistent")
+    def verdict(self) -> str:
+        """Whether the error may stand: pass, fail, or info where that cannot be said."""
+        if self.kind == "beyond":
+            return "info"
+        return "pass" if self.kind in ("round-off", "explained", "consistent") else "fail"
 
 
 @dataclass(frozen=True)
@@ -84,11 +87,16 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
     """
     if not np.all(np.isfinite(evidence.error)):
         return Finding("unexplained", "not finite")
-    if np.all(evidence.error <= evidence.round_off):
+    # From where the scheme itself blows up there is no bound, and nothing to be held against.
+    bounded = np.isfinite(evidence.round_off)
+    if not bounded[1:].any():
+        return Finding("beyond", "not judged: the scheme itself blows up at so large a step")
+    if np.all(evidence.error <= evidence.round_off) and bounded.all():
         return Finding("round-off", "within round-off")
     if evidence.left is not None and np.all(evidence.left <= evidence.round_off):
-        largest = float(np.max(evidence.left))
-        return Finding("explained", f"explained by {scheme}, to {largest:.1e}")
+        largest = float(np.max(evidence.left[bounded]))
+        until = "" if bounded.all() else ", until the scheme blows up"
+        return Finding("explained", f"explained by {scheme}, to {largest:.1e}{until}")
     if declared is None:
         return Finding("unexplained", "declared conserved, and it drifts")
     return _by_order(evidence.orders, declared)

@@ -25,7 +25,10 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian
 from omegadot.reference_impl.system import Array, State, System
 
-MOST_STARTS = 256  # instants s that the supremum is taken over, spread over the samples
+MOST_STARTS = 64  # instants s that the supremum is taken over, spread over the samples
+# a tenth of a radian a step: Runge-Kutta is then good to 1e-5, plenty for a bound
+STEPS_A_RADIAN = 10
+MOST_STEPS = 4096  # between two samples
 EPS = float(np.finfo(float).eps)
 
 
@@ -51,11 +54,16 @@ def growth_along(system: System, times: Array, states: State, rate: float) -> Ar
     times: (n,) s.  states: (n,), a trajectory at these times, such as an engine's or the truth.
     From each sample twelve neighbours move to the next by Runge-Kutta steps; the maps between
     samples, each well conditioned, are then multiplied up, so that the growth may be as large as
-    it will. Infinite from the first state on that is not finite.
+    it will. Infinite from the first state on that is not finite, or turns so far to the next sample
+    that its neighbours cannot be followed there in MOST_STEPS: a course that has blown up.
     """
     w = states.angular_velocity
     finite = np.all(np.isfinite(w), axis=-1) & np.all(np.isfinite(states.orientation), axis=-1)
-    count = len(times) if np.all(finite) else int(np.argmin(finite))
+    with np.errstate(over="ignore", invalid="ignore"):
+        spans = np.abs(np.diff(times, append=times[-1]))
+        turns = spans * np.max(np.abs(w), axis=-1)
+        followed = finite & (STEPS_A_RADIAN * turns <= MOST_STEPS)
+    count = len(times) if np.all(followed) else int(np.argmin(followed))
     maps = _maps_between(system, np.asarray(times)[:count], states, rate)
     starts = _starts(count)
     found = np.full(len(times), np.inf)
@@ -86,8 +94,8 @@ def _maps_between(system: System, times: Array, states: State, rate: float) -> A
         np.sqrt(np.max(np.abs(here.angular), axis=-1)),
         np.max(np.abs(jacobian), axis=(-1, -2)),
     )
-    # a tenth of a radian a step: Runge-Kutta is then good to 1e-5, plenty for a bound
-    steps = int(np.ceil(10 * np.max(np.abs(spans) * np.maximum.reduce(rates), initial=0.1)))
+    fastest = STEPS_A_RADIAN * np.max(np.abs(spans) * np.maximum.reduce(rates), initial=0.1)
+    steps = int(np.ceil(min(fastest, MOST_STEPS)))
     spans_of_lanes = np.broadcast_to(spans[:, None], (len(spans), 12))
     for _ in range(steps):
         lanes = SCHEMES["lie-rk4"].step(acceleration, lanes, spans_of_lanes / steps)

@@ -57,7 +57,8 @@ def chart_courses(record: Record) -> dict[str, Chart]:
     names = samples.get_column("scenario")
     starts = np.flatnonzero((names != names.shift(1)).fill_null(value=True).to_numpy())
     systems = {entry["name"]: entry.get("system") for entry in record.run["scenarios"]}
-    for start, stop in zip(starts, [*starts[1:], len(samples)], strict=True):
+    stops = [*starts[1:], len(samples)][: len(starts)]  # no run but the truth: none of either
+    for start, stop in zip(starts, stops, strict=True):
         name = names[int(start)]
         if systems.get(name):
             part = samples[int(start) : int(stop)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import polars as pl
@@ -27,6 +28,7 @@ CHANNEL_NAMES = {
 }
 # One value an engine, whatever it is stepped with; the others are one value a run.
 ENGINE_GATES = ("model", "equation")
+_PLAIN_NUMBERS = ("scheme", "cost")
 
 
 @dataclass(frozen=True)
@@ -58,9 +60,11 @@ class Table:
 EMPTY = Value("")
 
 
-def unit_text(unit: str) -> str:
-    """How a unit stands behind a column's name."""
-    return "relative" if unit == "1" else unit
+def unit_text(unit: str, gate: str = "") -> str:
+    """How a unit stands behind a name: a pure number is a relative error, or an order or factor."""
+    if unit == "1":
+        return "" if gate in _PLAIN_NUMBERS else "relative"
+    return unit
 
 
 def engine_table(metrics: pl.DataFrame) -> Table:
@@ -84,7 +88,7 @@ def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]]) -> Tabl
         found = values.pop(names, blank)
         rows.append(Row(names, (Value(status, mark), *found, Value(reason))))
     rows += [Row(names, (EMPTY, *found, EMPTY)) for names, found in values.items()]
-    groups = (("", 1), *table.groups, ("", 1))
+    groups = (("outcome", 1), *table.groups, ("reason", 1))
     return Table(("engine", "run"), groups, ("verdict", *table.columns, "why"), tuple(rows))
 
 
@@ -112,6 +116,7 @@ def _engine_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
     return (" ".join(filter(None, (engine, version, "" if setup == "physics" else setup))),)
 
 
+@lru_cache(maxsize=4096)
 def _run_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
     engine, _, setup, integrator, timestep, accuracy = key
     name = engine if setup in ("physics", None) else f"{engine} {setup}"
@@ -143,9 +148,13 @@ def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any) -> Table:
     return Table(
         ("engine",),
         tuple(groups),
-        tuple(f"{metric.replace('_', ' ')}, {unit_text(unit)}" for _, _, metric, unit in columns),
+        tuple(_column_name(*column) for column in columns),
         tuple(Row(names, tuple(line)) for names, line in rows.items()),
     )
+
+
+def _column_name(gate: str, _channel: str, metric: str, unit: str) -> str:
+    return ", ".join(filter(None, (metric.replace("_", " "), unit_text(unit, gate))))
 
 
 def _value(value: float | None, bound: float | None, verdict: str) -> Value:

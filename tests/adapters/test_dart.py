@@ -21,7 +21,7 @@ from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 CENTRED = np.zeros(3)
-SCHEME = SCHEMES["semi-implicit-euler"]
+SCHEME = SCHEMES["semi-implicit-euler-short-turns"]
 T_HANDLE = System((Body(np.array(1.0), np.zeros(3), np.diag([1.0, 2.0, 3.0])),))
 WHOLE = np.array([1.0, 0.0, 0.0, 0.0])
 

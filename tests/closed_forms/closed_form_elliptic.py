@@ -54,7 +54,7 @@ def free_rotation(
     square = mp.fsum((i * x) ** 2 for i, x in zip(moments, w, strict=True))
     a, b, c = (0, 1, 2) if square > twice_t * moments[1] else (2, 1, 0)
     ia, ib, ic = moments[a], moments[b], moments[c]
-    size_a = mp.sign(w[a]) * mp.sqrt((twice_t * ic - square) / (ia * (ic - ia)))
+    size_a = (mp.sign(w[a]) or 1) * mp.sqrt((twice_t * ic - square) / (ia * (ic - ia)))
     size_b = mp.sqrt((twice_t * ic - square) / (ib * (ic - ib)))
     size_c = mp.sign(w[c]) * mp.sqrt((square - twice_t * ia) / (ic * (ic - ia)))
     rate = mp.sqrt((ic - ib) * (square - twice_t * ia) / (ia * ib * ic))
@@ -89,6 +89,14 @@ def free_rotation(
     return [(world * attitude, wt) for attitude, wt in found[1:]]
 
 
+def _cubic(c2: mp.mpf, c1: mp.mpf, c0: mp.mpf) -> Vector:
+    """The three real roots of ``x³ + c2 x² + c1 x + c0``, by Viète's cosines."""
+    p, q = c1 - c2**2 / 3, 2 * c2**3 / 27 - c1 * c2 / 3 + c0
+    angle = mp.acos(3 * q / (2 * p) * mp.sqrt(-3 / p)) / 3
+    roots = [2 * mp.sqrt(-p / 3) * mp.cos(angle - 2 * mp.pi * k / 3) - c2 / 3 for k in range(3)]
+    return sorted(roots)
+
+
 def nutation(
     transverse: mp.mpf,
     axial: mp.mpf,
@@ -110,19 +118,12 @@ def nutation(
     energy = transverse * (across[0] ** 2 + across[1] ** 2) / 2 + moment * cosine
     a, b, strength = along / transverse, vertical / transverse, 2 * moment / transverse
     height = energy / moment
-    u1, u2, u3 = sorted(
-        (
-            mp.re(x)
-            for x in mp.polyroots(
-                [1, -height - a * a / strength, 2 * a * b / strength - 1, height - b * b / strength],
-                maxsteps=400,
-                extraprec=400,
-            )
-        )
+    u1, u2, u3 = _cubic(
+        -height - a * a / strength, 2 * a * b / strength - 1, height - b * b / strength
     )
     m, rate = (u2 - u1) / (u3 - u1), mp.sqrt(strength * (u3 - u1)) / 2
-    start = mp.ellipf(mp.asin(mp.sqrt((cosine - u1) / (u2 - u1))), m)
-    start *= mp.sign(-across[0])  # dθ/dt = ω_1 at the node
+    start = mp.ellipf(mp.asin(mp.sqrt(min((cosine - u1) / (u2 - u1), mp.mpf(1)))), m)
+    start *= mp.sign(-across[0]) or 1  # dθ/dt = ω_1 at the node
 
     def angles(t: mp.mpf) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
         u = rate * t + start

@@ -28,6 +28,13 @@ def _matvec(matrix: Sequence[Vector], v: Vector) -> Vector:
     return [mp.fdot(row, v) for row in matrix]
 
 
+def _value(coefficients: list[Vector], i: int, x: mp.mpf) -> mp.mpf:
+    total = mp.mpf(0)
+    for row in reversed(coefficients):
+        total = total * x + row[i]
+    return total
+
+
 class TaylorSeries:
     """inertia 3x3, damping d, and (optionally) moment ``m g`` (world) with lever r (body)."""
 
@@ -114,8 +121,8 @@ class TaylorSeries:
                 if size:
                     longest = mp.mpf(10) ** (-mp.mpf(mp.mp.dps) / order) / size
                     step = mp.sign(step) * min(abs(step), longest)
-                q = [mp.polyval([row[i] for row in reversed(qs)], step) for i in range(4)]
-                w = [mp.polyval([row[i] for row in reversed(ws)], step) for i in range(3)]
+                q = [_value(qs, i, step) for i in range(4)]
+                w = [_value(ws, i, step) for i in range(3)]
                 now += step
             found.append(q + w)
         return found

@@ -122,7 +122,7 @@ def test_an_earlier_record_gives_way_and_nothing_else_does(tmp_path: Path) -> No
         (("run", "sphere", "--timestep", "0"), "not a positive number"),
         (("run", "sphere", "--timestep", "nan"), "not a positive number"),
         (("run", "sphere", "--timestep", "1e9"), "longer than"),
-        (("run", "sphere", "--timestep", "soon"), "soon"),
+        (("run", "sphere", "--timestep", "soon"), "--timestep"),
         (("run", "sphere", "--setup", "racing"), "racing"),
         (("run", "sphere", "sphere"), "name of its own"),
         (("run", "sphere", "--adapter", "mine.py"), "no class is named"),

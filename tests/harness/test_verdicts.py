@@ -79,3 +79,16 @@ def test_too_few_steps_leave_it_open() -> None:
 
 def test_nan_is_never_explained() -> None:
     assert kind(np.array([0.0, np.nan, 0.0]), BOUND / 2, (RESOLVED,), 1) == "unexplained"
+
+
+def test_beyond_the_schemes_own_end_nothing_is_judged() -> None:
+    bound = np.array([1e-15, np.inf, np.inf])
+    finding = judge(Evidence(LARGE, bound, LARGE, (None, None)), "scheme", 1)
+    assert (finding.kind, finding.verdict) == ("beyond", "info")
+    bound = np.array([1e-15, 1e-12, np.inf])
+    left = np.array([0.0, 1e-13, 1e9])
+    finding = judge(Evidence(LARGE, bound, left, (None, None)), "scheme", 1)
+    assert finding.kind == "explained"
+    assert "until the scheme blows up" in finding.note
+    left[1] = 1e-11
+    assert judge(Evidence(LARGE, bound, left, (None, None)), "scheme", 1).verdict == "fail"

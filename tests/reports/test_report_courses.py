@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import polars as pl
 import pytest
-from synthetic_record import RATE, STEPS, build
+from synthetic_record import RATE, build
 
 from omegadot.reports.courses import POINTS, chart_courses
 from omegadot.reports.divergence import CHANNELS
@@ -154,7 +154,3 @@ def test_scenarios_without_a_system_or_truth_are_told_apart(record):
 
 def test_no_trajectories_no_courses(record):
     assert chart_courses(replace(record, trajectories=record.trajectories.clear())) == {}
-
-
-def test_steps_in_the_synthetic_record_are_multiples():
-    assert STEPS == (0.02, 0.01, 0.005)

@@ -212,3 +212,10 @@ def test_the_page_is_small():
     # The chart library takes 2 MB of the 5; 45 runs of 120 points in four charts must be little.
     record = build(("a", "b", "c"), samples=200)
     assert len(draw_page(record).encode()) < 2.3e6
+
+
+def test_an_order_is_no_relative_error(record):
+    add = ["sphere", "dart", "semi-implicit", 0.01, "scheme", "omega", "observed_order"]
+    page = draw_page(with_metrics(record, metric(*add, 1.02, verdict="info")))
+    assert '<th scope="col">observed order</th>' in page
+    assert '<th scope="col">drift full, relative</th>' in page

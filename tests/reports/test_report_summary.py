@@ -7,6 +7,7 @@ from synthetic_record import INTEGRATORS, build, metric, task, with_metrics
 
 from omegadot.reports import Record, summarise
 from omegadot.reports.headline import headline, remarks
+from omegadot.reports.numbers import short
 from omegadot.reports.schema import METRICS, OUTCOMES, TRAJECTORIES, empty
 from omegadot.reports.summary import STATUSES, task_status, worst
 
@@ -155,3 +156,26 @@ def test_a_partial_and_an_empty_record():
 def test_yardsticks_alone_speak_for_themselves():
     alone = build(engines={"reference": INTEGRATORS["reference"]})
     assert headline(summarise(alone)).startswith("reference agrees")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (None, "–"),
+        (float("nan"), "not finite"),
+        (float("inf"), "not finite"),
+        (0.0, "0"),
+        (3.14e-15, "3.1e-15"),
+        (2.0, "2.0"),
+        (-0.05, "-5.0e-2"),
+        (1.5e12, "1.5e12"),
+    ],
+)
+def test_numbers_are_short_and_never_hide_what_is_not_one(value, text):
+    assert short(value) == text
+
+
+def test_integrators_that_do_as_well_make_no_spread():
+    one = build(("sphere",), engines={"dart": INTEGRATORS["dart"]})
+    assert remarks(summarise(one)) == []
+    assert headline(summarise(one)).startswith("dart agrees")

@@ -7,7 +7,7 @@ import numpy as np
 from omegadot.harness.gates.course import Course
 from omegadot.harness.measures import TRAJECTORY_UNITS
 from omegadot.harness.plan import Sweep
-from omegadot.harness.rows import Row, judged, within
+from omegadot.harness.rows import Row, within
 from omegadot.harness.scales import EPS
 from omegadot.harness.verdicts import Finding, ObservedOrder
 from omegadot.reference_impl.system import Array
@@ -32,8 +32,9 @@ def rows(
     found = []
     for channel, unit in TRAJECTORY_UNITS.items():
         finding, bound = findings[channel], float(np.max(course.round_off[channel]))
-        error = Row(GATE, channel, "error_max", float(np.max(course.error[channel])), unit, bound)
-        found.append(judged(error, finding.holds, finding.note))
+        error = float(np.max(course.error[channel]))
+        verdict = finding.verdict
+        found.append(Row(GATE, channel, "error_max", error, unit, bound, verdict, finding.note))
         end = float(course.error[channel][-1])
         found.append(Row(GATE, channel, "error_end", end, unit))
         if channel in course.against_scheme:

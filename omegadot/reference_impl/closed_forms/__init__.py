@@ -57,14 +57,21 @@ def closed_form_of(system: System, initial: State) -> Callable[[Array], State] |
     def states(times: Array) -> State:
         times = np.atleast_1d(np.asarray(times, float))
         orientation, angular_velocity = motion(times)
-        t = times[:, None]
-        gravity = np.asarray(system.load.gravity, float)
-        velocity = initial.linear_velocity + gravity * t
-        position = initial.position + t * (initial.linear_velocity + 0.5 * gravity * t)
+        position, velocity = _fall(system, initial, times)
         fallen = State(orientation, angular_velocity, position, velocity)
         return place_on_pivot(system, fallen)
 
     return states
+
+
+def _fall(system: System, initial: State, times: Array) -> tuple[Array, Array]:
+    """Position and velocity of a free centre of mass; a body at rest costs no arithmetic."""
+    gravity = np.asarray(system.load.gravity, float)
+    start, speed = np.asarray(initial.position), np.asarray(initial.linear_velocity)
+    if system.load.pivot is not None or not (np.any(start) or np.any(speed) or np.any(gravity)):
+        return np.zeros((times.size, 3)), np.zeros((times.size, 3))
+    t = times[:, None]
+    return start + t * (speed + 0.5 * gravity * t), speed + gravity * t
 
 
 def floor(system: System, initial: State, times: Array) -> Floor:

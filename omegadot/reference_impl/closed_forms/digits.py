@@ -114,6 +114,16 @@ def cos_sin(x: Decimal) -> tuple[Decimal, Decimal]:
     return real, imaginary
 
 
+def multiples(x: Decimal, count: int) -> list[tuple[Decimal, Decimal]]:
+    """``(cos nx, sin nx)`` for n below count, by turning."""
+    cosine, sine = cos_sin(x)
+    found = [(ONE, ZERO)]
+    for _ in range(count - 1):
+        c, s = found[-1]
+        found.append((c * cosine - s * sine, c * sine + s * cosine))
+    return found
+
+
 def agm(a: Decimal, b: Decimal) -> Decimal:
     """Arithmetic-geometric mean of positive numbers, DLMF 19.8.1; zero where one of them is."""
     if a == 0 or b == 0:
@@ -126,15 +136,15 @@ def agm(a: Decimal, b: Decimal) -> Decimal:
 def carlson_rf(x: Decimal, y: Decimal, z: Decimal) -> Decimal:
     """``R_F(x, y, z)`` for non-negative x, y, z, at most one of them zero.
 
-    Duplication, DLMF 19.26.18, until the spread is below 1e-14, then the expansion DLMF 19.36.1
-    in the elementary symmetric functions, whose first omitted terms are of its sixth power.
+    Duplication, DLMF 19.26.18, until the spread is below 1e-10, then the expansion DLMF 19.36.1
+    in the elementary symmetric functions, whose first omitted terms are of its eighth power.
     (Carlson, Numerical computation of real or complex elliptic integrals, Numer. Algorithms 10
     (1995) 13-26, section 2.)
     """
     while True:
         a = (x + y + z) / 3
         dx, dy = ONE - x / a, ONE - y / a
-        if max(abs(dx), abs(dy), abs(dx + dy)) < Decimal("1e-14"):
+        if max(abs(dx), abs(dy), abs(dx + dy)) < Decimal("1e-10"):
             break
         sx, sy, sz = x.sqrt(), y.sqrt(), z.sqrt()
         shift = sx * sy + sy * sz + sz * sx

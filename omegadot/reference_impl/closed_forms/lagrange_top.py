@@ -22,6 +22,7 @@ from omegadot.reference_impl.closed_forms.digits import (
     RESOLUTION,
     Row,
     apply,
+    dot,
     exact,
     exact_matrix,
     many_digits,
@@ -72,7 +73,8 @@ def lagrange_top_of(system: System, initial: State) -> Problem | None:
             return None
         about = inertia_about(exact_matrix(body.inertia), mass, lever)
         axes = triad(lever)
-        rows = [apply(axes, row) for row in zip(*[apply(about, x) for x in axes], strict=True)]
+        turned = [apply(about, axis) for axis in axes]
+        rows = [[dot(axis, x) for x in turned] for axis in axes]
         transverse, axial = rows[0][0], rows[2][2]
         off = [rows[0][1], rows[1][0], rows[0][2], rows[1][2], rows[2][0], rows[2][1]]
         off.append(rows[1][1] - transverse)

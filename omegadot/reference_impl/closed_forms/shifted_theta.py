@@ -14,7 +14,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, cos_sin, pi, power
+from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, multiples, pi, power
 from omegadot.reference_impl.closed_forms.elliptic import (
     CircularFrame,
     HyperbolicFrame,
@@ -80,8 +80,7 @@ def _hyperbolic(modulus: Modulus, depth: Decimal) -> ShiftedTheta:
     eta = pi() * (k - depth) / (4 * k)
     real_far, real_near, imaginary_far, imaginary_near = [], [ZERO], [], [ZERO]
     rise, size = ZERO, ZERO
-    for n in range(TERMS):
-        cosine, sine = cos_sin((2 * n + 1) * eta)
+    for n, (cosine, sine) in enumerate(multiples(eta, 2 * TERMS)[1::2]):
         square, oblong = power(p, n * n), power(p, n * n + n)
         real_far.append(square * cosine)
         real_near.append(oblong * cosine)

@@ -11,7 +11,7 @@ from omegadot.reference_impl.closed_forms.digits import (
     ONE,
     ZERO,
     Row,
-    cos_sin,
+    multiples,
     pi,
     power,
 )
@@ -124,8 +124,8 @@ def _theta1_rows(q: Decimal, eta: Decimal) -> tuple[Row, Row, Row, Row]:
     """
     far: tuple[Row, Row] = [], []
     near: tuple[Row, Row] = [ZERO], [ZERO]
-    for n, oblong in enumerate(_oblong(q)):
-        cosine, sine = cos_sin((2 * n + 1) * eta)
+    angles = multiples(eta, 2 * TERMS)[1::2]
+    for n, (oblong, (cosine, sine)) in enumerate(zip(_oblong(q), angles, strict=True)):
         sign, square = (-1) ** n, power(q, n * n)
         far[0].append(sign * square * cosine)
         far[1].append(sign * square * sine)
@@ -138,8 +138,7 @@ def _theta4_rows(q: Decimal, eta: Decimal) -> tuple[Row, Row, Row, Row]:
     """``1 + Σ (-1)^n q^(n²) 2 (cos 2nη cosh 2nv , sin 2nη sinh 2n|v|)``, times 2."""
     far: tuple[Row, Row] = [ZERO], [ZERO]
     near: tuple[Row, Row] = [Decimal(2)], [ZERO]
-    for n in range(1, TERMS):
-        cosine, sine = cos_sin(2 * n * eta)
+    for n, (cosine, sine) in enumerate(multiples(2 * eta, TERMS)[1:], 1):
         less, square = 2 * (-1) ** n * power(q, n * n - n), 2 * (-1) ** n * power(q, n * n)
         far[0].append(less * cosine)
         far[1].append(less * sine)
@@ -151,8 +150,7 @@ def _theta4_rows(q: Decimal, eta: Decimal) -> tuple[Row, Row, Row, Row]:
 def _theta4_slope(q: Decimal, eta: Decimal) -> Decimal:
     """``d arg θ4(η - iv) / dv`` at v = 0, and the same of ``i θ1`` half a period away."""
     slope, size = ZERO, ONE
-    for n in range(1, TERMS):
-        cosine, sine = cos_sin(2 * n * eta)
+    for n, (cosine, sine) in enumerate(multiples(2 * eta, TERMS)[1:], 1):
         term = 2 * (-1) ** n * power(q, n * n)
         slope += 2 * n * term * sine
         size += term * cosine

@@ -11,6 +11,7 @@ from omegadot.reference_impl.schemes import (
     munthe_kaas_rk4,
     rk4_quaternion,
     semi_implicit_euler,
+    short_turns_euler,
 )
 from omegadot.reference_impl.schemes.scheme import AccelerationOf, Scheme
 
@@ -18,6 +19,7 @@ SCHEMES: dict[str, Scheme] = {
     module.SCHEME.name: module.SCHEME
     for module in (
         semi_implicit_euler,
+        short_turns_euler,
         implicit_damping_euler,
         linearly_implicit_euler,
         rk4_quaternion,

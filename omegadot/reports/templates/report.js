@@ -75,7 +75,8 @@
   function layout(axis, data) {
     const style = getComputedStyle(root);
     const colour = (name) => style.getPropertyValue(name).trim();
-    const low = axis.floor ? data.floor - 0.6 : axis.low, high = axis.high + 0.1;
+    // Below the floor there is room for the words that say so.
+    const high = axis.high + 0.1, low = axis.floor ? data.floor - 0.1 * (high - data.floor) : axis.low;
     const common = { gridcolor: colour("--grid"), linecolor: colour("--rule"), zeroline: false, tickcolor: colour("--rule") };
     return {
       autosize: true, margin: { l: 58, r: 12, t: 12, b: 40 }, showlegend: false, hovermode: "closest",
@@ -86,7 +87,7 @@
       xaxis: { ...common, title: { text: "time, s", standoff: 6 } },
       yaxis: { ...common, type: "log", range: [low, high], exponentformat: "power", dtick: Math.max(1, Math.ceil((high - low) / 8)) },
       shapes: axis.floor ? [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: 10 ** data.floor, y1: 10 ** data.floor, line: { color: colour("--soft"), width: 1, dash: "dot" }, layer: "below" }] : [],
-      annotations: axis.floor ? [{ xref: "paper", x: 1, xanchor: "right", yref: "y", y: data.floor, yanchor: "bottom", showarrow: false, text: `floor: zero to 10<sup>${data.floor}</sup> is drawn here`, font: { size: 11 } }] : [],
+      annotations: axis.floor ? [{ xref: "paper", x: 1, xanchor: "right", yref: "y", y: data.floor, yanchor: "top", showarrow: false, text: `floor: zero to 10<sup>${data.floor}</sup> is drawn here`, font: { size: 11 } }] : [],
     };
   }
 
@@ -145,6 +146,8 @@
   step.addEventListener("change", redraw);
   dark.addEventListener("change", redraw);
   element("lines").open = !narrow.matches;
+  const controls = document.querySelector(".controls");
+  new ResizeObserver(() => root.style.setProperty("--covered", `${controls.offsetHeight}px`)).observe(controls);
   addEventListener("beforeprint", () => { printing = true; sections.forEach((s) => { s.dirty = true; draw(s); }); });
   addEventListener("afterprint", () => { printing = false; redraw(); });
 })();
