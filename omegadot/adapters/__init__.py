@@ -1,0 +1,1 @@
+"""Who runs it: one engine a file, behind one small protocol."""

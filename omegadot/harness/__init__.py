@@ -1,0 +1,1 @@
+"""Who compares: plans, workers, gates, verdicts, and the command line."""

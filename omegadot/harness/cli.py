@@ -59,7 +59,8 @@ def run(
         float, typer.Option(metavar="S", min=0.1, help="Limit for one request to an engine.")
     ] = 60.0,
     jobs: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Engines at the same time. Default: cores.")
+        int | None,
+        typer.Option(metavar="N", min=1, help="Engines at the same time. Default: cores."),
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="For the random states.")] = 0,
     output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,

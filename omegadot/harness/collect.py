@@ -50,9 +50,7 @@ def _gates(rows: list[Row]) -> dict[str, str]:
     return found
 
 
-def _judged_entry(
-    task: Task, version: str, found: EngineCase, judged: JudgedRun
-) -> dict[str, Any]:
+def _judged_entry(task: Task, version: str, found: EngineCase, judged: JudgedRun) -> dict[str, Any]:
     """A task that ran, or whose run failed; a failure before it counts where it ran well."""
     earlier = found.result.first_failure()
     outcome, reason = judged.outcome, judged.reason
@@ -113,7 +111,9 @@ def tasks_of_run(outcome: Outcome, cases: list[Case], setup: str) -> list[dict[s
     return found
 
 
-def _metric(row: Row, case: str, engine: Engine, setup: str, task: JudgedRun | None, exact: str) -> dict[str, Any]:
+def _metric(
+    row: Row, case: str, engine: Engine, setup: str, task: JudgedRun | None, exact: str
+) -> dict[str, Any]:
     return {
         "scenario": case,
         "engine": engine.name,
@@ -140,7 +140,9 @@ def metrics_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
                 for row in exact_rows(case.case, case.truth):
                     rows.append(_metric(row, name, engine, setup, None, source))
     columns = {name: f.dtype for name, f in schema.METRICS.items()}
-    return pl.DataFrame(rows, schema=columns, orient="row") if rows else schema.empty(schema.METRICS)
+    return (
+        pl.DataFrame(rows, schema=columns, orient="row") if rows else schema.empty(schema.METRICS)
+    )
 
 
 def _samples(labels: dict[str, Any], time: Array, state: State, omega_dot: Array) -> pl.DataFrame:
@@ -153,7 +155,9 @@ def _samples(labels: dict[str, Any], time: Array, state: State, omega_dot: Array
     return pl.DataFrame(numbers).with_columns(texts).select(list(schema.TRAJECTORIES))
 
 
-def _labels(case: str, engine: str, setup: str, integrator: str, timestep: float | None) -> dict[str, Any]:
+def _labels(
+    case: str, engine: str, setup: str, integrator: str, timestep: float | None
+) -> dict[str, Any]:
     return {
         "scenario": case,
         "engine": engine,

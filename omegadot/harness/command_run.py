@@ -61,6 +61,7 @@ def record_of(outcome: Outcome, request: RunRequest, command: list[str], seconds
         "versions": package_versions(),
         "engines": _engines(outcome),
         "scenarios": [_scenario(case) for case in request.cases],
+        "worker_deaths": [{"engine": name, "how": how} for name, how in outcome.deaths],
         "tasks": tasks_of_run(outcome, list(request.cases), request.setup),
     }
     return Record(
@@ -115,7 +116,7 @@ def exit_code(run: dict[str, Any], choices: Sequence[EngineChoice]) -> int:
     tasks = run["tasks"]
     if not run["complete"]:
         return INTERRUPTED_EXIT
-    if any(task["outcome"] in BROKEN for task in tasks):
+    if run["worker_deaths"] or any(task["outcome"] in BROKEN for task in tasks):
         return 3
     if any(t["outcome"] == "not-installed" and t["engine"] in required for t in tasks):
         return 3

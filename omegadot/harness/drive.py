@@ -148,7 +148,9 @@ class Driver:
             )
         return result
 
-    def run_all(self, case: Case, finished: Callable[[], None]) -> dict[tuple[str, float], Answer]:
+    def run_all(
+        self, case: Case, finished: Callable[[], object]
+    ) -> dict[tuple[str, float], Answer]:
         """Every integrator with every step; `finished` is called after each run."""
         runs = {}
         for integrator in self.engine.integrators:

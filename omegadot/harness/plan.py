@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.reference_impl.system import Array, State, System
@@ -30,7 +32,7 @@ class Sweep:
     every: int
 
     @property
-    def sample_steps(self) -> Array:
+    def sample_steps(self) -> NDArray[Any]:
         """The step numbers that are kept: the start, every `every`-th, the end."""
         kept = np.arange(0, self.steps + 1, self.every)
         return kept if kept[-1] == self.steps else np.append(kept, self.steps)

@@ -9,7 +9,8 @@ from typing import Any
 import typer
 
 from omegadot.reports.headline import headline
-from omegadot.reports.record import PAGE, Record, dump_json
+from omegadot.reports.record import PAGE, Record
+from omegadot.reports.run_json import dump_json
 from omegadot.reports.summary import summarise
 from omegadot.reports.terminal import print_summary
 

@@ -64,12 +64,16 @@ class JudgedCase:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Everything that came of a run. missing: engines that did not start, with the answer."""
+    """Everything that came of a run.
+
+    missing: engines that did not start, with the answer.  deaths: workers that died, and how.
+    """
 
     engines: list[Engine]
     missing: list[tuple[EngineChoice, Answer]]
     cases: list[JudgedCase]
     interrupted: bool
+    deaths: list[tuple[str, str]]
 
 
 def integrators_chosen(choice: EngineChoice, description: Description) -> tuple[Integrator, ...]:
@@ -211,7 +215,8 @@ class Runner:
                 if any(run.unresolved for run in found.runs):
                     call = partial(refine, driver, judged.case, found.runs, known)
                     asked.append(self._submit(name, call))
-            if not any([future.result() for future in asked]):
+            done = [future.result() for future in asked]
+            if not any(done):
                 break
             judged = self.judge(pending, finer)
         return judged
@@ -238,7 +243,8 @@ class Runner:
             raise
         finally:
             self.finish()
-        return Outcome(self.engines, self.missing, judged, interrupted)
+        deaths = [(n, how) for n, worker in self._workers.items() for how in worker.deaths]
+        return Outcome(self.engines, self.missing, judged, interrupted, deaths)
 
     def _leftover(self, pending: PendingCase) -> JudgedCase:
         """A case that the interruption caught: none of it is judged, and it says so."""

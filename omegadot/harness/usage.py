@@ -18,7 +18,7 @@ class UsageError(ValueError):
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """ "write X", or the whole choice where nothing is near."""
+    """Advice: write the nearest word, or, where nothing is near, one of the whole choice."""
     names = sorted(known)
     close = difflib.get_close_matches(word, names, 1)
     return f"write {close[0]}" if close else f"give one of {', '.join(names)}"
@@ -51,7 +51,9 @@ def engine_choices(wanted: Sequence[str], extra: Sequence[str] = ()) -> list[Eng
     for word in wanted:
         name, _, integrator = word.partition(":")
         if name not in known:
-            raise UsageError(f"--engine {word}: there is no engine {name!r}; {nearest(name, known)}.")
+            raise UsageError(
+                f"--engine {word}: there is no engine {name!r}; {nearest(name, known)}."
+            )
         picked.setdefault(name, []).append(integrator)
     picked |= {name: [""] for name in added if name not in picked}
     return [

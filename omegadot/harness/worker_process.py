@@ -55,6 +55,7 @@ class WorkerProcess:
         self._answers: queue.Queue[dict[str, Any] | None] = queue.Queue()
         self._stderr: deque[bytes] = deque()
         self._drain: threading.Thread | None = None
+        self.deaths: list[str] = []
 
     @property
     def pid(self) -> int | None:
@@ -85,7 +86,10 @@ class WorkerProcess:
         threading.Thread(target=_collect, args=(process, answers), daemon=True).start()
         self._drain = threading.Thread(target=_keep_tail, args=(process, stderr), daemon=True)
         self._drain.start()
-        return self._wait()
+        answer = self._wait()
+        if not answer.ok:
+            self.stop()
+        return answer
 
     def ask(self, operation: str, **fields: Any) -> Answer:
         """Put one request and wait for its answer, a death, or the time limit."""
@@ -124,11 +128,16 @@ class WorkerProcess:
         lines = b"".join(self._stderr).decode(errors="replace").strip().splitlines()[-3:]
         said = " | ".join(" ".join(line.split()) for line in lines)[:400]
         self._process = None
-        return f"{how}; its last words: {said}" if said else how
+        found = f"{how}; its last words: {said}" if said else how
+        self.deaths.append(found)
+        return found
 
     def finish(self) -> None:
         """Let an idle worker leave by itself, so that it may tidy up; end it if it does not."""
         if self._process is None:
+            return
+        if self._process.poll() is not None:  # it died while nobody asked it anything
+            self._post_mortem()
             return
         assert self._process.stdin is not None
         with contextlib.suppress(OSError, subprocess.TimeoutExpired):

@@ -9,8 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.reference_impl.body_origin import from_origin, origin_acceleration_of, to_origin
 from omegadot.reference_impl.growth import growth_along
@@ -32,7 +34,7 @@ class Steps:
     every: int
 
     @property
-    def kept(self) -> Array:
+    def kept(self) -> NDArray[Any]:
         """The numbers of the steps that are kept."""
         kept = np.arange(0, self.steps + 1, self.every)
         return kept if kept[-1] == self.steps else np.append(kept, self.steps)
@@ -86,7 +88,9 @@ def companion(
     longest = max(step.steps for step in plan)
     groups = [plan] if longest // shared <= MOST_SHARED_ROWS else [[step] for step in plan]
     named = SCHEMES[scheme]
-    states = [s for group in groups for s in _run_together(system, named, initial, at_origin, group)]
+    states = [
+        s for group in groups for s in _run_together(system, named, initial, at_origin, group)
+    ]
     return [
         CompanionRun(times, state, growth_along(system, times, state, rate))
         for times, state in zip((s.kept * s.timestep for s in plan), states, strict=True)

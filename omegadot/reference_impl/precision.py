@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -15,10 +15,10 @@ Arrays = TypeVar("Arrays", State, Acceleration, Body, Load)
 
 def cast(value: Arrays, dtype: DTypeLike) -> Arrays:
     """The same arrays in `dtype`; a missing one stays None."""
-    arrays = {f.name: getattr(value, f.name) for f in fields(value)}
-    return type(value)(
-        **{name: None if a is None else np.asarray(a, dtype=dtype) for name, a in arrays.items()}
-    )
+    arrays: dict[str, Any] = {f.name: getattr(value, f.name) for f in fields(value)}
+    for name, array in arrays.items():
+        arrays[name] = None if array is None else np.asarray(array, dtype=dtype)
+    return type(value)(**arrays)
 
 
 def extended(system: System) -> System:

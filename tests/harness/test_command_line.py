@@ -132,9 +132,7 @@ def test_an_earlier_record_gives_way_and_nothing_else_does(tmp_path: Path) -> No
         (("fly",), "fly"),
     ],
 )
-def test_wrong_usage_is_one_sentence(
-    words: tuple[str, ...], said: str, tmp_path: Path
-) -> None:
+def test_wrong_usage_is_one_sentence(words: tuple[str, ...], said: str, tmp_path: Path) -> None:
     assert said in sentence(omegadot(*words, folder=tmp_path))
     assert list(tmp_path.iterdir()) == []
 

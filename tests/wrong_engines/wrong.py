@@ -179,5 +179,3 @@ class FallsAsleep(Wrong):
         w = found.state.angular_velocity.copy()
         w[np.linalg.norm(w, axis=-1) < 0.05] = 0.0
         return Trajectory(found.time, replace(found.state, angular_velocity=w))
-
-

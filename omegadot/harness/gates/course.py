@@ -109,9 +109,7 @@ def orders_for(integrator: Integrator, system: System) -> dict[str, int | None]:
     return found
 
 
-def findings_of(
-    course: Course, declared: Declared, courses: list[Course]
-) -> dict[str, Finding]:
+def findings_of(course: Course, declared: Declared, courses: list[Course]) -> dict[str, Finding]:
     """Judge every channel of one run; the other runs of its sweep show the orders."""
     found = {}
     for channel in CHANNELS:
@@ -119,8 +117,6 @@ def findings_of(
         orders = [order_of(courses, channel)]
         if left is not None:
             orders.append(order_left(courses, channel))
-        evidence = Evidence(
-            course.error[channel], course.round_off[channel], left, tuple(orders)
-        )
+        evidence = Evidence(course.error[channel], course.round_off[channel], left, tuple(orders))
         found[channel] = judge(evidence, declared.scheme, declared.orders[channel])
     return found

@@ -65,11 +65,12 @@ def closed_form_of(system: System, initial: State) -> Callable[[Array], State] |
 
 
 def _fall(system: System, initial: State, times: Array) -> tuple[Array, Array]:
-    """Position and velocity of a free centre of mass; a body at rest costs no arithmetic."""
+    """Position and velocity of a free centre of mass; one at rest costs no memory."""
     gravity = np.asarray(system.load.gravity, float)
     start, speed = np.asarray(initial.position), np.asarray(initial.linear_velocity)
     if system.load.pivot is not None or not (np.any(start) or np.any(speed) or np.any(gravity)):
-        return np.zeros((times.size, 3)), np.zeros((times.size, 3))
+        nothing = np.broadcast_to(np.zeros(3), (times.size, 3))
+        return nothing, nothing
     t = times[:, None]
     return start + t * (speed + 0.5 * gravity * t), speed + gravity * t
 

@@ -122,7 +122,7 @@ class Clock:
     def read(self, times: Times) -> CircularFrame | HyperbolicFrame:
         """The frame at the times."""
         if not self.hyperbolic:
-            circle = unit_circle(self.phase.reduced(times)[1])
+            circle = unit_circle(self.phase.modulo(times))
             sine = circle.imag.copy()
             return CircularFrame(sine, circle.real.copy(), sine * sine)
         if np.isinf(self.span):

@@ -74,7 +74,7 @@ def _course(numbers: Row, axis: Row) -> Course:
     decay, drive, start = float(damping / inertia), float(torque / inertia), float(speed)
     n = doubles(axis)[:, None]
 
-    def course(times: Times) -> tuple[Array, Array]:
+    def course(times: Times, vector: Array, q: Array) -> None:
         t = times.value
         x = decay * t
         first, second = _phi(x)
@@ -82,10 +82,9 @@ def _course(numbers: Row, axis: Row) -> Course:
         angle = t * (start * first + drive * t * second)
         turns = angle / (4 * np.pi)
         half = unit_circle(turns - np.rint(turns))
-        q = np.empty((4, t.size))
         q[0] = half.real
-        q[1:] = n * half.imag
-        return n * omega, q
+        np.multiply(n, half.imag, out=q[1:])
+        np.multiply(n, omega, out=vector)
 
     return course
 

@@ -96,12 +96,11 @@ def uniform(omega: Row) -> Course:
     direction = doubles([x / speed for x in omega] if speed else omega)[:, None]
     w = doubles(omega)[:, None]
 
-    def course(times: Times) -> tuple[Array, Array]:
-        circle = unit_circle(angle.reduced(times)[1])
-        q = np.empty((4, times.value.size))
+    def course(times: Times, vector: Array, q: Array) -> None:
+        circle = unit_circle(angle.modulo(times))
         q[0] = circle.real
-        q[1:] = circle.imag * direction
-        return w + np.zeros((3, times.value.size)), q
+        np.multiply(circle.imag, direction, out=q[1:])
+        vector[:] = w
 
     return course
 
@@ -138,16 +137,16 @@ def _course(c: Constants) -> Course:
     functions = jacobi(c.modulus, *[c.inertia[i] * c.amplitude[i] / c.momentum for i in (1, 0, 2)])
     skew, opposite = c.turn * theta.skew, c.turn < 0
 
-    def course(times: Times) -> tuple[Array, Array]:
+    def course(times: Times, h: Array, q: Array) -> None:
         frame = clock.read(times)
         h_b, h_a, h_c = functions(frame)
-        turns = angle.reduced(times)[1]
-        turns += skew * frame.turn
+        turns = angle.modulo(times)
+        if skew:
+            turns += skew * frame.turn
         spin = unit_circle(turns)
         value = theta.value(frame)
         # exp(iψ/2) is exp(2πi turns) Θ*/|Θ| where c has the greatest inertia, else it has Θ
         spin *= value if opposite else np.conjugate(value, out=value)
-        h = np.empty((3, times.value.size))
         h[0], h[1], h[2] = h_a, h_b, h_c
         h_c += 1.0
         scale = value.real * value.real
@@ -156,13 +155,11 @@ def _course(c: Constants) -> Course:
         np.divide(0.5, scale, out=scale)
         np.sqrt(scale, out=scale)
         c0, c3 = scale * spin.real, scale * spin.imag
-        q = np.empty((4, times.value.size))
         np.multiply(c0, h_c, out=q[0])
         np.multiply(c3, h_c, out=q[3])
         np.multiply(c0, h_b, out=q[1])
         q[1] += c3 * h_a
         np.multiply(c3, h_b, out=q[2])
         q[2] -= c0 * h_a
-        return h, q
 
     return course

@@ -41,8 +41,9 @@ class Factor:
         scale = float(self.scale)
 
         def value(times: Times, frame: Frame) -> Array:
-            turns = angle.reduced(times)[1]
-            turns += skew * frame.turn
+            turns = angle.modulo(times)
+            if skew:
+                turns += skew * frame.turn
             spin = unit_circle(turns)
             theta = self.theta.value(frame)
             spin *= theta if self.opposite else np.conjugate(theta, out=theta)

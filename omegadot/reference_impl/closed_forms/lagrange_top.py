@@ -101,15 +101,13 @@ def _course(top: Top, n: Nutation) -> Course:
     phases = phases_of(top, n, clock, courses)
     spin = float(top.spin)
 
-    def course(times: Times) -> tuple[Array, Array]:
+    def course(times: Times, w: Array, q: Array) -> None:
         frame = clock.read(times)
         alpha, beta, across = (
             phase * factor(times, frame) for phase, factor in zip(phases, courses, strict=True)
         )
-        w = np.empty((3, times.value.size))
         w[0], w[1], w[2] = across.real, across.imag, spin
-        q = np.array([alpha.real, beta.real, beta.imag, alpha.imag])
+        q[0], q[1], q[2], q[3] = alpha.real, beta.real, beta.imag, alpha.imag
         q /= np.sqrt(np.add.reduce(q * q, 0))
-        return w, q
 
     return course

@@ -62,6 +62,18 @@ class Phase:
         product += small
         return product
 
+    def modulo(self, times: Times) -> Array:
+        """X less some whole number, small: for uses that have the period one anyhow."""
+        product = times.high * self.rate[0]
+        product -= np.rint(product)
+        small = times.low * self.rate[0]
+        small += times.value * self.rate[1]
+        if self.start[0]:
+            product += self.start[0]
+            small += self.start[1]
+        product += small
+        return product
+
     def reduced(self, times: Times) -> tuple[Array, Array]:
         """``(n, r)`` with ``x = n + r`` up to an even number, n whole and |r| <= 1/2."""
         small = times.low * self.rate[0]

@@ -15,8 +15,9 @@ from omegadot.reference_impl.system import Array, Body, Load
 # Times (n,) s to the attitude (n, 4) and the angular velocity (n, 3) rad/s, body frame.
 Motion: TypeAlias = Callable[[Array], tuple[Array, Array]]
 
-# The same in a frame of its own, ready to be placed: a vector (3, n) and a quaternion (4, n).
-Course: TypeAlias = Callable[[Times], tuple[Array, Array]]
+# The same in a frame of its own, ready to be placed: a vector and a quaternion, written to the
+# given arrays (3, n) and (4, n).
+Course: TypeAlias = Callable[[Times, Array, Array], None]
 
 _CHUNK = 4000  # times worked at once: intermediate arrays stay in the cache and below 128 KB
 
@@ -48,11 +49,14 @@ class Placed:
 
     def __call__(self, times: Array) -> tuple[Array, Array]:
         """Attitude (n, 4) and angular velocity (n, 3)."""
-        orientation = np.empty((times.size, 4))
-        angular_velocity = np.empty((times.size, 3))
+        both = np.empty(7 * times.size)  # one block, so that large ones get large pages
+        orientation = both[: 4 * times.size].reshape(-1, 4)
+        angular_velocity = both[4 * times.size :].reshape(-1, 3)
+        vectors, quaternions = np.empty((3, _CHUNK)), np.empty((4, _CHUNK))
         for first in range(0, times.size, _CHUNK):
-            part = slice(first, first + _CHUNK)
-            w, q = self.course(Times.of(times[part]))
+            part = slice(first, min(first + _CHUNK, times.size))
+            w, q = vectors[:, : part.stop - first], quaternions[:, : part.stop - first]
+            self.course(Times.of(times[part]), w, q)
             np.matmul(w.T, self.turning, out=angular_velocity[part])
             np.matmul(q.T, self.placing, out=orientation[part])
         return orientation, angular_velocity
@@ -64,7 +68,8 @@ def place(course: Course, turning: Matrix, frame: Row, orientation: Row) -> Plac
     frame: the quaternion of frame-from-body.  Attitudes are ``W q(t) frame``, with the constant W
     such that the first one is ``orientation``.
     """
-    _, q = course(Times.of(np.zeros(1)))
+    q = np.empty((4, 1))
+    course(Times.of(np.zeros(1)), np.empty((3, 1)), q)
     body = product(exact(q), frame)
     start = [x / dot(orientation, orientation).sqrt() for x in orientation]
     world = product(start, [body[0], -body[1], -body[2], -body[3]])
