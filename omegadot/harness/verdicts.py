@@ -47,6 +47,10 @@ class ObservedOrder:
     resolved: bool
 
 
+VANISHED = ObservedOrder(float("inf"), True)
+"""Of an error that falls into rounding at the finest step: it shrinks, if too fast to measure."""
+
+
 def observed_order(timesteps: Sequence[float], errors: Sequence[float]) -> ObservedOrder | None:
     """The order seen between the finest steps: ``log(e1 / e2) / log(h1 / h2)``.
 

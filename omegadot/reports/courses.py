@@ -48,8 +48,8 @@ class Chart:
 
 
 def chart_courses(record: Record) -> dict[str, Chart]:
-    """Every scenario's courses, by name; a scenario without trajectories is left out."""
-    if record.trajectories.is_empty():
+    """Every scenario's courses, by name; a scenario without an engine's trajectory is left out."""
+    if record.trajectories.filter(pl.col("engine") != "exact").is_empty():
         return {}
     samples = _beside_truth(record.trajectories)
     errors = np.full((len(samples), len(CHANNELS)), np.nan)
@@ -57,8 +57,7 @@ def chart_courses(record: Record) -> dict[str, Chart]:
     names = samples.get_column("scenario")
     starts = np.flatnonzero((names != names.shift(1)).fill_null(value=True).to_numpy())
     systems = {entry["name"]: entry.get("system") for entry in record.run["scenarios"]}
-    stops = [*starts[1:], len(samples)][: len(starts)]  # no run but the truth: none of either
-    for start, stop in zip(starts, stops, strict=True):
+    for start, stop in zip(starts, [*starts[1:], len(samples)], strict=True):
         name = names[int(start)]
         if systems.get(name):
             part = samples[int(start) : int(stop)]

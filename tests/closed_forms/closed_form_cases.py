@@ -159,5 +159,6 @@ TOPS = [
     Case("sphere-any-lever", _SPHERE, (0.5, 0.2, 2.0), _T, _tilt(0.3), _G, (0.1, 0.2, 0.3)),
     Case("lever-along-x", _diagonal(0.5, 1, 1), (6.0, 0.2, 0.1), _T, _tilt(0.3), _G, (-0.4, 0, 0)),
     Case("critical", _diagonal(3, 3, 0.5), (2.0, 0.0, 0.0), _T, (1, 1, 0, 0), (0, 0, -8), _FAR),
+    Case("critical-below", _diagonal(7, 7, 0.5), (2, 0, 0), _T, (0, 1, 0, 0), (0, 0, -8), _FAR),
     Case("steady", _diagonal(15, 15, 0.5), (0.0, 1.0, 0.0), _T, (1, 2, 0, 0), (0, 0, -15), _FAR),
 ]

@@ -1,9 +1,9 @@
-"""Writes truth.json: the motions of the grid to thirty digits, found at fifty, two ways.
+"""Writes truth.json: the motions of the grid to thirty digits, by a Taylor series at fifty.
 
-Run it from the repository: ``python tests/closed_forms/make_truth.py``. The Taylor series is the
-truth that is written; where the textbook forms in mpmath's elliptic functions exist (triaxial
-bodies off the separatrix and off the axes; tops clear of the vertical) both must agree to forty
-digits, less what the neighbourhood of the separatrix takes, or nothing is written.
+Run it where the package is installed: ``python tests/closed_forms/make_truth.py`` (a minute). The
+tests hold the file against the textbook forms in mpmath's elliptic functions, the second way,
+wherever these exist: triaxial bodies off the separatrix and off the axes, tops clear of the
+vertical.
 """
 
 from __future__ import annotations

@@ -110,8 +110,25 @@ def test_rates_refuse_what_they_do_not_hold_for() -> None:
         free_rotation_rates(top.system, top.initial)
     with pytest.raises(ValueError, match="no Lagrange top"):
         lagrange_top_rates(free.system, free.initial)
+    weightless = System((free.system.body,), Load(pivot=np.array([0.0, 0.0, 0.1])))
+    with pytest.raises(ValueError, match="no Lagrange top"):
+        lagrange_top_rates(weightless, free.initial)
     with pytest.raises(ValueError, match="vertical"):
         lagrange_top_rates(asleep.system, asleep.initial)
+
+
+def test_no_top_without_symmetry() -> None:
+    """A lever beside the axis, or two moments an eps apart, leave the motion to the series."""
+    gravity, lever = np.array([0.0, 0.0, -9.81]), np.array([0.0, 0.0, 0.3])
+    initial = _named("top").initial
+    for inertia, center in (
+        (np.diag([1.0, 1.0, 0.5]), np.array([0.1, 0.0, 0.3])),
+        (np.diag([1.0, 1.0 + EPS, 0.5]), lever),
+    ):
+        system = System(
+            (Body(np.array(1.0), center, inertia),), Load(gravity=gravity, pivot=np.zeros(3))
+        )
+        assert closed_form_of(system, initial) is None
 
 
 def test_many_bodies_at_once_are_refused() -> None:

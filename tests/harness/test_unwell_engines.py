@@ -116,6 +116,8 @@ def long_run(folder: Path) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [*PROGRAM, *words, "--timestep", "0.001"],
         cwd=folder,
+        # A shell's background jobs ignore SIGINT, and so would every child of such a job.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL) and None,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

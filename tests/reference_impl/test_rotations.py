@@ -64,6 +64,13 @@ def test_exponential_of_a_small_turn_keeps_its_digits(size: float) -> None:
     assert np.max(np.abs(q[1:] - r / 2)) <= 4 * EPS * size  # sin x = x below 1e-9
 
 
+def test_exponential_of_a_small_turn_keeps_all_digits_of_long_double() -> None:
+    # sin x = x (1 - x²/6), and x² at 1e-9 is below the last digit but not at 1e-8
+    r = np.array([0.0, 1e-9, 0.0], np.longdouble)
+    gap = np.abs(exp_quaternion(r)[1:] - r / 2)
+    assert np.max(gap) <= 2 * np.finfo(np.longdouble).eps * r[1]
+
+
 @few
 @given(quaternions, vectors)
 def test_body_form_is_the_world_form_of_the_turned_velocity(q: np.ndarray, w: np.ndarray) -> None:

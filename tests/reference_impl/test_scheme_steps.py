@@ -107,6 +107,25 @@ def test_naive_mean_takes_the_exponential_of_the_mean_velocity() -> None:
     assert_state(stepped("lie-rk4-naive"), R, w, v, p)
 
 
+def test_rk4_on_the_quaternion_is_rk4_on_a_vector() -> None:
+    # q' = Ω(ω) q / 2 with the 4x4 matrix Ω, forces at the direction of q; unit again at the end
+    def rate(y: Array) -> Array:
+        q, w = y[:4], y[4:]
+        omega = np.block([[np.zeros((1, 1)), -w[None]], [w[:, None], -skew(w)]])
+        unit = State(q / np.linalg.norm(q), w, INITIAL.position, INITIAL.linear_velocity)
+        return np.concatenate((omega @ q / 2, forward_dynamics(DRIVEN, unit).angular))
+
+    y = np.concatenate((INITIAL.orientation, INITIAL.angular_velocity))
+    k1 = rate(y)
+    k2 = rate(y + H / 2 * k1)
+    k3 = rate(y + H / 2 * k2)
+    k4 = rate(y + H * k3)
+    end = y + H / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    found = stepped("rk4-quaternion")
+    assert np.max(np.abs(found.orientation - end[:4] / np.linalg.norm(end[:4]))) <= 16 * EPS
+    assert np.max(np.abs(found.angular_velocity - end[4:])) <= 64 * EPS * 4
+
+
 def test_midpoint_satisfies_its_implicit_equation() -> None:
     end = stepped("implicit-midpoint")
     middle = (INITIAL.angular_velocity + end.angular_velocity) / 2

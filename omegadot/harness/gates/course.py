@@ -9,7 +9,14 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.harness.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS, Yardstick
 from omegadot.harness.plan import Sweep
-from omegadot.harness.verdicts import Evidence, Finding, ObservedOrder, judge, observed_order
+from omegadot.harness.verdicts import (
+    VANISHED,
+    Evidence,
+    Finding,
+    ObservedOrder,
+    judge,
+    observed_order,
+)
 from omegadot.reference_impl.body_origin import is_offset
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
@@ -70,6 +77,27 @@ def order_left(courses: list[Course], channel: str) -> ObservedOrder | None:
     return _order(known, [float(np.max(c.against_scheme[channel])) for c in known], channel)
 
 
+def _vanishes(courses: list[Course], sizes: list[Array], channel: str) -> bool:
+    """Whether an error that stands above rounding somewhere is within it at the finest step."""
+    above = {
+        course.sweep.timestep: bool(np.any(size > course.round_off[channel]))
+        for course, size in zip(courses, sizes, strict=True)
+    }
+    return bool(above) and any(above.values()) and not above[min(above)]
+
+
+def evidence_of(course: Course, courses: list[Course], channel: str) -> Evidence:
+    """What one run and the others of its sweep tell of a channel."""
+    error, left = course.error[channel], course.against_scheme.get(channel)
+    gone = _vanishes(courses, [c.error[channel] for c in courses], channel)
+    orders = [VANISHED if gone else order_of(courses, channel)]
+    if left is not None:
+        known = [c for c in courses if c.against_scheme]
+        gone = _vanishes(known, [c.against_scheme[channel] for c in known], channel)
+        orders.append(VANISHED if gone else order_left(courses, channel))
+    return Evidence(error, course.round_off[channel], left, tuple(orders))
+
+
 @dataclass(frozen=True)
 class Declared:
     """What an integrator is held to: its scheme, and its order per channel (None: conserved)."""
@@ -113,10 +141,6 @@ def findings_of(course: Course, declared: Declared, courses: list[Course]) -> di
     """Judge every channel of one run; the other runs of its sweep show the orders."""
     found = {}
     for channel in CHANNELS:
-        left = course.against_scheme.get(channel)
-        orders = [order_of(courses, channel)]
-        if left is not None:
-            orders.append(order_left(courses, channel))
-        evidence = Evidence(course.error[channel], course.round_off[channel], left, tuple(orders))
+        evidence = evidence_of(course, courses, channel)
         found[channel] = judge(evidence, declared.scheme, declared.orders[channel])
     return found

@@ -19,7 +19,7 @@ Motion: TypeAlias = Callable[[Array], tuple[Array, Array]]
 # given arrays (3, n) and (4, n).
 Course: TypeAlias = Callable[[Times, Array, Array], None]
 
-_CHUNK = 4000  # times worked at once: intermediate arrays stay in the cache and below 128 KB
+_CHUNK = 8000  # times worked at once: intermediate arrays stay in the cache and below 128 KB
 
 
 @dataclass(frozen=True)

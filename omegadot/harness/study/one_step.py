@@ -1,0 +1,108 @@
+"""The one-step defect: what a single step from an exact state does wrong."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from omegadot.harness.gates.course import CHANNELS
+from omegadot.harness.measures import Yardstick
+from omegadot.harness.study.orders import (
+    COARSEST,
+    MOST_HALVINGS,
+    SAMPLES,
+    Observed,
+    Point,
+    observe,
+    sweep,
+)
+from omegadot.harness.study.probes import Probe, truth_of
+from omegadot.harness.study.subject import Stepper, is_finite
+from omegadot.reference_impl.exact_solution import exact_solution
+from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.system import State
+
+STARTS = 5  # exact states along the course that a step is taken from
+NAMED_HALVINGS = 2
+NAMED = COARSEST / 2**NAMED_HALVINGS  # rad: the step whose defect is shown
+
+
+@dataclass(frozen=True)
+class Defect:
+    """The largest defect over the starts, at the named step, and its order in the step.
+
+    value: None where that step blew up.  observed: "floor" where it is rounding alone.
+    """
+
+    value: float | None
+    observed: Observed
+
+
+@dataclass(frozen=True, eq=False)
+class Leap:
+    """An exact state and the exact states one step later, the coarsest step first."""
+
+    start: State
+    ends: tuple[State, ...]
+    growth: float
+
+
+def _row(state: State, row: int) -> State:
+    return State(*(values[row] for values in vars(state).values()))
+
+
+@cache
+def _leaps(probe: Probe) -> tuple[Yardstick, tuple[Leap, ...]]:
+    coarsest = probe.timestep(COARSEST)
+    course = truth_of(probe, tuple((coarsest * np.arange(SAMPLES + 1)).tolist()))
+    spans = np.append(coarsest / 2.0 ** np.arange(MOST_HALVINGS + 1), 0.0)
+    leaps = []
+    for row in range(0, SAMPLES, SAMPLES // STARTS):
+        start = _row(course.state, row)
+        _, states = exact_solution(probe.system, start, spans)
+        ends = tuple(
+            State(*(values[[-1, n]] for values in vars(states).values()))
+            for n in range(MOST_HALVINGS + 1)
+        )
+        times = np.array([0.0, coarsest])
+        growth = growth_along(probe.system, times, ends[0], course.yardstick.rate)
+        leaps.append(Leap(start, ends, float(growth[-1])))
+    return course.yardstick, tuple(leaps)
+
+
+def defects(probe: Probe, step: Stepper) -> dict[str, Defect]:
+    """The one-step defect per channel. Its order is one more than that of what accumulates.
+
+    Raises NoAnswerError.
+    """
+    yardstick, leaps = _leaps(probe)
+    coarsest = probe.timestep(COARSEST)
+
+    def measure(halvings: int) -> dict[str, Point] | None:
+        timestep = coarsest / 2**halvings
+        found = dict.fromkeys(CHANNELS, (0.0, 0.0))
+        for leap in leaps:
+            end = step(leap.start, timestep, 1, 1)
+            if not is_finite(end):
+                return None
+            growth = np.array([1.0, leap.growth])
+            bound = yardstick.round_off(timestep, np.array([0, 1]), growth)
+            for channel in CHANNELS:
+                error = yardstick.distance(channel, end, leap.ends[halvings])[-1]
+                # The starts' bounds differ by their growth; the largest is that of them all.
+                found[channel] = (
+                    max(found[channel][0], float(error)),
+                    max(found[channel][1], float(bound[channel][-1])),
+                )
+        return {channel: Point(timestep, *pair) for channel, pair in found.items()}
+
+    points = sweep(measure)
+    return {channel: _defect(points[channel], probe) for channel in CHANNELS}
+
+
+def _defect(points: list[Point], probe: Probe) -> Defect:
+    named = probe.timestep(COARSEST) / 2**NAMED_HALVINGS
+    values = [point.error for point in points if point.timestep == named]
+    return Defect(values[0] if values else None, observe(points))
