@@ -7,11 +7,13 @@ import numpy as np
 from omegadot import __version__
 from omegadot.adapters.protocol import Description, Integrator, Trajectory, UnsupportedError
 from omegadot.adapters.reference import FEATURES, ReferenceAdapter
-from omegadot.reference_impl.exact_solution import exact_solution
+from omegadot.reference_impl.closed_forms import closed_form_of
+from omegadot.reference_impl.series import solve_series
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import State
 
-NAME = "series"
+CLOSED_FORM, SERIES = "closed-form", "series"
+NOTE = "solved, not stepped: no order"
 
 
 class ExactAdapter(ReferenceAdapter):
@@ -23,7 +25,9 @@ class ExactAdapter(ReferenceAdapter):
         return Description(
             name="exact",
             version=__version__,
-            integrators=(Integrator(NAME, None, {}, note="solved, not stepped: no order"),),
+            integrators=tuple(
+                Integrator(name, None, {}, note=NOTE) for name in (CLOSED_FORM, SERIES)
+            ),
             conventions=("the project's own: equation (8), body axes, about the centre of mass",),
             features=FEATURES,
             licence="Apache-2.0",
@@ -34,14 +38,19 @@ class ExactAdapter(ReferenceAdapter):
     ) -> Trajectory:
         """The exact states at the times of the kept steps; NaN from a state that is not finite.
 
-        Raises UnsupportedError for another integrator.
+        Raises UnsupportedError for another integrator, and for a closed form that is not known.
         """
-        if integrator != NAME:
+        if integrator not in (CLOSED_FORM, SERIES):
             raise UnsupportedError(f"the exact solution has no integrator {integrator!r}.")
         times = np.multiply(kept_steps(steps, every), timestep)
         if not _is_finite(initial):
             return Trajectory(times, _nowhere(len(times)))
-        return Trajectory(times, exact_solution(self.system, initial, times)[1])
+        if integrator == SERIES:
+            return Trajectory(times, solve_series(self.system, initial, times))
+        form = closed_form_of(self.system, initial)
+        if form is None:
+            raise UnsupportedError("no closed form is known for this motion; take the series.")
+        return Trajectory(times, form(times))
 
 
 def _is_finite(state: State) -> bool:

@@ -76,10 +76,11 @@ def _run(adapter: Adapter, request: Request) -> Any:
 
 
 def _solve(_: Adapter, request: Request) -> Any:
-    """The exact states, and exact omega-dot, at any times; no engine takes part."""
+    """The exact states, their floor, and exact omega-dot; no engine takes part."""
     system, initial = system_from(request["system"]), state_from(request["initial"])
-    source, state = exact_solution(system, initial, request["times"])
-    return {"source": source, "state": state, "omega_dot": forward_dynamics(system, state).angular}
+    found = exact_solution(system, initial, request["times"])
+    omega_dot = forward_dynamics(system, found.state).angular
+    return {**vars(found), "omega_dot": omega_dot}
 
 
 def _companion(_: Adapter, request: Request) -> Any:

@@ -11,6 +11,7 @@ from omegadot.harness.measures import Yardstick
 from omegadot.harness.plan import Case, Sweep
 from omegadot.harness.truth import Truth
 from omegadot.harness.worker_process import Answer
+from omegadot.reference_impl.growth import growth_along
 
 STEPS_TIMED = 64
 
@@ -26,7 +27,13 @@ def case_truth(exact: Driver, case: Case) -> Truth | str:
         return f"no exact solution to compare with: {answer.reason}"
     state = state_from(answer.result["state"])
     yardstick = Yardstick(case.system, times, state)
-    return Truth(answer.result["source"], times, state, answer.result["omega_dot"], yardstick)
+    found, floor = answer.result, answer.result["floor"]
+    relative = {
+        "omega": floor["angular_velocity"] / yardstick.rate,
+        "attitude": floor["attitude"],
+    }
+    growth = growth_along(case.system, times, state, yardstick.rate)
+    return Truth(found["source"], times, state, found["omega_dot"], growth, relative, yardstick)
 
 
 def case_companions(

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from omegadot import __version__
+from omegadot.harness.clusters import clusters_of_run
 from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
 from omegadot.harness.machine import describe_machine, package_versions
 from omegadot.harness.plan import Case, EngineChoice
@@ -62,6 +63,7 @@ def record_of(outcome: Outcome, request: RunRequest, command: list[str], seconds
         "engines": _engines(outcome),
         "scenarios": [_scenario(case) for case in request.cases],
         "worker_deaths": [{"engine": name, "how": how} for name, how in outcome.deaths],
+        "clusters": [vars(cluster) for cluster in clusters_of_run(outcome.cases)],
         "tasks": tasks_of_run(outcome, list(request.cases), request.setup),
     }
     return Record(

@@ -10,14 +10,12 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.wire import acceleration_from, body_from, state_from
 from omegadot.harness.drive import CaseResult, Questions
-from omegadot.harness.gates import cost, equation, invariants, model, trajectory
+from omegadot.harness.gates import cost, equation, invariants, model, phase, scheme, trajectory
 from omegadot.harness.gates.course import (
-    CHANNELS,
     Course,
     Declared,
     findings_of,
     measure,
-    order_of,
     orders_for,
     scheme_key,
 )
@@ -96,7 +94,7 @@ def _courses(
         if _is_finite(state):
             companion = truth.companions.get((key, sweep.timestep)) if key else None
             courses[sweep.timestep] = measure(
-                truth.yardstick, sweep, truth.at(sweep), state, companion
+                truth.yardstick, sweep, truth.samples(sweep), state, companion
             )
     return courses
 
@@ -130,20 +128,24 @@ def judge_integrator(
     finer = {step: answer for step, (_, answer) in refinements.items()}
     every = [*sweeps, *(sweep for sweep, _ in refinements.values())]
     courses = _courses(truth, integrator, {**answers, **finer}, every)
-    orders = {channel: order_of(list(courses.values()), channel) for channel in CHANNELS}
     declared = Declared(integrator.scheme, orders_for(integrator, truth.yardstick.system))
     for sweep in sweeps:
         answer, course = answers[sweep.timestep], courses.get(sweep.timestep)
         if course is None:
             yield _failed(integrator, sweep, answer)
             continue
-        findings = findings_of(course, declared, list(courses.values()))
-        rows = [trajectory.time_row(sweep, answer.result["time"])]
+        state, known = state_from(answer.result["state"]), list(courses.values())
+        findings = findings_of(course, declared, known)
+        match = scheme.match_row(truth, integrator, course, state)
+        rows = [match, *scheme.order_rows(known, declared, course)]
         rows += invariants.rows(course, findings, sweep.times)
-        rows += trajectory.rows(course, findings, orders)
+        rows.append(trajectory.time_row(sweep, answer.result["time"]))
+        rows += trajectory.rows(course, findings)
+        rows += phase.rows(truth, course, state)
         rows += cost.rows(sweep.timestep, answer.result["seconds_per_step"])
+        why = match.note if match.verdict == "fail" else _why(findings)
         unresolved = any(f.kind == "unresolved" for f in findings.values())
-        yield JudgedRun(integrator, sweep, "ok", "", rows, _why(findings), unresolved)
+        yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
 
 
 def judge_case(

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
-from omegadot.harness.gates.course import Companion, SchemeKey
+from omegadot.harness.gates.course import Companion, ExactSamples, SchemeKey
 from omegadot.harness.measures import Yardstick
 from omegadot.harness.plan import Case, Sweep
 from omegadot.reference_impl.system import Array, State
@@ -14,19 +15,35 @@ from omegadot.reference_impl.system import Array, State
 
 @dataclass(frozen=True)
 class Truth:
-    """The exact solution of one case. source: "closed-form" or "series"."""
+    """The exact solution of one case.
+
+    source: "closed-form" or "series".  growth: (n,), of rounding along the exact course.
+    floor: (n,) per channel, how far a perfect answer in double may be off: omega relative to the
+    yardstick's rate, attitude in rad.
+    """
 
     source: str
     times: Array
     state: State
     omega_dot: Array
+    growth: Array
+    floor: dict[str, Array]
     yardstick: Yardstick
     companions: dict[tuple[SchemeKey, float], Companion] = field(default_factory=dict)
 
     def at(self, sweep: Sweep) -> State:
         """The exact states at the samples of one sweep."""
-        rows = np.searchsorted(self.times, sweep.times)
+        rows = self._rows(sweep)
         return State(*(values[rows] for values in vars(self.state).values()))
+
+    def samples(self, sweep: Sweep) -> ExactSamples:
+        """What there is to measure one sweep's runs by."""
+        rows = self._rows(sweep)
+        floor = {channel: values[rows] for channel, values in self.floor.items()}
+        return ExactSamples(self.at(sweep), self.growth[rows], floor)
+
+    def _rows(self, sweep: Sweep) -> NDArray[np.intp]:
+        return np.searchsorted(self.times, sweep.times)
 
 
 def path_states(case: Case, truth: Truth, most: int) -> State:

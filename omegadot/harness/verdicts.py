@@ -73,12 +73,14 @@ class Evidence:
     error: (n,), the distance from the exact course.  round_off: (n,), what rounding may grow to.
     left: (n,), the distance from the reference stepping the declared scheme, where there is one.
     orders: the observed orders of `error` and, where there is one, of `left`.
+    floor: (n,), how far a perfect answer may be off, where that is known.
     """
 
     error: Array
     round_off: Array
     left: Array | None
     orders: tuple[ObservedOrder | None, ...]
+    floor: Array | None = None
 
 
 def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Finding:
@@ -101,6 +103,8 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
         largest = float(np.max(evidence.left[bounded]))
         until = "" if bounded.all() else ", until the scheme blows up"
         return Finding("explained", f"explained by {scheme}, to {largest:.1e}{until}")
+    if evidence.floor is not None and np.all(evidence.error <= evidence.round_off + evidence.floor):
+        return Finding("beyond", "not judged: below the resolvable floor of this motion")
     if declared is None:
         return Finding("unexplained", "declared conserved, and it drifts")
     return _by_order(evidence.orders, declared)

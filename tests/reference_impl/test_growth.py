@@ -39,6 +39,31 @@ def test_growth_of_a_steady_spin_is_the_matrix_exponential(axis: int) -> None:
     assert (found[-1] > 1e3) == (axis == 1)
 
 
+@pytest.mark.parametrize("on", [TOP, DRIVEN, DAMPED], ids=["top", "driven", "damped"])
+def test_growth_is_the_largest_over_all_starts(on: System) -> None:
+    # each tangent map by itself, from the exact motion of twelve neighbours of each start
+    rate, delta = 3.0, 1e-6
+    times = np.linspace(0, 2, 9)
+    states = solve_series(on, start([0.5, rate, 1.0], [1, 2, 3, 4], on=on), times)
+    expected = np.ones(len(times))
+    axes = delta * np.concatenate((np.eye(6), -np.eye(6)))
+    for s in range(len(times) - 1):
+        w = np.broadcast_to(states.angular_velocity[s], (12, 3))
+        here = State(states.orientation[s], w, np.zeros((12, 3)), np.zeros((12, 3)))
+        ends = solve_series(on, changed(here, axes, rate), times[s + 1 :] - times[s])
+        plus, minus = (
+            rows(ends, (slice(None), slice(0, 6))),
+            rows(ends, (slice(None), slice(6, 12))),
+        )
+        maps = np.swapaxes(changes(minus, plus, rate), -1, -2) / (2 * delta)
+        expected[s + 1 :] = np.maximum(expected[s + 1 :], np.linalg.norm(maps, 2, axis=(-1, -2)))
+    found = growth_along(on, times, states, rate)
+    # a start is chosen by its sum of squares, which is within the root of six of the norm
+    assert np.all(found <= expected * (1 + 1e-4))
+    assert np.all(found >= expected / np.sqrt(6) * (1 - 1e-4))
+    assert np.allclose(found[1], expected[1], rtol=1e-4)
+
+
 def test_growth_beyond_the_square_root_of_eps_is_found() -> None:
     # Past the separatrix twice: a flip from 1e-7 amplifies by up to 1e14, beyond any difference
     # of two runs. The logarithm grows by lambda t while the body lingers at the saddle.

@@ -1,1 +1,1 @@
-"""The gates, in order: model, equation, invariants, trajectory, cost. Each is a small file."""
+"""The gates, in order: model, equation, scheme, invariants, trajectory, cost. Small files all."""

@@ -41,20 +41,31 @@ class Course:
     error: dict[str, Array]
     round_off: dict[str, Array]
     against_scheme: dict[str, Array] = field(default_factory=dict)
+    floor: dict[str, Array] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ExactSamples:
+    """The exact course at one sweep's samples, the growth of rounding along it, and its floor."""
+
+    state: State
+    growth: Array
+    floor: dict[str, Array]
 
 
 def measure(
-    yardstick: Yardstick, sweep: Sweep, exact: State, state: State, companion: Companion | None
+    yardstick: Yardstick, sweep: Sweep, exact: ExactSamples, state: State, own: Companion | None
 ) -> Course:
     """Distances of `state` from the exact course and, where there is one, the scheme's own."""
-    growth = companion.growth if companion else np.ones(len(sweep.times))
+    growth = own.growth if own else exact.growth
     return Course(
         sweep=sweep,
-        error={c: yardstick.distance(c, state, exact) for c in CHANNELS},
+        error={c: yardstick.distance(c, state, exact.state) for c in CHANNELS},
         round_off=yardstick.round_off(sweep.timestep, sweep.sample_steps, growth),
-        against_scheme={c: yardstick.distance(c, state, companion.state) for c in CHANNELS}
-        if companion
+        against_scheme={c: yardstick.distance(c, state, own.state) for c in CHANNELS}
+        if own
         else {},
+        floor=exact.floor,
     )
 
 
@@ -95,7 +106,9 @@ def evidence_of(course: Course, courses: list[Course], channel: str) -> Evidence
         known = [c for c in courses if c.against_scheme]
         gone = _vanishes(known, [c.against_scheme[channel] for c in known], channel)
         orders.append(VANISHED if gone else order_left(courses, channel))
-    return Evidence(error, course.round_off[channel], left, tuple(orders))
+    return Evidence(
+        error, course.round_off[channel], left, tuple(orders), course.floor.get(channel)
+    )
 
 
 @dataclass(frozen=True)

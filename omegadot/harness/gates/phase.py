@@ -121,7 +121,7 @@ def flip_rows(system: System, exact: Hermite, state: State, floor: float, gap: f
     steepness = np.abs(exact.at(flips)[1] @ axis)
     with np.errstate(divide="ignore"):
         open_time = float(np.max(floor / steepness))
-    note = f"{len(found)} flips where the exact motion has {len(flips)}"
+    note = f"flips: {len(found)}, in the exact motion: {len(flips)}"
     return [Row(GATE, "time", "flip_time_error", error, "s", open_time, note=note)]
 
 

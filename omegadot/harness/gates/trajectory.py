@@ -9,7 +9,7 @@ from omegadot.harness.measures import TRAJECTORY_UNITS
 from omegadot.harness.plan import Sweep
 from omegadot.harness.rows import Row, within
 from omegadot.harness.scales import EPS
-from omegadot.harness.verdicts import Finding, ObservedOrder
+from omegadot.harness.verdicts import Finding
 from omegadot.reference_impl.system import Array
 
 GATE = "trajectory"
@@ -25,10 +25,8 @@ def time_row(sweep: Sweep, times: Array) -> Row:
     return within(GATE, "time", "sample_times", late, "s", 2 * EPS * float(expected[-1]))
 
 
-def rows(
-    course: Course, findings: dict[str, Finding], orders: dict[str, ObservedOrder | None]
-) -> list[Row]:
-    """The largest error per channel, what is left after the declared scheme, the observed order."""
+def rows(course: Course, findings: dict[str, Finding]) -> list[Row]:
+    """The largest error per channel, and what is left of it after the declared scheme."""
     found = []
     for channel, unit in TRAJECTORY_UNITS.items():
         finding, bound = findings[channel], float(np.max(course.round_off[channel]))
@@ -40,8 +38,4 @@ def rows(
         if channel in course.against_scheme:
             left = float(np.max(course.against_scheme[channel]))
             found.append(Row(GATE, channel, "unexplained_max", left, unit, bound))
-    for channel, order in orders.items():
-        if order is not None:
-            note = "" if order.resolved else "not resolved by this sweep"
-            found.append(Row("scheme", channel, "observed_order", order.value, "1", note=note))
     return found

@@ -9,24 +9,19 @@ import numpy as np
 
 from omegadot.harness.gates.course import CHANNELS
 from omegadot.harness.measures import Yardstick
-from omegadot.harness.study.orders import (
-    COARSEST,
-    MOST_HALVINGS,
-    SAMPLES,
-    Observed,
-    Point,
-    observe,
-    sweep,
-)
+from omegadot.harness.study.orders import COARSEST, MOST_HALVINGS, SAMPLES, Observed, Point
+from omegadot.harness.study.orders import observe, sweep
 from omegadot.harness.study.probes import Probe, truth_of
 from omegadot.harness.study.subject import Stepper, is_finite
-from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.series import solve_series
 from omegadot.reference_impl.system import State
 
 STARTS = 5  # exact states along the course that a step is taken from
-NAMED_HALVINGS = 2
-NAMED = COARSEST / 2**NAMED_HALVINGS  # rad: the step whose defect is shown
+# rad: one step errs by a power more than many, and meets rounding sooner
+LONGEST = 2 * COARSEST
+NAMED_HALVINGS = 3
+NAMED = LONGEST / 2**NAMED_HALVINGS  # rad: the step whose defect is shown
 
 
 @dataclass(frozen=True)
@@ -55,18 +50,19 @@ def _row(state: State, row: int) -> State:
 
 @cache
 def _leaps(probe: Probe) -> tuple[Yardstick, tuple[Leap, ...]]:
-    coarsest = probe.timestep(COARSEST)
-    course = truth_of(probe, tuple((coarsest * np.arange(SAMPLES + 1)).tolist()))
-    spans = np.append(coarsest / 2.0 ** np.arange(MOST_HALVINGS + 1), 0.0)
+    longest = probe.timestep(LONGEST)
+    instants = probe.timestep(COARSEST) * np.arange(SAMPLES + 1)
+    course = truth_of(probe, tuple(instants.tolist()))
+    spans = np.append(longest / 2.0 ** np.arange(MOST_HALVINGS + 1), 0.0)
     leaps = []
     for row in range(0, SAMPLES, SAMPLES // STARTS):
         start = _row(course.state, row)
-        _, states = exact_solution(probe.system, start, spans)
+        states = solve_series(probe.system, start, spans)
         ends = tuple(
             State(*(values[[-1, n]] for values in vars(states).values()))
             for n in range(MOST_HALVINGS + 1)
         )
-        times = np.array([0.0, coarsest])
+        times = np.array([0.0, longest])
         growth = growth_along(probe.system, times, ends[0], course.yardstick.rate)
         leaps.append(Leap(start, ends, float(growth[-1])))
     return course.yardstick, tuple(leaps)
@@ -78,10 +74,10 @@ def defects(probe: Probe, step: Stepper) -> dict[str, Defect]:
     Raises NoAnswerError.
     """
     yardstick, leaps = _leaps(probe)
-    coarsest = probe.timestep(COARSEST)
+    longest = probe.timestep(LONGEST)
 
     def measure(halvings: int) -> dict[str, Point] | None:
-        timestep = coarsest / 2**halvings
+        timestep = longest / 2**halvings
         found = dict.fromkeys(CHANNELS, (0.0, 0.0))
         for leap in leaps:
             end = step(leap.start, timestep, 1, 1)
@@ -103,6 +99,6 @@ def defects(probe: Probe, step: Stepper) -> dict[str, Defect]:
 
 
 def _defect(points: list[Point], probe: Probe) -> Defect:
-    named = probe.timestep(COARSEST) / 2**NAMED_HALVINGS
+    named = probe.timestep(LONGEST) / 2**NAMED_HALVINGS
     values = [point.error for point in points if point.timestep == named]
     return Defect(values[0] if values else None, observe(points))

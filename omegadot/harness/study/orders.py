@@ -13,11 +13,12 @@ from omegadot.harness.study.subject import Stepper, is_finite
 from omegadot.harness.verdicts import ORDER_TOLERANCE
 
 COARSEST = 0.4  # rad a step: an error of order 4 then has decades to go before it meets rounding
-SAMPLES = 20  # the steps of the coarsest run, all of them kept: 8 rad in all
+SAMPLES = 10  # the steps of the coarsest run, all of them kept: 4 rad in all
 MOST_HALVINGS = 9
-# Where each halving halves what a slope lacks, slopes that spread by this much miss the order by
-# less: half the tolerance leaves room for those that do not shrink as fast.
-SPREAD = ORDER_TOLERANCE / 2
+# Where each halving halves what a slope lacks, three slopes that spread by s have a mean within
+# 0.8 s of the order. The sweep goes on to half the tolerance; where rounding comes first, the whole
+# of it will do.
+SPREADS = (ORDER_TOLERANCE / 2, ORDER_TOLERANCE)
 FEWEST_SLOPES = 3
 AT_THE_FLOOR = 2  # so many finest steps within rounding end a sweep
 
@@ -36,42 +37,49 @@ class Observed:
     """kind: "settled", "floor" (nothing above rounding) or "unresolved".
 
     order: the regressed slope; where it is unresolved the finest one, None where there is none.
+    spread: how far apart the slopes are that it was regressed over.
     """
 
     kind: str
     order: float | None = None
+    spread: float = 0.0
 
 
 def observe(points: Iterable[Point]) -> Observed:
     """Regress log error on log step over the settled part of a sweep, above the floor.
 
     The settled part starts at the finest step whose error is clear of rounding and goes on to
-    coarser ones as long as the slopes of neighbouring steps spread by no more than SPREAD.
+    coarser ones as long as the slopes of neighbouring steps spread no more than they may.
     """
     ordered = sorted(points, key=lambda point: point.timestep)
     first = next((n for n, point in enumerate(ordered) if point.error > point.bound), None)
     if first is None:
         return Observed("floor" if ordered else "unresolved")
-    clear = ordered[first:]
-    logs = np.log([(point.timestep, point.error) for point in clear]).T
-    slopes = np.diff(logs[1]) / np.diff(logs[0])
-    count = _settled(slopes.tolist())
-    if count < FEWEST_SLOPES:
-        return Observed("unresolved", float(slopes[0]) if len(slopes) else None)
-    return Observed("settled", float(np.polyfit(logs[0, : count + 1], logs[1, : count + 1], 1)[0]))
+    steps, errors = np.log([(point.timestep, point.error) for point in ordered[first:]]).T
+    slopes = np.diff(errors) / np.diff(steps)
+    for spread in SPREADS:
+        count = _settled(slopes.tolist(), spread)
+        if count >= FEWEST_SLOPES:
+            order = float(np.polyfit(steps[: count + 1], errors[: count + 1], 1)[0])
+            return Observed("settled", order, float(np.ptp(slopes[:count])))
+    return Observed("unresolved", float(slopes[0]) if len(slopes) else None)
 
 
-def _settled(slopes: Sequence[float]) -> int:
-    """How many slopes, from the finest on, spread by no more than SPREAD."""
+def _settled(slopes: Sequence[float], spread: float) -> int:
+    """How many slopes, from the finest on, spread by no more than this."""
     count = 0
-    while count < len(slopes) and np.ptp(slopes[: count + 1]) <= SPREAD:
+    while count < len(slopes) and np.ptp(slopes[: count + 1]) <= spread:
         count += 1
     return count
 
 
-def _at_the_floor(points: Sequence[Point]) -> bool:
-    finest = sorted(points, key=lambda point: point.timestep)[:AT_THE_FLOOR]
-    return len(finest) == AT_THE_FLOOR and all(p.error <= p.bound for p in finest)
+def _decided(points: Sequence[Point]) -> bool:
+    """Whether finer steps can add nothing: the order is sharp, or the finest two are rounding."""
+    finest = sorted(points, key=lambda point: point.timestep)[:2]
+    if len(finest) == 2 and all(point.error <= point.bound for point in finest):
+        return True
+    found = observe(points)
+    return found.kind == "settled" and found.spread <= SPREADS[0]
 
 
 def sweep(measure: Callable[[int], Mapping[str, Point] | None]) -> dict[str, list[Point]]:
@@ -84,8 +92,7 @@ def sweep(measure: Callable[[int], Mapping[str, Point] | None]) -> dict[str, lis
         found = measure(halvings)
         for channel, point in (found or {}).items():
             points[channel].append(point)
-        decided = (observe(p).kind == "settled" or _at_the_floor(p) for p in points.values())
-        if halvings >= FEWEST_SLOPES and all(decided):
+        if halvings >= FEWEST_SLOPES and all(_decided(p) for p in points.values()):
             break
     return points
 

@@ -13,10 +13,10 @@ from functools import cache
 import numpy as np
 
 from omegadot.harness.measures import Yardstick
-from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.series import solve_series
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
 
@@ -113,6 +113,6 @@ class Truth:
 def truth_of(probe: Probe, times: tuple[float, ...]) -> Truth:
     """The exact states of a probe at `times`, the first of them zero."""
     moments = np.array(times)
-    _, state = exact_solution(probe.system, probe.initial, moments)
+    state = solve_series(probe.system, probe.initial, moments)
     yardstick = Yardstick(probe.system, moments, state)
     return Truth(state, yardstick, growth_along(probe.system, moments, state, yardstick.rate))

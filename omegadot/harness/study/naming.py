@@ -1,0 +1,48 @@
+"""One name for an integrator out of what it matched on each probe."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from omegadot.reference_impl.schemes import SCHEMES
+
+
+@dataclass(frozen=True)
+class Naming:
+    """scheme: None where nothing matches.  kinds: the probes on which it is that scheme.
+
+    others: schemes that these probes cannot tell from it.
+    """
+
+    scheme: str | None
+    kinds: tuple[str, ...]
+    others: tuple[str, ...] = ()
+
+
+def name_schemes(
+    matched: Mapping[str, Sequence[str]], declared: Mapping[str, str | None]
+) -> list[Naming]:
+    """The fewest schemes that cover all probes, the one that covers most first.
+
+    matched and declared: by kind of probe. Where several schemes cover as much, one that is
+    declared there is named, else the simplest, the order of SCHEMES being that of simplicity.
+    """
+    left = [kind for kind, found in matched.items() if found]
+    named = []
+    while left:
+
+        def covered(scheme: str, left: Sequence[str] = tuple(left)) -> tuple[str, ...]:
+            return tuple(kind for kind in left if scheme in matched[kind])
+
+        def merit(scheme: str) -> tuple[int, bool]:
+            kinds = covered(scheme)
+            return len(kinds), any(declared.get(kind) == scheme for kind in kinds)
+
+        best = max(SCHEMES, key=merit)
+        kinds = covered(best)
+        others = tuple(s for s in SCHEMES if s != best and covered(s) == kinds)
+        named.append(Naming(best, kinds, others))
+        left = [kind for kind in left if kind not in kinds]
+    unknown = tuple(kind for kind, found in matched.items() if not found)
+    return [*named, Naming(None, unknown)] if unknown else named

@@ -1,0 +1,162 @@
+"""The study of an engine: every integrator on every probe."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from omegadot.adapters.protocol import Description, Integrator
+from omegadot.adapters.wire import description_of
+from omegadot.harness.gates.course import CHANNELS, orders_for, scheme_key
+from omegadot.harness.plan import EngineChoice
+from omegadot.harness.study.fingerprint import Match, fingerprint
+from omegadot.harness.study.interpreter import worker_command
+from omegadot.harness.study.naming import Naming, name_schemes
+from omegadot.harness.study.one_step import Defect, defects
+from omegadot.harness.study.orders import Observed, global_errors, observe
+from omegadot.harness.study.probes import PROBES, Probe
+from omegadot.harness.study.subject import NoAnswerError, Stepper, load, stepper_of
+from omegadot.harness.usage import check_integrators
+from omegadot.harness.verdicts import ORDER_TOLERANCE
+from omegadot.harness.worker_process import Answer, WorkerProcess
+
+TIMEOUT = 60.0  # s, for one request to an engine
+
+
+@dataclass(frozen=True)
+class Order:
+    """One channel on one probe. declared: None where it is declared to be conserved."""
+
+    declared: int | None
+    observed: Observed
+
+    @property
+    def verdict(self) -> str:
+        """ "holds", "higher", "lower", "conserved", "drifts", "floor" or "unresolved"."""
+        if self.observed.kind == "floor":
+            return "conserved" if self.declared is None else "floor"
+        if self.declared is None:
+            return "drifts"
+        if self.observed.kind == "unresolved" or self.observed.order is None:
+            return "unresolved"
+        excess = self.observed.order - self.declared
+        if abs(excess) <= ORDER_TOLERANCE:
+            return "holds"
+        return "higher" if excess > 0 else "lower"
+
+
+@dataclass(frozen=True)
+class ProbeStudy:
+    """One integrator on one probe. answer: what went wrong, or ok.
+
+    as_declared: whether the declared scheme is among the matches; None where none is declared.
+    """
+
+    answer: Answer
+    declared: str | None = None
+    as_declared: bool | None = None
+    matches: tuple[Match, ...] = ()
+    orders: dict[str, Order] = field(default_factory=dict)
+    defects: dict[str, Defect] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class IntegratorStudy:
+    """One integrator; probes by kind."""
+
+    name: str
+    probes: dict[str, ProbeStudy]
+
+    @property
+    def studied(self) -> dict[str, ProbeStudy]:
+        """The probes that it answered."""
+        return {kind: probe for kind, probe in self.probes.items() if probe.answer.ok}
+
+    @property
+    def namings(self) -> list[Naming]:
+        """Its scheme, or schemes where they depend on the system."""
+        matched = {k: [m.scheme for m in p.matches] for k, p in self.studied.items()}
+        return name_schemes(matched, {k: p.declared for k, p in self.studied.items()})
+
+    @property
+    def departures(self) -> list[str]:
+        """What is not as declared, one clause each."""
+        found = []
+        for kind, probe in self.studied.items():
+            if probe.as_declared is False:
+                found.append(f"{kind}: it does not step the declared {probe.declared}")
+            for channel, order in probe.orders.items():
+                if order.verdict == "drifts":
+                    found.append(f"{kind}: {channel} is declared conserved, and it drifts")
+                if order.verdict == "lower":
+                    seen = f"order {order.observed.order:.2f}, declared {order.declared}"
+                    found.append(f"{kind}: {channel} is of {seen}")
+        return found
+
+
+@dataclass(frozen=True)
+class EngineStudy:
+    """One engine. answer: why there is nothing of it, or ok."""
+
+    name: str
+    answer: Answer
+    version: str = ""
+    integrators: tuple[IntegratorStudy, ...] = ()
+
+
+def study_probe(probe: Probe, integrator: Integrator, step: Stepper) -> ProbeStudy:
+    """One integrator on one probe; what the engine fails to answer is the answer."""
+    declared, key = orders_for(integrator, probe.system), scheme_key(integrator, probe.system)
+    try:
+        matches = tuple(fingerprint(probe, step))
+        errors = global_errors(probe, step)
+        wrongs = defects(probe, step)
+    except NoAnswerError as error:
+        return ProbeStudy(error.answer)
+    return ProbeStudy(
+        answer=Answer("ok"),
+        declared=integrator.scheme,
+        as_declared=None if key is None else any(match.key == key for match in matches),
+        matches=matches,
+        orders={c: Order(declared.get(c), observe(errors[c])) for c in CHANNELS},
+        defects=wrongs,
+    )
+
+
+def _chosen(choice: EngineChoice, description: Description) -> list[str]:
+    check_integrators(choice, description)
+    names = [integrator.name for integrator in description.integrators]
+    return [name for name in names if name in (choice.integrators or names)]
+
+
+def study_engine(
+    choice: EngineChoice, python: str | None = None, probes: Sequence[Probe] = PROBES
+) -> EngineStudy:
+    """Start an engine, under another interpreter where one is given, and study it.
+
+    Raises UsageError where an integrator is asked for that it does not have.
+    """
+    command = None if python is None else worker_command(python)
+    worker = WorkerProcess(choice.target, "physics", TIMEOUT, command)
+    try:
+        started = worker.start()
+        if not started.ok:
+            return EngineStudy(choice.name, started)
+        description = description_of(started.result)
+        names = _chosen(choice, description)
+        found: dict[str, dict[str, ProbeStudy]] = {name: {} for name in names}
+        for probe in probes:
+            for name in names:
+                found[name][probe.kind] = _study(worker, probe, name)
+    finally:
+        worker.finish()
+    studies = tuple(IntegratorStudy(name, kinds) for name, kinds in found.items())
+    return EngineStudy(choice.name, Answer("ok"), description.version, studies)
+
+
+def _study(worker: WorkerProcess, probe: Probe, name: str) -> ProbeStudy:
+    try:
+        integrator = load(worker, probe)[name]
+    except NoAnswerError as error:
+        return ProbeStudy(error.answer)
+    return study_probe(probe, integrator, stepper_of(worker, name))
