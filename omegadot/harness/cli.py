@@ -1,4 +1,4 @@
-"""The command line: ``omegadot run | engines | scenarios | report``."""
+"""The command line: ``omegadot run | engines | scenarios | schemes | report``."""
 
 from __future__ import annotations
 
@@ -24,6 +24,14 @@ class Format(StrEnum):
 
     text = "text"
     json = "json"
+
+
+class PageFormat(StrEnum):
+    """How results are printed that may also become a page."""
+
+    text = "text"
+    json = "json"
+    markdown = "markdown"
 
 
 class Setup(StrEnum):
@@ -73,8 +81,8 @@ def run(
     import os
 
     from omegadot.harness.command_run import run_and_write
+    from omegadot.harness.outcome import RunRequest
     from omegadot.harness.print_run import print_json, print_text
-    from omegadot.harness.run import RunRequest
     from omegadot.harness.usage import case_of, engine_choices, scenarios_of
     from omegadot.reports.record import check_folder
 
@@ -113,6 +121,41 @@ def scenarios(
     from omegadot.harness.command_scenarios import print_scenarios
 
     print_scenarios(as_json=output is Format.json)
+
+
+@app.command()
+def schemes(
+    engine: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[:INTEGRATOR]",
+            help="An engine; repeat for more. Default: all but exact and reference.",
+        ),
+    ] = None,
+    adapter: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
+    ] = None,
+    python: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=PATH",
+            help="The interpreter that an engine runs under, so that an other version of it in its "
+            "own environment, beside NumPy and SciPy, can be studied; repeatable.",
+        ),
+    ] = None,
+    output: Annotated[
+        PageFormat, typer.Option("--format", help="What to print.")
+    ] = PageFormat.text,
+) -> None:
+    """Name the scheme of every integrator, from its steps alone, with its orders and defects.
+
+    Exit codes: 0 all is as declared, 1 something is not, 2 wrong usage, 3 an engine crashed, hung
+    or could not be started.
+    """
+    from omegadot.harness.command_schemes import print_schemes
+
+    raise typer.Exit(print_schemes(engine or [], adapter or [], python or [], output.value))
 
 
 @app.command()

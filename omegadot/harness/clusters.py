@@ -18,7 +18,7 @@ from omegadot.adapters.wire import state_from
 from omegadot.harness.gates.course import scheme_key
 from omegadot.harness.likeness import ROTATION, likeness
 from omegadot.harness.plan import Case, Sweep
-from omegadot.harness.run import EngineCase, JudgedCase
+from omegadot.harness.outcome import EngineCase, JudgedCase
 from omegadot.harness.truth import Truth
 from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.system import Array
@@ -31,14 +31,16 @@ NO_VOTE = ("exact", "reference")
 class Cluster:
     """Runs of one scenario and step that turn alike, as ``engine:integrator``.
 
-    scheme: the reference's that they equal; None where they equal none. Where a motion does not
-    tell schemes apart it is the one that most members declare.
+    scheme: the reference's that they equal, None where they equal none.  also: others that they
+    equal too, where the motion does not tell schemes apart; `scheme` is then the one that most
+    members declare.
     """
 
     scenario: str
     timestep: float
     scheme: str | None
     members: tuple[str, ...]
+    also: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ def _runs(truth: Truth, engines: Iterable[EngineCase], sweep: Sweep) -> list[_Co
             state = state_from(answer.result["state"])
             key = scheme_key(judged.integrator, truth.yardstick.system)
             companion = truth.companions.get((key, sweep.timestep)) if key else None
-            growth = companion.growth if companion else np.ones(len(sweep.times))
+            growth = companion.growth if companion else truth.samples(sweep).growth
             found.append(
                 _Course(
                     f"{engine.engine.name}:{judged.integrator.name}",
@@ -123,14 +125,12 @@ def _grouped(runs: list[_Course], rate: float) -> list[list[_Course]]:
     return groups
 
 
-def _named(group: list[_Course], schemes: list[_Course], rate: float) -> str | None:
-    agreeing = [
-        scheme.name
-        for scheme, alike in zip(schemes, _alike(group[0], schemes, rate), strict=True)
-        if alike
-    ]
-    declared = Counter(run.scheme for run in group if run.scheme in agreeing)
-    return declared.most_common(1)[0][0] if declared else next(iter(agreeing), None)
+def _named(group: list[_Course], schemes: list[_Course], rate: float) -> list[str]:
+    """The schemes that a group equals, the one that most of it declare first."""
+    alike = zip(schemes, _alike(group[0], schemes, rate), strict=True)
+    agreeing = list(dict.fromkeys(scheme.name for scheme, equal in alike if equal))
+    declared = Counter(run.scheme for run in group)
+    return sorted(agreeing, key=lambda name: -declared[name])
 
 
 def clusters_of(case: Case, truth: Truth, engines: Sequence[EngineCase]) -> list[Cluster]:
@@ -141,8 +141,9 @@ def clusters_of(case: Case, truth: Truth, engines: Sequence[EngineCase]) -> list
             schemes = _schemes(truth, sweep)
             for group in _grouped(_runs(truth, engines, sweep), rate):
                 names = tuple(run.name for run in group)
-                scheme = _named(group, schemes, rate)
-                found.append(Cluster(case.name, sweep.timestep, scheme, names))
+                equal = _named(group, schemes, rate)
+                scheme, also = next(iter(equal), None), tuple(equal[1:])
+                found.append(Cluster(case.name, sweep.timestep, scheme, names, also))
     return found
 
 

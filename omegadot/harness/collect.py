@@ -11,9 +11,9 @@ import polars as pl
 from omegadot.adapters.wire import state_from
 from omegadot.harness.exact_rows import exact_rows
 from omegadot.harness.judge_case import JudgedRun
+from omegadot.harness.outcome import EngineCase, JudgedCase, Outcome
 from omegadot.harness.plan import Case, Engine, Task
 from omegadot.harness.rows import Row, worst
-from omegadot.harness.run import EngineCase, JudgedCase, Outcome
 from omegadot.reference_impl.system import Array, State
 from omegadot.reports import schema
 
@@ -38,6 +38,7 @@ def _task_entry(task: Task, version: str, outcome: str, reason: str) -> dict[str
         "reason": reason,
         "gates": {},
         "why": "",
+        "scheme": None,
     }
 
 
@@ -59,6 +60,7 @@ def _judged_entry(task: Task, version: str, found: EngineCase, judged: JudgedRun
     entry = _task_entry(task, version, outcome, reason)
     entry["gates"] = _gates([*found.shared, *judged.rows])
     entry["why"] = judged.why
+    entry["scheme"] = judged.integrator.scheme
     return entry
 
 

@@ -53,9 +53,20 @@ def _print_entry(entry: dict[str, Any]) -> None:
     head = f"[bold]{escape(entry['name'])}[/] {escape(entry['version'])}"
     console.print(f"{head}  {entry['precision']}  {escape(entry['licence'])}")
     for integrator in entry["integrators"]:
-        scheme = integrator["scheme"] or "not identified"
-        orders = ", ".join(f"{c} {o}" for c, o in integrator["orders"].items() if o is not None)
-        console.print(f"  {escape(integrator['name'])}: {scheme} (order: {orders})")
+        console.print(f"  {escape(_integrator_line(integrator))}")
     for title, key in (("keeps", "conventions"), ("switched off", "switched_off")):
         for clause in entry[key]:
             console.print(f"  {title}: {escape(clause)}", style="dim")
+
+
+def _integrator_line(integrator: dict[str, Any]) -> str:
+    """Its name, the scheme that it is declared to equal, and its order, told once if it is one."""
+    orders, scheme = integrator["orders"], integrator["scheme"]
+    if not orders:
+        return f"{integrator['name']}: {integrator['note']}"
+    if len(set(orders.values())) == 1:
+        order = f"order {next(iter(orders.values()))}"
+    else:
+        order = "order " + ", ".join(f"{value} in {c}" for c, value in orders.items())
+    same = scheme == integrator["name"]
+    return f"{integrator['name']}: {order}" + ("" if same or not scheme else f", {scheme}")

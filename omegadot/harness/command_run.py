@@ -14,8 +14,9 @@ from omegadot import __version__
 from omegadot.harness.clusters import clusters_of_run
 from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
 from omegadot.harness.machine import describe_machine, package_versions
+from omegadot.harness.outcome import Outcome, RunRequest, tasks_of
 from omegadot.harness.plan import Case, EngineChoice
-from omegadot.harness.run import Outcome, Runner, RunRequest, tasks_of
+from omegadot.harness.run import Runner
 from omegadot.reports.page import draw_page
 from omegadot.reports.record import Record, write_record
 from omegadot.reports.schema import SCHEMA
@@ -39,7 +40,9 @@ def progress_bar(runner: Runner, cases: Sequence[Case]) -> Iterator[None]:
         task = bar.add_task("starting the engines", total=None)
 
         def planned() -> None:
-            total = sum(tasks_of(engine, case) for engine in runner.engines for case in cases)
+            total = sum(
+                tasks_of(engine, case) for engine in runner.workers.engines for case in cases
+            )
             bar.update(task, total=total, description="running")
 
         runner.on_start = planned

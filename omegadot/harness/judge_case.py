@@ -129,15 +129,17 @@ def judge_integrator(
     every = [*sweeps, *(sweep for sweep, _ in refinements.values())]
     courses = _courses(truth, integrator, {**answers, **finer}, every)
     declared = Declared(integrator.scheme, orders_for(integrator, truth.yardstick.system))
+    known = list(courses.values())
+    seen = scheme.orders_seen(known)
     for sweep in sweeps:
         answer, course = answers[sweep.timestep], courses.get(sweep.timestep)
         if course is None:
             yield _failed(integrator, sweep, answer)
             continue
-        state, known = state_from(answer.result["state"]), list(courses.values())
+        state = state_from(answer.result["state"])
         findings = findings_of(course, declared, known)
         match = scheme.match_row(truth, integrator, course, state)
-        rows = [match, *scheme.order_rows(known, declared, course)]
+        rows = [match, *scheme.order_rows(seen, declared, course)]
         rows += invariants.rows(course, findings, sweep.times)
         rows.append(trajectory.time_row(sweep, answer.result["time"]))
         rows += trajectory.rows(course, findings)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from omegadot.reports.figures import Figure, size
-from omegadot.reports.numbers import knob, short, times
+from omegadot.reports.numbers import knob, listed, short, times
 from omegadot.reports.summary import YARDSTICKS, Cell, Summary
 
 
@@ -39,7 +39,7 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
         shown = ", ".join(places[:3]) + (f" and {len(places) - 3} more" if len(places) > 3 else "")
         verb = "fails" if len(failing) == 1 else "fail"
         who = f"{len(failing)} of {times(len(engines), 'engine')} {verb}"
-        return f"{who} a gate: {_list(failing)}, on {shown}."
+        return f"{who} a gate: {listed(failing)}, on {shown}."
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
     agreeing = [name for name in measured if name in passed]
@@ -48,7 +48,7 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     largest = max((measured[name] for name in agreeing), key=size)
     who = {1: agreeing[0], 2: "Both engines"}.get(len(agreeing), f"All {len(agreeing)} engines")
     if len(agreeing) < len(engines):
-        who = f"{_list(agreeing)} (of {times(len(engines), 'engine')})"
+        who = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
     verb = "agrees" if len(agreeing) == 1 else "agree"
     return (
         f"{who} {verb} with the Newton–Euler equations at identical states: the largest omega-dot "
@@ -97,7 +97,3 @@ def _remainder(summary: Summary) -> list[str]:
         total = sum(summary.runs.values())
         said.append(f"{skipped} of {times(total, 'run')} gave no verdict; the reasons are below.")
     return said
-
-
-def _list(names: list[str]) -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

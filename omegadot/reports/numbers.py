@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 
 def short(value: float | None, digits: int = 2) -> str:
@@ -25,6 +26,11 @@ def plain(value: float | None) -> str:
 def times(count: int, noun: str) -> str:
     """A count with its noun: 1 scenario, 3 scenarios."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a row: a, b and c."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def knob(timestep: float | None, accuracy: float | None) -> str:

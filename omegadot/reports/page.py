@@ -11,13 +11,16 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports import matrix, tables
+from omegadot.reports.copies import copies_of, sentence, votes, where
 from omegadot.reports.courses import POINTS, Chart, chart_courses
 from omegadot.reports.headline import headline, remarks
 from omegadot.reports.packing import FLOOR_DECADE, pack_codes, pack_json
 from omegadot.reports.payload import command_of, lines_of, payload, step_choices
 from omegadot.reports.record import Record
 from omegadot.reports.summary import STATUSES, Summary, summarise
+from omegadot.reports.sweeps import sweeps_of
 from omegadot.reports.templating import asset, environment, plotly
+from omegadot.reports.why import order_table, scheme_table
 
 _JUDGED_SHOWN = 50
 
@@ -43,6 +46,7 @@ class Section:
     lines: list[matrix.Line]
     chart: Chart | None
     courses: tables.Table | None
+    votes: str
     engines: tables.Table
     runs: tables.Table
 
@@ -56,7 +60,8 @@ def draw_page(record: Record) -> str:
     charts = {name: chart for name, chart in chart_courses(record).items() if chart.units}
     lines = lines_of(charts.values(), record.run["engines"])
     anchors = _anchors(summary.scenarios)
-    description, codes = payload({anchors[name]: charts[name] for name in charts}, lines)
+    sweeps = {anchors[name]: own for name, own in sweeps_of(record.metrics).items()}
+    description, codes = payload({anchors[name]: charts[name] for name in charts}, sweeps, lines)
     template = environment().get_template("report.html.j2")
     return template.render(
         run=record.run,
@@ -69,6 +74,9 @@ def draw_page(record: Record) -> str:
         numbers=matrix.NUMBERS,
         anchors=anchors,
         judged=_judged(record.metrics),
+        schemes=scheme_table(record),
+        orders=order_table(record),
+        copies=[(sentence(copies), where(copies)) for copies in copies_of(record.run)],
         sections=_sections(record, summary, charts, anchors),
         lines=lines,
         line_groups=_line_groups(lines),
@@ -105,6 +113,7 @@ def _sections(
                 matrix.lines(summary, name),
                 chart,
                 tables.course_table(chart) if chart else None,
+                votes(record.run, name),
                 tables.engine_table(own),
                 tables.run_table(own, tasks),
             )

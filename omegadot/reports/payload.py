@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import shlex
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from omegadot.reports.courses import Chart, Course
 from omegadot.reports.numbers import knob, plain
 from omegadot.reports.packing import CEILING_DECADE, FLOOR, FLOOR_DECADE, codes_of
 from omegadot.reports.palette import colours, dashes
+from omegadot.reports.sweeps import Sweep, decades, sweep_payload
 
 _ORDINALS = ("finest", "second finest", "third finest")
 
@@ -82,7 +82,9 @@ def step_choices(charts: Iterable[Chart]) -> list[str]:
     return choices
 
 
-def payload(charts: Mapping[str, Chart], lines: list[Line]) -> tuple[dict[str, Any], Array]:
+def payload(
+    charts: Mapping[str, Chart], sweeps: Mapping[str, list[Sweep]], lines: list[Line]
+) -> tuple[dict[str, Any], Array]:
     """The script's description of every chart, by the scenario's place, and all codes in a row.
 
     A course is ``[line, rank, times, start, count]``: its channels' codes follow each other from
@@ -112,6 +114,7 @@ def payload(charts: Mapping[str, Chart], lines: list[Line]) -> tuple[dict[str, A
             "charts": [_axis(chart, channel) for channel in chart.units],
             "courses": entries,
             "steps": _captions(rank),
+            "sweeps": sweep_payload(sweeps.get(name, []), places),
         }
     description = {
         "floor": FLOOR_DECADE,
@@ -135,18 +138,8 @@ def drawn(course: Course, channel: str) -> Array:
 def _axis(chart: Chart, channel: str) -> dict[str, Any]:
     """Decades that hold every step size's courses, so that a change of step moves no axis."""
     values = np.concatenate([drawn(course, channel) for course in chart.courses])
-    values = values[~np.isnan(values)]
-    above = values[values > FLOOR]
-    at_floor = bool(np.any(values <= FLOOR))
-    highest = min(float(np.max(above, initial=FLOOR * 10.0)), 10.0**CEILING_DECADE)
-    lowest = FLOOR if at_floor else float(np.min(above, initial=highest))
-    return {
-        "channel": channel,
-        "unit": chart.units[channel],
-        "low": math.floor(math.log10(lowest)),
-        "high": math.ceil(math.log10(highest)),
-        "floor": at_floor,
-    }
+    known = values[~np.isnan(values)]
+    return {"channel": channel, "unit": chart.units[channel], **decades(known)}
 
 
 def _captions(rank: Mapping[tuple[float | None, float | None], int]) -> list[str]:

@@ -76,12 +76,15 @@ def engine_table(metrics: pl.DataFrame) -> Table:
 def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]]) -> Table:
     """What each run came to, one row a run, with its verdict and the reason of it."""
     heads = ["engine", "engine_version", "setup", "integrator", "timestep", "accuracy"]
-    table = _pivot(metrics.filter(~pl.col("gate").is_in(ENGINE_GATES)), heads, _run_heads)
+    # A match stands under the channel that is farthest off; here it has a column of its own.
+    whole = pl.when(pl.col("metric") == "match").then(pl.lit("")).otherwise(pl.col("channel"))
+    own = metrics.filter(~pl.col("gate").is_in(ENGINE_GATES)).with_columns(channel=whole)
+    table = _pivot(own, heads, run_heads)
     values = {row.heads: row.values for row in table.rows}
     blank = (EMPTY,) * len(table.columns)
     rows = []
     for task in tasks:
-        names = _run_heads(tuple(task.get(name) for name in heads))
+        names = run_heads(tuple(task.get(name) for name in heads))
         status = task_status(task)
         reason = task.get("why") or task.get("reason") or ""
         mark = status if status in ("fail", "declared") else ""
@@ -96,7 +99,7 @@ def course_table(chart: Chart) -> Table:
     """The numbers behind a scenario's charts: each course's largest value, and its last."""
     rows = [
         Row(
-            _run_heads((c.engine, "", c.setup, c.integrator, c.timestep, c.accuracy)),
+            run_heads((c.engine, "", c.setup, c.integrator, c.timestep, c.accuracy)),
             tuple(
                 Value(short(value))
                 for channel in chart.units
@@ -117,7 +120,8 @@ def _engine_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=4096)
-def _run_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
+def run_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
+    """The cells that name a run: (engine, version, setup, integrator, step, accuracy) in words."""
     engine, _, setup, integrator, timestep, accuracy = key
     name = engine if setup in ("physics", None) else f"{engine} {setup}"
     return name, ", ".join(filter(None, (integrator, knob(timestep, accuracy))))
@@ -140,7 +144,7 @@ def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any) -> Table:
             sizes[names, place] = weight
             line = rows.setdefault(names, [EMPTY] * len(columns))
             line[place] = _value(value, bound, verdict)
-    titles = [f"{gate}: {CHANNEL_NAMES[channel]}" for gate, channel, _, _ in columns]
+    titles = [": ".join(filter(None, (g, CHANNEL_NAMES.get(c)))) for g, c, _, _ in columns]
     groups: list[tuple[str, int]] = []
     for title in titles:
         count = groups.pop()[1] if groups and groups[-1][0] == title else 0

@@ -9,6 +9,7 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
+from omegadot.reports.copies import copies_of, sentence
 from omegadot.reports.figures import Figure, size
 from omegadot.reports.headline import headline, remarks
 from omegadot.reports.numbers import short, times
@@ -40,6 +41,8 @@ def print_summary(record: Record, console: Console | None = None) -> None:
         console.print(_legend(summary, shown, console), style="dim", highlight=False)
     for line in _extremes(summary):
         console.print(Text(line))
+    for copies in copies_of(record.run)[:1]:  # those of most engines; the page names the others
+        console.print(Text(sentence(copies)))
     for missing in summary.missing:
         console.print(Text(_missing_line(missing), style=_NOT_RUN))
     console.print(Text(_counts(summary)))

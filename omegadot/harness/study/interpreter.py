@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Sequence
-from pathlib import Path
 
 import omegadot
 from omegadot.harness.usage import UsageError, nearest
@@ -36,7 +36,7 @@ def interpreters(words: Sequence[str], engines: Sequence[str]) -> dict[str, str]
             raise UsageError(
                 f"--python {word}: {name!r} is not among the engines; {nearest(name, engines)}."
             )
-        if not Path(path).is_file():
-            raise UsageError(f"--python {word}: there is no file {path}; give an interpreter.")
+        if shutil.which(path) is None:
+            raise UsageError(f"--python {word}: {path} is no program; give a Python interpreter.")
         found[name] = path
     return found

@@ -23,7 +23,7 @@ class Naming:
 def name_schemes(
     matched: Mapping[str, Sequence[str]], declared: Mapping[str, str | None]
 ) -> list[Naming]:
-    """The fewest schemes that cover all probes, the one that covers most first.
+    """The fewest schemes that cover all probes, in the probes' order.
 
     matched and declared: by kind of probe. Where several schemes cover as much, one that is
     declared there is named, else the simplest, the order of SCHEMES being that of simplicity.
@@ -45,4 +45,6 @@ def name_schemes(
         named.append(Naming(best, kinds, others))
         left = [kind for kind in left if kind not in kinds]
     unknown = tuple(kind for kind, found in matched.items() if not found)
-    return [*named, Naming(None, unknown)] if unknown else named
+    named += [Naming(None, unknown)] if unknown else []
+    places = list(matched)
+    return sorted(named, key=lambda naming: places.index(naming.kinds[0]))

@@ -9,8 +9,15 @@ import numpy as np
 
 from omegadot.harness.gates.course import CHANNELS
 from omegadot.harness.measures import Yardstick
-from omegadot.harness.study.orders import COARSEST, MOST_HALVINGS, SAMPLES, Observed, Point
-from omegadot.harness.study.orders import observe, sweep
+from omegadot.harness.study.orders import (
+    COARSEST,
+    MOST_HALVINGS,
+    SAMPLES,
+    Observed,
+    Point,
+    observe,
+    sweep,
+)
 from omegadot.harness.study.probes import Probe, truth_of
 from omegadot.harness.study.subject import Stepper, is_finite
 from omegadot.reference_impl.growth import growth_along
@@ -26,7 +33,7 @@ NAMED = LONGEST / 2**NAMED_HALVINGS  # rad: the step whose defect is shown
 
 @dataclass(frozen=True)
 class Defect:
-    """The largest defect over the starts, at the named step, and its order in the step.
+    """The root mean square of the starts' defects at the named step, and its order in the step.
 
     value: None where that step blew up.  observed: "floor" where it is rounding alone.
     """
@@ -78,21 +85,21 @@ def defects(probe: Probe, step: Stepper) -> dict[str, Defect]:
 
     def measure(halvings: int) -> dict[str, Point] | None:
         timestep = longest / 2**halvings
-        found = dict.fromkeys(CHANNELS, (0.0, 0.0))
+        squares = dict.fromkeys(CHANNELS, 0.0)
         for leap in leaps:
             end = step(leap.start, timestep, 1, 1)
             if not is_finite(end):
                 return None
-            growth = np.array([1.0, leap.growth])
-            bound = yardstick.round_off(timestep, np.array([0, 1]), growth)
             for channel in CHANNELS:
                 error = yardstick.distance(channel, end, leap.ends[halvings])[-1]
-                # The starts' bounds differ by their growth; the largest is that of them all.
-                found[channel] = (
-                    max(found[channel][0], float(error)),
-                    max(found[channel][1], float(bound[channel][-1])),
-                )
-        return {channel: Point(timestep, *pair) for channel, pair in found.items()}
+                squares[channel] += float(error) ** 2 / len(leaps)
+        # The largest growth bounds them all, hence their mean too.
+        growth = np.array([1.0, max(leap.growth for leap in leaps)])
+        bound = yardstick.round_off(timestep, np.array([0, 1]), growth)
+        return {
+            channel: Point(timestep, float(np.sqrt(square)), float(bound[channel][-1]))
+            for channel, square in squares.items()
+        }
 
     points = sweep(measure)
     return {channel: _defect(points[channel], probe) for channel in CHANNELS}

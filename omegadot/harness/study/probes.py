@@ -83,7 +83,7 @@ def _probes() -> tuple[Probe, ...]:
         Probe("free", "a tumbling body falls, its centre of mass off its origin", offset, _FREE),
         Probe(
             "damped",
-            "a body about its centre of mass, damped, driven in body and world axes",
+            "a body falls, its centre of mass at its origin, damped, driven in body and world axes",
             System((_flyer(np.zeros(3)),), driven),
             _FREE,
         ),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import threading
 from dataclasses import dataclass, field
 
 from omegadot.adapters.protocol import Description, Integrator
@@ -10,7 +10,6 @@ from omegadot.adapters.wire import description_of
 from omegadot.harness.gates.course import CHANNELS, orders_for, scheme_key
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.study.fingerprint import Match, fingerprint
-from omegadot.harness.study.interpreter import worker_command
 from omegadot.harness.study.naming import Naming, name_schemes
 from omegadot.harness.study.one_step import Defect, defects
 from omegadot.harness.study.orders import Observed, global_errors, observe
@@ -19,8 +18,6 @@ from omegadot.harness.study.subject import NoAnswerError, Stepper, load, stepper
 from omegadot.harness.usage import check_integrators
 from omegadot.harness.verdicts import ORDER_TOLERANCE
 from omegadot.harness.worker_process import Answer, WorkerProcess
-
-TIMEOUT = 60.0  # s, for one request to an engine
 
 
 @dataclass(frozen=True)
@@ -32,7 +29,7 @@ class Order:
 
     @property
     def verdict(self) -> str:
-        """ "holds", "higher", "lower", "conserved", "drifts", "floor" or "unresolved"."""
+        """One of "holds", "higher", "lower", "conserved", "drifts", "floor" or "unresolved"."""
         if self.observed.kind == "floor":
             return "conserved" if self.declared is None else "floor"
         if self.declared is None:
@@ -130,14 +127,14 @@ def _chosen(choice: EngineChoice, description: Description) -> list[str]:
 
 
 def study_engine(
-    choice: EngineChoice, python: str | None = None, probes: Sequence[Probe] = PROBES
+    choice: EngineChoice, worker: WorkerProcess, stopping: threading.Event | None = None
 ) -> EngineStudy:
-    """Start an engine, under another interpreter where one is given, and study it.
+    """Start an engine's worker and study it on every probe; end the worker.
 
-    Raises UsageError where an integrator is asked for that it does not have.
+    stopping: set from elsewhere, it makes an end of it. Raises UsageError where an integrator is
+    asked for that the engine does not have.
     """
-    command = None if python is None else worker_command(python)
-    worker = WorkerProcess(choice.target, "physics", TIMEOUT, command)
+    halt = stopping or threading.Event()
     try:
         started = worker.start()
         if not started.ok:
@@ -145,9 +142,10 @@ def study_engine(
         description = description_of(started.result)
         names = _chosen(choice, description)
         found: dict[str, dict[str, ProbeStudy]] = {name: {} for name in names}
-        for probe in probes:
+        for probe in PROBES:
             for name in names:
-                found[name][probe.kind] = _study(worker, probe, name)
+                if not halt.is_set():
+                    found[name][probe.kind] = _study(worker, probe, name)
     finally:
         worker.finish()
     studies = tuple(IntegratorStudy(name, kinds) for name, kinds in found.items())

@@ -58,23 +58,70 @@
     const shown = scenario.courses.filter((c) => c[1] === rank && !hidden.has(c[0]));
     return shown.sort((a, b) => a[0] - b[0]).map(([line, , clock, start, count]) => {
       const look = data.lines[line], from = start + place * count;
-      const own = codes.subarray(from, from + count);
-      const colour = look.colour[dark.matches && !printing ? 1 : 0];
+      const course = codes.subarray(from, from + count);
+      const own = look.colour[dark.matches && !printing ? 1 : 0];
       return {
         type: "scatter", mode: count > 1 ? "lines" : "markers", name: look.name,
-        x: data.times[clock], y: Array.from(own, (code) => value(code, data)),
-        text: Array.from(own, (code) => code === 0
+        x: data.times[clock], y: Array.from(course, (code) => value(code, data)),
+        text: Array.from(course, (code) => code === 0
           ? `at or below 1e${data.floor}` : value(code, data)?.toExponential(2) + unitText(axis.unit)),
         hovertemplate: "%{fullData.name}<br>%{x} s: %{text}<extra></extra>",
-        line: { color: colour, width: look.width, dash: look.dash.replaceAll(" ", "px,") + (look.dash && "px") || "solid" },
-        marker: { color: colour },
+        line: { color: own, width: look.width, dash: dashOf(look) },
+        marker: { color: own },
       };
     });
   }
 
+  const style = getComputedStyle(root);
+  const colour = (name) => style.getPropertyValue(name).trim();
+  const dashOf = (look) => look.dash.replaceAll(" ", "px,") + (look.dash && "px") || "solid";
+
+  // A sweep's points, one an own step: over the step, or over the cost.
+  function sweepTraces({ data }, sweeps, kind) {
+    const over = kind === "cost" ? (point) => point[2] : (point) => point[0];
+    const shown = sweeps.lines.filter(([line]) => !hidden.has(line)).sort((a, b) => a[0] - b[0]);
+    const lines = shown.map(([line, all]) => {
+      const look = data.lines[line], points = all.filter((p) => over(p) && p[1] !== null);
+      const own = look.colour[dark.matches && !printing ? 1 : 0];
+      return {
+        type: "scatter", mode: "lines+markers", name: look.name,
+        x: points.map(over), y: points.map((p) => Math.max(p[1], 10 ** data.floor)),
+        text: points.map((p) => `step ${p[0]} s: ${p[1] > 10 ** data.floor ? p[1].toExponential(2) : `at or below 1e${data.floor}`} rad`
+          + (p[2] ? `<br>${p[2].toExponential(2)} s per simulated second` : "")),
+        hovertemplate: "%{fullData.name}<br>%{text}<extra></extra>",
+        line: { color: own, width: look.width, dash: dashOf(look) }, marker: { color: own, size: 5 + look.width },
+      };
+    });
+    if (kind === "cost") return lines;
+    const grey = { type: "scatter", hoverinfo: "skip", textfont: { size: 11, color: colour("--soft") } };
+    const guides = sweeps.guides.map(([order, h0, e0, h1, e1]) => ({
+      ...grey, mode: "lines+text", name: `order ${order}`, x: [h0, h1], y: [e0, e1], text: [`order ${order}`, ""],
+      textposition: "top right", line: { color: colour("--soft"), width: 1, dash: "dot" },
+    }));
+    const rounding = sweeps.rounding.length ? [{
+      ...grey, mode: "lines+text", name: "rounding", x: sweeps.rounding.map((p) => p[0]), y: sweeps.rounding.map((p) => p[1]),
+      text: sweeps.rounding.map((_, i, all) => (i === all.length - 1 ? "rounding, at most" : "")), textposition: "top left",
+      line: { color: colour("--soft"), width: 1, dash: "dash" },
+    }] : [];
+    return [...guides, ...rounding, ...lines];
+  }
+
+  function sweepLayout(sweeps, data, kind) {
+    const found = layout(sweeps, data);
+    const values = sweeps.lines.flatMap(([, points]) => points.map((p) => (kind === "cost" ? p[2] : p[0]))).filter(Boolean);
+    const bounds = kind === "cost" ? [] : sweeps.rounding.map((p) => Math.log10(p[1]));
+    found.yaxis.range[0] = Math.min(found.yaxis.range[0], ...bounds.map(Math.floor));
+    const low = Math.log10(Math.min(...values)), high = Math.log10(Math.max(...values)), room = 0.08 * (high - low) + 0.04;
+    Object.assign(found.xaxis, { type: "log", range: [low - room, high + room], exponentformat: "power" });
+    found.xaxis.title.text = kind === "cost" ? "wall time per simulated second, s" : "time step, s";
+    if (kind === "convergence") {
+      const steps = [...new Set(values)].sort((a, b) => a - b);
+      Object.assign(found.xaxis, { tickmode: "array", tickvals: steps, ticktext: steps.map(String) });
+    }
+    return found;
+  }
+
   function layout(axis, data) {
-    const style = getComputedStyle(root);
-    const colour = (name) => style.getPropertyValue(name).trim();
     // Below the floor there is room for the words that say so.
     const high = axis.high + 0.1, low = axis.floor ? data.floor - 0.1 * (high - data.floor) : axis.low;
     const common = { gridcolor: colour("--grid"), linecolor: colour("--rule"), zeroline: false, tickcolor: colour("--rule") };
@@ -101,7 +148,9 @@
       const caption = scenario.steps[rankIn(scenario)];
       for (const span of section.node.querySelectorAll(".at-step")) span.textContent = ` · ${caption}`;
       section.charts.forEach((chart, place) => {
-        Plotly.react(chart, traces(loaded, scenario, place), layout(scenario.charts[place], loaded.data), settings);
+        const kind = chart.dataset.kind;
+        if (kind) Plotly.react(chart, sweepTraces(loaded, scenario.sweeps, kind), sweepLayout(scenario.sweeps, loaded.data, kind), settings);
+        else Plotly.react(chart, traces(loaded, scenario, place), layout(scenario.charts[place], loaded.data), settings);
       });
       root.dataset.drawn = Number(root.dataset.drawn || 0) + section.charts.length;
     } catch (error) {

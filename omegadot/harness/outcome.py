@@ -1,0 +1,84 @@
+"""What is asked of a run, what is on its way, and what comes of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.gates.course import Companion, SchemeKey
+from omegadot.harness.judge_case import JudgedRun
+from omegadot.harness.plan import Case, Engine, EngineChoice
+from omegadot.harness.rows import Row
+from omegadot.harness.truth import Truth
+from omegadot.harness.worker_process import Answer
+
+
+@dataclass(frozen=True)
+class RunRequest:
+    """What to run. timeout: s, for one request to a worker. jobs: requests at the same time."""
+
+    cases: Sequence[Case]
+    choices: Sequence[EngineChoice]
+    setup: str = "physics"
+    seed: int = 0
+    timeout: float = 60.0
+    jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
+
+
+@dataclass(frozen=True)
+class EngineCase:
+    """One engine on one case, judged. shared: rows that belong to every task of it."""
+
+    engine: Engine
+    result: CaseResult
+    shared: list[Row]
+    runs: list[JudgedRun]
+
+
+@dataclass(frozen=True)
+class JudgedCase:
+    """One case with its truth (None where there is none, and then why) and all engines."""
+
+    case: Case
+    truth: Truth | None
+    reason: str
+    engines: list[EngineCase]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Everything that came of a run.
+
+    missing: engines that did not start, with the answer.  deaths: workers that died, and how.
+    """
+
+    engines: list[Engine]
+    missing: list[tuple[EngineChoice, Answer]]
+    cases: list[JudgedCase]
+    interrupted: bool
+    deaths: list[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class PendingTruth:
+    """What a case is judged by. The truth is a string where there is none: the reason."""
+
+    truth: Future[Truth | str]
+    companions: Future[dict[tuple[SchemeKey, float], Companion]]
+
+
+@dataclass(frozen=True)
+class PendingCase:
+    """The futures of one case."""
+
+    case: Case
+    known: PendingTruth
+    results: dict[str, Future[CaseResult]]
+
+
+def tasks_of(engine: Engine, case: Case) -> int:
+    """How many tasks an engine has in a case; the exact solution has one."""
+    return 1 if engine.name == "exact" else len(engine.integrators) * len(case.sweeps)
