@@ -104,7 +104,8 @@ def _print_text(record: Record) -> None:
     from rich.text import Text
 
     console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
-    for table in tables_of(record):
+    tables = [table for table in tables_of(record) if table.rows]
+    for table in tables:
         grid = Table(
             title=table.title,
             title_justify="left",

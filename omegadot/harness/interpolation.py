@@ -46,9 +46,20 @@ def error_factor(share: float) -> float:
     return (share * (1.0 - share)) ** 2 / 24.0
 
 
+def _signs(values: Array) -> Array:
+    """Signs, a zero taking that of the last sample before it that has one: touching is no change.
+
+    Zeros at the start take the first one's.
+    """
+    signs = np.sign(values)
+    known = np.where(signs != 0.0, np.arange(len(signs)), 0)
+    filled: Array = signs[np.maximum.accumulate(known)]
+    return np.where(filled != 0.0, filled, signs[np.argmax(signs != 0.0)])
+
+
 def zero_crossings(times: Array, values: Array, slopes: Array) -> Array:
     """(m,) s: where the cubic through samples (n,) of one quantity changes its sign."""
-    positive = values > 0.0
+    positive = _signs(values) > 0.0
     left = np.flatnonzero(positive[1:] != positive[:-1])
     if not len(left):
         return np.empty(0)

@@ -132,5 +132,6 @@ def votes(run: Mapping[str, Any], scenario: str) -> str:
     finest = [cluster["members"] for cluster in own if cluster["timestep"] == step]
     equal = [" = ".join(map(label, members)) for members in finest if len(members) > 1]
     total = sum(map(len, finest))
-    said = f"{times(total, 'run')} at step {plain(step)} s, {times(len(finest), 'course')} to tell apart"
+    courses = times(len(finest), "different course")
+    said = f"{times(total, 'run')} at step {plain(step)} s make {courses}"
     return f"{said}: {'; '.join(equal)}." if equal else f"{said}."

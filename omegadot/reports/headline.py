@@ -19,6 +19,14 @@ def remarks(summary: Summary) -> list[str]:
     return said + ([spread] if spread else []) + _remainder(summary)
 
 
+def truth(summary: Summary) -> list[str]:
+    """What everything was measured by: one sentence, none where there is no exact course."""
+    kinds = [f"{name} on {count}" for name, count in sorted(summary.truths.items())]
+    if not kinds:
+        return []
+    return [f"Truth: {listed(kinds)} of {times(len(summary.scenarios), 'scenario')}."]
+
+
 def _judged_engines(summary: Summary) -> dict[str, list[Cell]]:
     """Cells per column; the yardsticks stand aside unless nothing else ran or they fail."""
     cells: dict[str, list[Cell]] = {}

@@ -13,7 +13,7 @@ import polars as pl
 from omegadot.reports import matrix, tables
 from omegadot.reports.copies import copies_of, sentence, votes, where
 from omegadot.reports.courses import POINTS, Chart, chart_courses
-from omegadot.reports.headline import headline, remarks
+from omegadot.reports.headline import headline, remarks, truth
 from omegadot.reports.packing import FLOOR_DECADE, pack_codes, pack_json
 from omegadot.reports.payload import command_of, lines_of, payload, step_choices
 from omegadot.reports.record import Record
@@ -67,7 +67,7 @@ def draw_page(record: Record) -> str:
         run=record.run,
         command=command_of(record.run),
         headline=headline(summary),
-        beside=remarks(summary),
+        beside=remarks(summary) + truth(summary),
         counts=[(status, summary.runs[status]) for status in STATUSES if summary.runs[status]],
         summary=summary,
         matrix=matrix.matrix(summary),

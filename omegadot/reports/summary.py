@@ -75,7 +75,9 @@ class Missing:
 
 @dataclass(frozen=True)
 class Summary:
-    """What the record says at a glance."""
+    """What the record says at a glance. truths: on how many scenarios the exact course is of which
+    kind.
+    """
 
     complete: bool
     scenarios: tuple[str, ...]
@@ -83,6 +85,7 @@ class Summary:
     cells: Mapping[tuple[str, Column], Cell]
     runs: Counter[str]
     missing: tuple[Missing, ...]
+    truths: Counter[str]
 
 
 def worst(statuses: Iterable[str]) -> str:
@@ -130,7 +133,13 @@ def summarise(record: Record) -> Summary:
         cells,
         Counter(task_status(task) for task in tasks),
         _missing(record.run),
+        _truths(record.trajectories),
     )
+
+
+def _truths(trajectories: pl.DataFrame) -> Counter[str]:
+    exact = trajectories.filter(pl.col("engine") == "exact")
+    return Counter(name for _, name in exact.select("scenario", "integrator").unique().rows())
 
 
 def _identity(task: Mapping[str, Any]) -> tuple[str, str, str]:

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from omegadot.reports.copies import copies_of, sentence
 from omegadot.reports.figures import Figure, size
-from omegadot.reports.headline import headline, remarks
+from omegadot.reports.headline import headline, remarks, truth
 from omegadot.reports.numbers import short, times
 from omegadot.reports.record import Record
 from omegadot.reports.summary import Cell, Column, Missing, Summary, summarise
@@ -47,7 +47,7 @@ def print_summary(record: Record, console: Console | None = None) -> None:
         console.print(Text(_missing_line(missing), style=_NOT_RUN))
     console.print(Text(_counts(summary)))
     console.print(Text(headline(summary), style="bold"))
-    console.print(Text(" ".join(remarks(summary))))
+    console.print(Text(" ".join(remarks(summary) + truth(summary))))
 
 
 def _fitting_table(summary: Summary, console: Console) -> tuple[int, Table]:

@@ -52,7 +52,7 @@ def scheme_table(record: Record) -> Table:
     ]
     return Table(
         ("engine", "integrator", "scheme"),
-        (("equals it in", 1), ("largest distance from it", 3)),
+        (("equalled in", 1), ("largest distance from it", 3)),
         ("runs judged", "over rounding's bound", "omega, relative", "attitude, rad"),
         tuple(rows),
     )

@@ -57,6 +57,9 @@ class ProbeStudy:
     defects: dict[str, Defect] = field(default_factory=dict)
 
 
+NOT_TRIED = ProbeStudy(Answer("timeout", "not tried after an earlier time-out"))
+
+
 @dataclass(frozen=True)
 class IntegratorStudy:
     """One integrator; probes by kind."""
@@ -77,17 +80,22 @@ class IntegratorStudy:
 
     @property
     def departures(self) -> list[str]:
-        """What is not as declared, one clause each."""
+        """What is not as declared, a clause a kind and fault."""
         found = []
         for kind, probe in self.studied.items():
             if probe.as_declared is False:
                 found.append(f"{kind}: it does not step the declared {probe.declared}")
-            for channel, order in probe.orders.items():
-                if order.verdict == "drifts":
-                    found.append(f"{kind}: {channel} is declared conserved, and it drifts")
-                if order.verdict == "lower":
-                    seen = f"order {order.observed.order:.2f}, declared {order.declared}"
-                    found.append(f"{kind}: {channel} is of {seen}")
+            orders = {c.replace("_", " "): order for c, order in probe.orders.items()}
+            drifting = [c for c, order in orders.items() if order.verdict == "drifts"]
+            if drifting:
+                found.append(f"{kind}: declared conserved, and drifting: {', '.join(drifting)}")
+            lower = [
+                f"{c} {o.observed.order:.2f} of {o.declared}"
+                for c, o in orders.items()
+                if o.verdict == "lower"
+            ]
+            if lower:
+                found.append(f"{kind}: below the declared order: {', '.join(lower)}")
         return found
 
 
@@ -145,7 +153,8 @@ def study_engine(
         for probe in PROBES:
             for name in names:
                 if not halt.is_set():
-                    found[name][probe.kind] = _study(worker, probe, name)
+                    late = any(p.answer.outcome == "timeout" for p in found[name].values())
+                    found[name][probe.kind] = NOT_TRIED if late else _study(worker, probe, name)
     finally:
         worker.finish()
     studies = tuple(IntegratorStudy(name, kinds) for name, kinds in found.items())

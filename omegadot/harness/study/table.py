@@ -5,15 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
+from omegadot.harness.study.cells import (
+    answered,
+    defects_cell,
+    kinds_in_words,
+    labelled,
+    largest_defect,
+    orders_cell,
+    orders_seen,
+    range_of,
+)
 from omegadot.harness.study.record import Record
 from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reports.numbers import short
 
 HEADS = tuple(channel.replace("_", " ") for channel in CHANNELS)
-# Kinds of which one stands for both: damping adds nothing to the name where they agree.
-PAIRS = (("free", "damped"), ("pivoted", "pivoted-damped"))
 
 
 @dataclass(frozen=True)
@@ -38,12 +45,12 @@ def tables_of(record: Record) -> list[Table]:
         Table(
             "Orders: declared (observed)",
             ("engine", "integrator", *HEADS),
-            [(*who, *(_orders(integrator, c) for c in CHANNELS)) for who, integrator in found],
+            [(*who, *(orders_cell(integrator, c) for c in CHANNELS)) for who, integrator in found],
         ),
         Table(
             f"One-step defect at a step of {angle} rad, and its order",
             ("engine", "integrator", *HEADS),
-            [(*who, *(_defects(integrator, c) for c in CHANNELS)) for who, integrator in found],
+            [(*who, *(defects_cell(integrator, c) for c in CHANNELS)) for who, integrator in found],
         ),
     ]
 
@@ -54,28 +61,10 @@ def _integrators(record: Record) -> Iterator[tuple[tuple[str, str], Record]]:
             yield (f"{engine['name']} {engine['version']}", integrator["name"]), integrator
 
 
-def _answered(integrator: Record) -> dict[str, Any]:
-    return {kind: p for kind, p in integrator["probes"].items() if p["outcome"] == "ok"}
-
-
-def _kinds(kinds: list[str]) -> str:
-    """Kinds in words; a pair in full goes by the name of its first."""
-    second = {pair[1] for pair in PAIRS if set(pair) <= set(kinds)}
-    return ", ".join(kind for kind in kinds if kind not in second)
-
-
-def _labelled(parts: list[tuple[list[str], str]]) -> str:
-    """Texts by kind; the first stands for the rest and goes without its kinds."""
-    texts = [
-        text if n == 0 else f"{_kinds(kinds)}: {text}" for n, (kinds, text) in enumerate(parts)
-    ]
-    return "; ".join(texts) or "–"
-
-
 def _scheme(record: Record, integrator: Record) -> tuple[str, str, str, str]:
     namings = integrator["schemes"]
     return (
-        _labelled([(list(naming["kinds"]), _named(naming)) for naming in namings]),
+        labelled([(list(naming["kinds"]), _named(naming)) for naming in namings]),
         _point(integrator),
         _match(record, integrator),
         _declared(integrator),
@@ -90,7 +79,7 @@ def _named(naming: Record) -> str:
 def _chosen(integrator: Record) -> list[Record]:
     """The match of each probe under the name that it was given."""
     names = {kind: n["scheme"] for n in integrator["schemes"] for kind in n["kinds"]}
-    matches = [(names[k], m) for k, p in _answered(integrator).items() for m in p["matches"]]
+    matches = [(names[k], m) for k, p in answered(integrator).items() for m in p["matches"]]
     return [match for name, match in matches if match["scheme"] == name]
 
 
@@ -113,27 +102,24 @@ def _match(record: Record, integrator: Record) -> str:
         texts.append(f"to {decade_above(worst)} over {steps} steps")
     if any(naming["scheme"] is None for naming in integrator["schemes"]):
         angle = f"{record['defect_angle']:g}"
-        seen = ", ".join(f"{c} {_range(_seen(integrator, c))}" for c in ("omega", "attitude"))
+        seen = ", ".join(
+            f"{c} {range_of(orders_seen(integrator, c))}" for c in ("omega", "attitude")
+        )
         texts.append(f"unknown: order {seen}; one step of {angle} rad: {_attitude(integrator)}")
     return "; ".join(texts) or "–"
 
 
-def _seen(integrator: Record, channel: str) -> list[float]:
-    orders = [p["orders"][channel]["order"] for p in _answered(integrator).values()]
-    return [order for order in orders if order is not None]
-
-
 def _attitude(integrator: Record) -> str:
-    value, _ = _largest_defect(integrator, "attitude")
+    value, _ = largest_defect(integrator, "attitude")
     return "no defect" if value is None else f"defect {short(value)} rad in attitude"
 
 
 def _declared(integrator: Record) -> str:
-    probes = _answered(integrator)
+    probes = answered(integrator)
     wrong = {k: p["declared"] for k, p in probes.items() if p["as_declared"] is False}
     if wrong:
         names = sorted(set(wrong.values()))
-        return f"NOT as declared: {', '.join(names)} ({_kinds(list(wrong))})"
+        return f"NOT as declared: {', '.join(names)} ({kinds_in_words(list(wrong))})"
     if any(p["as_declared"] is None for p in probes.values()):
         return "no scheme declared"
     return "as declared" if probes else "–"
@@ -142,56 +128,6 @@ def _declared(integrator: Record) -> str:
 def decade_above(value: float) -> str:
     """The power of ten at or above a residual: 1e-13 of 2.4e-14; 0 of nothing."""
     return "0" if value == 0.0 else f"1e{math.ceil(math.log10(value))}"
-
-
-def _range(values: list[float]) -> str:
-    """0.95–1.02, or 1.00 where both ends are the same to two digits."""
-    ends = [f"{end:.2f}" for end in (min(values), max(values))] if values else ["–"]
-    return "–".join(dict.fromkeys(ends))
-
-
-def _orders(integrator: Record, channel: str) -> str:
-    """Declared and observed order, probes together that were declared and judged alike."""
-    groups: dict[tuple[int | None, str], list[str]] = {}
-    probes = _answered(integrator)
-    for kind, probe in probes.items():
-        order = probe["orders"][channel]
-        groups.setdefault((order["declared"], order["verdict"]), []).append(kind)
-    parts = []
-    for (declared, verdict), kinds in groups.items():
-        seen = [probes[kind]["orders"][channel]["order"] for kind in kinds]
-        figures = _range([order for order in seen if order is not None])
-        parts.append((kinds, _order(declared, verdict, figures)))
-    return _labelled(parts)
-
-
-def _order(declared: int | None, verdict: str, figures: str) -> str:
-    if verdict == "conserved":
-        return "conserved"
-    promised = "conserved" if declared is None else str(declared)
-    if verdict == "floor":
-        return f"{promised} (rounding alone)"
-    return f"{promised} ({figures})" if verdict == "holds" else f"{promised} ({figures}, {verdict})"
-
-
-def _largest_defect(integrator: Record, channel: str) -> tuple[float | None, Record]:
-    defects = [p["defects"][channel] for p in _answered(integrator).values()]
-    known = [defect for defect in defects if defect["value"] is not None]
-    above = [defect for defect in known if defect["kind"] != "floor"]
-    if not above:
-        return None, {}
-    largest = max(above, key=lambda defect: float(defect["value"]))
-    return largest["value"], largest
-
-
-def _defects(integrator: Record, channel: str) -> str:
-    """The largest over the probes, each a mean over its starts, with its order there."""
-    value, defect = _largest_defect(integrator, channel)
-    if value is None:
-        return "rounding alone" if _answered(integrator) else "–"
-    order = "" if defect["order"] is None else f", {defect['order']:.2f}"
-    unsettled = "" if defect["kind"] == "settled" else " unresolved"
-    return f"{short(value)}{order}{unsettled}"
 
 
 def remarks_of(record: Record) -> list[str]:

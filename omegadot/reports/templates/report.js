@@ -84,7 +84,7 @@
       const look = data.lines[line], points = all.filter((p) => over(p) && p[1] !== null);
       const own = look.colour[dark.matches && !printing ? 1 : 0];
       return {
-        type: "scatter", mode: "lines+markers", name: look.name,
+        type: "scatter", mode: "lines+markers", name: look.name, cliponaxis: false,
         x: points.map(over), y: points.map((p) => Math.max(p[1], 10 ** data.floor)),
         text: points.map((p) => `step ${p[0]} s: ${p[1] > 10 ** data.floor ? p[1].toExponential(2) : `at or below 1e${data.floor}`} rad`
           + (p[2] ? `<br>${p[2].toExponential(2)} s per simulated second` : "")),
@@ -95,12 +95,12 @@
     if (kind === "cost") return lines;
     const grey = { type: "scatter", hoverinfo: "skip", textfont: { size: 11, color: colour("--soft") } };
     const guides = sweeps.guides.map(([order, h0, e0, h1, e1]) => ({
-      ...grey, mode: "lines+text", name: `order ${order}`, x: [h0, h1], y: [e0, e1], text: [`order ${order}`, ""],
-      textposition: "top right", line: { color: colour("--soft"), width: 1, dash: "dot" },
+      ...grey, mode: "lines+text", name: `order ${order}`, x: [h0, h1], y: [e0, e1], text: ["", `order ${order}`],
+      textposition: "top left", line: { color: colour("--soft"), width: 1, dash: "dot" },
     }));
     const rounding = sweeps.rounding.length ? [{
       ...grey, mode: "lines+text", name: "rounding", x: sweeps.rounding.map((p) => p[0]), y: sweeps.rounding.map((p) => p[1]),
-      text: sweeps.rounding.map((_, i, all) => (i === all.length - 1 ? "rounding, at most" : "")), textposition: "top left",
+      text: sweeps.rounding.map((_, i) => (i ? "" : "rounding, at most")), textposition: "top right",
       line: { color: colour("--soft"), width: 1, dash: "dash" },
     }] : [];
     return [...guides, ...rounding, ...lines];
@@ -110,7 +110,10 @@
     const found = layout(sweeps, data);
     const values = sweeps.lines.flatMap(([, points]) => points.map((p) => (kind === "cost" ? p[2] : p[0]))).filter(Boolean);
     const bounds = kind === "cost" ? [] : sweeps.rounding.map((p) => Math.log10(p[1]));
-    found.yaxis.range[0] = Math.min(found.yaxis.range[0], ...bounds.map(Math.floor));
+    const ends = kind === "cost" ? [] : sweeps.guides.map((guide) => Math.log10(guide[4]));
+    const bottom = Math.min(found.yaxis.range[0], ...bounds.map(Math.floor)), top = Math.max(...ends, -Infinity);
+    // Above a guide there is room for its name.
+    found.yaxis.range = [bottom, Math.max(found.yaxis.range[1], top + 0.1 * (top - bottom) || -Infinity)];
     const low = Math.log10(Math.min(...values)), high = Math.log10(Math.max(...values)), room = 0.08 * (high - low) + 0.04;
     Object.assign(found.xaxis, { type: "log", range: [low - room, high + room], exponentformat: "power" });
     found.xaxis.title.text = kind === "cost" ? "wall time per simulated second, s" : "time step, s";

@@ -1,0 +1,102 @@
+"""Engines, the truth and the gates in this very process: what workers would answer, at once."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+from typing import Any
+
+from omegadot.adapters.operations import OPERATIONS
+from omegadot.adapters.protocol import Integrator
+from omegadot.adapters.reference import ReferenceAdapter
+from omegadot.adapters.wire import read_frame, write_frame
+from omegadot.harness.ask_truth import case_companions, case_truth
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.gates.course import SchemeKey
+from omegadot.harness.judge_case import JudgedRun, judge_integrator
+from omegadot.harness.plan import Case, Engine, EngineChoice
+from omegadot.harness.run import EngineCase
+from omegadot.harness.truth import Truth
+from omegadot.harness.usage import case_of
+from omegadot.harness.worker_process import Answer
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.scenarios import load_builtin
+
+
+def _sent(message: dict[str, Any]) -> dict[str, Any]:
+    stream = io.BytesIO()
+    write_frame(stream, message)
+    stream.seek(0)
+    return read_frame(stream)
+
+
+class Local:
+    """An adapter that answers requests as a worker would."""
+
+    def __init__(self, adapter: Any) -> None:
+        self.adapter = adapter
+
+    def request(self, case: Case, operation: str, **fields: Any) -> Answer:
+        self.adapter.load(case.system)
+        answer = OPERATIONS[operation](self.adapter, _sent(fields))
+        return Answer("ok", result=_sent({"result": answer})["result"])
+
+
+class Stepping(ReferenceAdapter):
+    """The reference's schemes, to be declared as whatever one likes."""
+
+
+def builtin(name: str, *timesteps: float) -> Case:
+    """A built-in scenario, with other steps where some are given."""
+    return case_of(load_builtin(name), timesteps)
+
+
+def truth_of(case: Case, schemes: tuple[str, ...] = tuple(SCHEMES)) -> Truth:
+    """The truth with these schemes stepped beside it."""
+    local: Any = Local(ReferenceAdapter())
+    truth = case_truth(local, case)
+    assert isinstance(truth, Truth), truth
+    keys = [SchemeKey(name, False) for name in schemes]
+    truth.companions.update(case_companions(local, case, truth, keys, case.sweeps))
+    return truth
+
+
+def answers_of(case: Case, adapter: Any, integrator: str) -> dict[float, Answer]:
+    """The runs of one integrator, by step."""
+    local = Local(adapter)
+    plan = {"initial": case.initial, "integrator": integrator}
+    return {
+        s.timestep: local.request(
+            case, "run", **plan, timestep=s.timestep, steps=s.steps, every=s.every
+        )
+        for s in case.sweeps
+    }
+
+
+def declared(name: str, scheme: str | None = None, order: int | None = None) -> Integrator:
+    """An integrator that says of itself what one likes."""
+    orders = dict.fromkeys(SCHEMES["lie-rk4"].orders, order) if order else {}
+    return Integrator(name, scheme, orders)
+
+
+def judged(
+    case: Case, truth: Truth, integrator: Integrator, adapter: Any = None, steps: str = ""
+) -> list[JudgedRun]:
+    """An integrator sent through the gates. steps: the reference's scheme that it really takes."""
+    answers = answers_of(case, adapter or Stepping(), steps or integrator.name)
+    return list(judge_integrator(truth, integrator, list(case.sweeps), answers, {}))
+
+
+def engine_case(
+    case: Case, truth: Truth, name: str, integrators: dict[Integrator, str]
+) -> EngineCase:
+    """An engine of several integrators, each with the scheme that it really takes."""
+    result, runs = CaseResult(name, case.name), []
+    adapter = Stepping()
+    for integrator, steps in integrators.items():
+        answers = answers_of(case, adapter, steps)
+        result.runs.update({(integrator.name, step): a for step, a in answers.items()})
+        runs += list(judge_integrator(truth, integrator, list(case.sweeps), answers, {}))
+    description = replace(adapter.description, name=name, integrators=tuple(integrators))
+    engine = Engine(EngineChoice(name, ""), description, tuple(integrators))
+    return EngineCase(engine, result, [], runs)
