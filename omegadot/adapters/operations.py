@@ -8,6 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from omegadot.adapters.checked import (
+    checked_acceleration,
+    checked_bodies,
+    checked_description,
+    checked_state,
+    checked_torque,
+    checked_trajectory,
+)
 from omegadot.adapters.protocol import Adapter, Trajectory
 from omegadot.adapters.wire import acceleration_from, state_from, system_from
 from omegadot.reference_impl.companion import Steps, companion
@@ -18,25 +26,37 @@ from omegadot.reference_impl.system import State
 Request = dict[str, Any]
 
 
+def _lead(states: State) -> tuple[int, ...]:
+    """The leading axes of some states: () for one, (n,) for n."""
+    return states.angular_velocity.shape[:-1]
+
+
 def _load(adapter: Adapter, request: Request) -> Any:
     """Load a system; the description that comes back may speak of this very system."""
     adapter.load(system_from(request["system"]))
-    return adapter.description
+    return checked_description(adapter.description)
 
 
 def _model(adapter: Adapter, request: Request) -> Any:
     """Bodies as the engine holds them, and a state after a round trip through it."""
-    adapter.set_state(state_from(request["state"]))
-    return {"bodies": adapter.model(), "state": adapter.get_state()}
+    state = state_from(request["state"])
+    adapter.set_state(state)
+    bodies = checked_bodies(adapter.model(), 1)
+    return {
+        "bodies": bodies,
+        "state": checked_state("get_state()", adapter.get_state(), _lead(state)),
+    }
 
 
 def _forward(adapter: Adapter, request: Request) -> Any:
-    return adapter.forward_dynamics(state_from(request["states"]))
+    states = state_from(request["states"])
+    return checked_acceleration(adapter.forward_dynamics(states), _lead(states))
 
 
 def _inverse(adapter: Adapter, request: Request) -> Any:
     states = state_from(request["states"])
-    return {"torque": adapter.inverse_dynamics(states, acceleration_from(request["acceleration"]))}
+    torque = adapter.inverse_dynamics(states, acceleration_from(request["acceleration"]))
+    return {"torque": checked_torque(torque, _lead(states))}
 
 
 def _is_finite(state: State) -> Any:
@@ -50,7 +70,8 @@ def _timed_run(adapter: Adapter, request: Request) -> tuple[Trajectory, float]:
     adapter.run(initial, *step, 1, 1)  # a warm-up, so that first-call costs are not counted
     started = time.perf_counter()
     trajectory = adapter.run(initial, *step, request["steps"], request["every"])
-    return trajectory, (time.perf_counter() - started) / request["steps"]
+    seconds = time.perf_counter() - started
+    return checked_trajectory(trajectory), seconds / request["steps"]
 
 
 def _run(adapter: Adapter, request: Request) -> Any:
@@ -66,7 +87,8 @@ def _run(adapter: Adapter, request: Request) -> Any:
             state.position[finite],
             state.linear_velocity[finite],
         )
-        angular[finite] = adapter.forward_dynamics(kept).angular
+        found = adapter.forward_dynamics(kept)
+        angular[finite] = checked_acceleration(found, _lead(kept)).angular
     return {
         "time": trajectory.time,
         "state": trajectory.state,

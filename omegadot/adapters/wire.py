@@ -17,9 +17,14 @@ import numpy as np
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
 
+# Words that get into the channel look like a header of 10^18 bytes.
+LONGEST_HEADER = 2**30
+
 
 def _pack(value: Any, arrays: list[Array]) -> Any:
     if isinstance(value, np.ndarray):
+        if value.dtype.kind not in "fiub":
+            raise TypeError(f"an array of {value.dtype.name} cannot be sent; give real numbers")
         arrays.append(np.array(value, dtype="<f8", order="C"))  # a scalar stays one
         return {"$array": len(arrays) - 1}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
@@ -44,12 +49,20 @@ def _unpack(value: Any, arrays: list[Array]) -> Any:
     return value
 
 
-def write_frame(stream: BinaryIO, message: dict[str, Any]) -> None:
-    """Write one message; arrays anywhere in it travel as raw float64."""
+def encode_frame(message: dict[str, Any]) -> bytes:
+    """One message as a frame; arrays anywhere in it travel as raw float64.
+
+    Raises TypeError where it holds what neither JSON nor an array of real numbers can.
+    """
     arrays: list[Array] = []
     body = _pack(message, arrays)
     header = json.dumps({"body": body, "shapes": [a.shape for a in arrays]}).encode()
-    stream.write(struct.pack(">Q", len(header)) + header + b"".join(a.tobytes() for a in arrays))
+    return struct.pack(">Q", len(header)) + header + b"".join(a.tobytes() for a in arrays)
+
+
+def write_frame(stream: BinaryIO, message: dict[str, Any]) -> None:
+    """Write one message."""
+    stream.write(encode_frame(message))
     stream.flush()
 
 
@@ -61,8 +74,13 @@ def _read_exactly(stream: BinaryIO, count: int) -> bytes:
 
 
 def read_frame(stream: BinaryIO) -> dict[str, Any]:
-    """Read one message. Raises EOFError when the other side is gone."""
+    """Read one message.
+
+    Raises EOFError when the other side is gone, ValueError where what comes is no frame.
+    """
     (length,) = struct.unpack(">Q", _read_exactly(stream, 8))
+    if length > LONGEST_HEADER:
+        raise ValueError(f"a header of {length} bytes")
     header = json.loads(_read_exactly(stream, length))
     arrays = []
     for shape in header["shapes"]:

@@ -1,4 +1,4 @@
-"""The command line: ``omegadot run | engines | scenarios | schemes | report``."""
+"""The command line: ``omegadot run | check | engines | scenarios | schemes | report``."""
 
 from __future__ import annotations
 
@@ -63,12 +63,20 @@ def run(
         list[str] | None,
         typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
     ] = None,
+    exceptions: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FILE", help="Known failures, declared in TOML; repeatable."),
+    ] = None,
     timeout: Annotated[
         float, typer.Option(metavar="S", min=0.1, help="Limit for one request to an engine.")
     ] = 60.0,
     jobs: Annotated[
         int | None,
         typer.Option(metavar="N", min=1, help="Engines at the same time. Default: cores."),
+    ] = None,
+    memory: Annotated[
+        float | None,
+        typer.Option(metavar="GIB", min=0.1, help="Limit for one engine. Default: half of it all."),
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="For the random states.")] = 0,
     output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
@@ -80,6 +88,7 @@ def run(
     """
     import os
 
+    from omegadot.harness.checks.exceptions import exceptions_of
     from omegadot.harness.command_run import run_and_write
     from omegadot.harness.outcome import RunRequest
     from omegadot.harness.print_run import print_json, print_text
@@ -88,10 +97,11 @@ def run(
 
     choices = engine_choices(engine or [], adapter or [])
     cases = [case_of(scenario, timestep or []) for scenario in scenarios_of(scenarios or [])]
+    known = exceptions_of(choices, exceptions or [])
     check_folder(out)
     jobs = jobs or os.cpu_count() or 1
-    request = RunRequest(cases, choices, setup.value, seed, timeout, jobs)
-    record, code = run_and_write(request, out, ["omegadot", *sys.argv[1:]])
+    request = RunRequest(cases, choices, setup.value, seed, timeout, jobs, memory)
+    record, code = run_and_write(request, out, ["omegadot", *sys.argv[1:]], known)
     if output is Format.json:
         print_json(record, out, code)
     else:
@@ -156,6 +166,53 @@ def schemes(
     from omegadot.harness.command_schemes import print_schemes
 
     raise typer.Exit(print_schemes(engine or [], adapter or [], python or [], output.value))
+
+
+@app.command()
+def check(
+    adapter: Annotated[
+        str,
+        typer.Argument(metavar="ADAPTER", help="An engine's name, FILE.py:Class or module:Class."),
+    ],
+    scenario: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A built-in's name or a path; repeatable. Default: all."),
+    ] = None,
+    integrator: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Repeatable. Default: all.")
+    ] = None,
+    exceptions: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE", help="Known failures, declared in TOML; repeatable."),
+    ] = None,
+    baseline: Annotated[
+        str | None, typer.Option(metavar="DIR", help="Compare with the figures stored there.")
+    ] = None,
+    update_baseline: Annotated[
+        bool, typer.Option("--update-baseline", help="Store the figures instead.")
+    ] = False,
+    timeout: Annotated[
+        float, typer.Option(metavar="S", min=0.1, help="Limit for one request to an engine.")
+    ] = 60.0,
+    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+) -> None:
+    """Put one engine, built in or your own, through every check.
+
+    Exit codes: 0 every check holds, 1 one fails or all were skipped, 2 wrong usage or input, 3 the
+    engine crashed, hung or could not be started.
+    """
+    from omegadot.harness.checks.select import Words
+    from omegadot.harness.command_check import check_engine
+
+    words = Words(
+        scenarios=scenario or [],
+        exceptions=exceptions or [],
+        baseline=baseline,
+        update=update_baseline,
+        timeout=timeout,
+    )
+    as_json = output is Format.json
+    raise typer.Exit(check_engine(adapter, integrator or [], words, as_json))
 
 
 @app.command()

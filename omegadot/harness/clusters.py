@@ -17,8 +17,8 @@ import numpy as np
 from omegadot.adapters.wire import state_from
 from omegadot.harness.gates.course import scheme_key
 from omegadot.harness.likeness import ROTATION, likeness
-from omegadot.harness.plan import Case, Sweep
 from omegadot.harness.outcome import EngineCase, JudgedCase
+from omegadot.harness.plan import Case, Sweep
 from omegadot.harness.truth import Truth
 from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.system import Array

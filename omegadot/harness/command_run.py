@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from omegadot import __version__
+from omegadot.harness.checks.exceptions import DeclaredException
 from omegadot.harness.clusters import clusters_of_run
 from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
+from omegadot.harness.declare import with_declared
 from omegadot.harness.machine import describe_machine, package_versions
 from omegadot.harness.outcome import Outcome, RunRequest, tasks_of
 from omegadot.harness.plan import Case, EngineChoice
@@ -113,7 +115,8 @@ def _scenario(case: Case) -> dict[str, Any]:
 
 
 def exit_code(run: dict[str, Any], choices: Sequence[EngineChoice]) -> int:
-    """0 every gate holds, 1 a gate fails, 3 an engine failed to answer or to start.
+    """0 every gate holds, 1 a gate fails or a declared exception does not hold any more, 3 an
+    engine failed to answer or to start.
 
     An engine that is not installed counts only where it was asked for by name.
     """
@@ -125,16 +128,32 @@ def exit_code(run: dict[str, Any], choices: Sequence[EngineChoice]) -> int:
         return 3
     if any(t["outcome"] == "not-installed" and t["engine"] in required for t in tasks):
         return 3
-    failed = any("fail" in t["gates"].values() or t["outcome"] == "diverged" for t in tasks)
-    return 1 if failed else 0
+    failed = any("fail" in t["gates"].values() or _diverged(t) for t in tasks)
+    return 1 if failed or run.get("stale_exceptions") else 0
 
 
-def run_and_write(request: RunRequest, out: Path, command: list[str]) -> tuple[Record, int]:
-    """Run, write the record with its page, and say how it went."""
+def _diverged(task: dict[str, Any]) -> bool:
+    declared = task["gates"].get("trajectory") == "declared"
+    return task["outcome"] == "diverged" and not declared
+
+
+def run_and_write(
+    request: RunRequest,
+    out: Path,
+    command: list[str],
+    exceptions: Sequence[DeclaredException] = (),
+) -> tuple[Record, int]:
+    """Run, write the record with its page, and say how it went.
+
+    exceptions: known failures, of engines that are set up for physics.
+    """
     started = time.perf_counter()
     runner = Runner(request)
     with progress_bar(runner, request.cases):
         outcome = runner.execute()
+    known = exceptions if request.setup == "physics" else ()
+    outcome, stale = with_declared(outcome, known, request.cases)
     record = record_of(outcome, request, command, time.perf_counter() - started)
+    record.run["stale_exceptions"] = stale
     write_record(record, out, draw_page(record))
     return record, exit_code(record.run, request.choices)

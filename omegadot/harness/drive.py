@@ -9,15 +9,18 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.wire import description_of
 from omegadot.harness.plan import Case, Engine, Sweep
-from omegadot.harness.worker_process import FAILED_TO_ANSWER, Answer, WorkerProcess
+from omegadot.harness.worker_process import Answer, WorkerProcess
 from omegadot.reference_impl.system import Acceleration, State
 
 MOST_TIMEOUTS_IN_A_ROW = 3
+# Outcomes of loading a scenario that deserve a second attempt; the others would come again.
+MAY_PASS = {"crashed", "timeout", "interrupted"}
 INTERRUPTED = Answer("interrupted", "the run was interrupted before this task")
 
 
@@ -74,18 +77,19 @@ class Driver:
         self._slots, self._stopping = slots, stopping
         self._timeouts_in_a_row = 0
         self._loaded: Case | None = None
+        self._tried: set[str] = set()
+        self._refused: dict[str, Answer] = {}
         self._declared: tuple[Integrator, ...] = ()
 
-    def _ask(self, operation: str, **fields: Any) -> Answer:
-        if self._stopping.is_set():
-            return INTERRUPTED
+    def _ask(self, call: Callable[[], Answer]) -> Answer:
+        """What a call to the worker comes to, when its turn has come."""
         with self._slots:
-            answer = self.worker.ask(operation, **fields)
+            answer = INTERRUPTED if self._stopping.is_set() else call()
         if self._stopping.is_set() and not answer.ok:
             return INTERRUPTED
         late = answer.outcome == "timeout"
         self._timeouts_in_a_row = self._timeouts_in_a_row + 1 if late else 0
-        if answer.outcome in FAILED_TO_ANSWER:
+        if not self.worker.started:
             self._loaded = None
         return answer
 
@@ -93,19 +97,21 @@ class Driver:
         """Have the worker up and the scenario loaded, whatever went before."""
         if self._timeouts_in_a_row >= MOST_TIMEOUTS_IN_A_ROW:
             return Answer("timeout", f"not tried: {self._timeouts_in_a_row} time-outs in a row")
-        if self._stopping.is_set():
-            return INTERRUPTED
+        if case.name in self._refused:
+            return self._refused[case.name]
         if not self.worker.started:
-            self._loaded = None
-            started = self.worker.start()
+            started = self._ask(self.worker.start)
             if not started.ok:
                 return started
         if self._loaded is case:
             return Answer("ok")
-        answer = self._ask("load", system=case.system)
+        answer = self._ask(partial(self.worker.ask, "load", system=case.system))
         self._loaded = case if answer.ok else None
         if answer.ok:
             self._declared = description_of(answer.result).integrators
+        elif answer.outcome not in MAY_PASS or case.name in self._tried:
+            self._refused[case.name] = answer
+        self._tried.add(case.name)
         return answer
 
     def integrators(self) -> tuple[Integrator, ...]:
@@ -116,7 +122,7 @@ class Driver:
     def request(self, case: Case, operation: str, **fields: Any) -> Answer:
         """One request about a case; what fails is the answer."""
         loaded = self._load(case)
-        return self._ask(operation, **fields) if loaded.ok else loaded
+        return self._ask(partial(self.worker.ask, operation, **fields)) if loaded.ok else loaded
 
     def run(self, case: Case, integrator: str, sweep: Sweep) -> Answer:
         """One integrator with one step size."""

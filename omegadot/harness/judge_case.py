@@ -138,7 +138,7 @@ def judge_integrator(
             continue
         state = state_from(answer.result["state"])
         findings = findings_of(course, declared, known)
-        match = scheme.match_row(truth, integrator, course, state)
+        match = scheme.match_row(truth, integrator, course, state, known)
         rows = [match, *scheme.order_rows(seen, declared, course)]
         rows += invariants.rows(course, findings, sweep.times)
         rows.append(trajectory.time_row(sweep, answer.result["time"]))

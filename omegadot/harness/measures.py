@@ -63,12 +63,19 @@ class Yardstick:
     def distance(self, channel: str, one: State, other: State) -> Array:
         """(n,): |one - other| in this channel.
 
-        omega: over the rate.  attitude: rad.  position: m.  energy, momenta: over their sizes.
+        omega: over the rate.  attitude: rad, or how much longer a quaternion is, whichever is more.
+        position: m.  energy, momenta: over their sizes.
         """
+        # An engine that has gone astray may be where squares overflow: that far away is infinite.
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._distance(channel, one, other)
+
+    def _distance(self, channel: str, one: State, other: State) -> Array:
         if channel == "omega":
             return np.asarray(norm(one.angular_velocity - other.angular_velocity) / self.rate)
         if channel == "attitude":
-            return attitude_angle(one.orientation, other.orientation)
+            length = np.abs(norm(one.orientation) - norm(other.orientation))
+            return np.maximum(attitude_angle(one.orientation, other.orientation), length)
         if channel == "position":
             return norm(one.position - other.position)
         if channel == "energy":

@@ -18,7 +18,11 @@ from omegadot.harness.worker_process import Answer
 
 @dataclass(frozen=True)
 class RunRequest:
-    """What to run. timeout: s, for one request to a worker. jobs: requests at the same time."""
+    """What to run.
+
+    timeout: s, for one request to a worker.  jobs: requests at the same time.  memory: GiB that a
+    worker may hold; None for half of the machine's.
+    """
 
     cases: Sequence[Case]
     choices: Sequence[EngineChoice]
@@ -26,6 +30,7 @@ class RunRequest:
     seed: int = 0
     timeout: float = 60.0
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
+    memory: float | None = None
 
 
 @dataclass(frozen=True)

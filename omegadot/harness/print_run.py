@@ -18,6 +18,8 @@ from omegadot.reports.terminal import print_summary
 def print_text(record: Record, out: Path) -> None:
     """A table that is read in ten seconds, and where the page is."""
     print_summary(record)
+    for exception in record.run.get("stale_exceptions", []):
+        typer.echo(f"Declared exception: {exception['problem']}")
     typer.echo(f"Report: {out / PAGE}")
 
 
@@ -34,6 +36,7 @@ def print_json(record: Record, out: Path, code: int) -> None:
         "headline": headline(summarise(record)),
         "outcomes": Counter(task["outcome"] for task in tasks),
         "verdicts": verdicts,
+        "stale_exceptions": record.run.get("stale_exceptions", []),
         "tasks": tasks,
     }
     typer.echo(dump_json(result))

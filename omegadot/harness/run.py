@@ -8,6 +8,7 @@ from functools import partial
 from omegadot.harness.ask_truth import case_companions, case_truth, reference_runs
 from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.gates.course import SchemeKey, scheme_key
+from omegadot.harness.gates.scheme import keys_beside
 from omegadot.harness.judge_case import JudgedRun, judge_case, shared_rows
 from omegadot.harness.outcome import (
     EngineCase,
@@ -36,12 +37,14 @@ class Runner:
 
     def _keys(self, case: Case) -> list[SchemeKey]:
         """The reference's runs that this case's engines will be held against."""
+        stepping = (engine for engine in self.workers.engines if engine.name != "exact")
         named = {
-            scheme_key(i, case.system)
-            for engine in self.workers.engines
-            for i in engine.integrators
+            key
+            for engine in stepping
+            for integrator in engine.integrators
+            for key in keys_beside(integrator, case.system)
         }
-        return sorted((key for key in named if key), key=str)
+        return sorted(named, key=str)
 
     def _add_companions(
         self, case: Case, truth: Truth, results: list[CaseResult], sweeps: list[Sweep]
@@ -124,6 +127,11 @@ class Runner:
                 break
             judged = self.judge(pending, finer)
         return judged
+
+    def run_case(self, case: Case) -> JudgedCase:
+        """One case by itself; the workers are started before and finished after by the caller."""
+        pending = self._submit_case(case)
+        return self._resolve(pending, self.judge(pending, {}))
 
     def execute(self) -> Outcome:
         """Run everything; Ctrl-C ends the workers and keeps what has come in."""

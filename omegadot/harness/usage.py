@@ -24,8 +24,8 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return f"write {close[0]}" if close else f"give one of {', '.join(names)}"
 
 
-def _adapters(extra: Sequence[str]) -> dict[str, str]:
-    """Engines given by file or module: the name is the class's, in lower case."""
+def adapters_named(extra: Sequence[str]) -> dict[str, str]:
+    """Targets by engine name: the class's, in lower case, without Adapter. Raises UsageError."""
     found = {}
     for target in extra:
         _, separator, name = target.rpartition(":")
@@ -42,7 +42,7 @@ def engine_choices(wanted: Sequence[str], extra: Sequence[str] = ()) -> list[Eng
 
     The same name may come several times with different integrators. Raises UsageError.
     """
-    added = _adapters(extra)
+    added = adapters_named(extra)
     known = {**registered(), **added}
     if not wanted:
         chosen = added or known

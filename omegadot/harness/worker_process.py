@@ -8,17 +8,18 @@ import queue
 import signal
 import subprocess
 import sys
-import threading
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from omegadot.adapters.wire import read_frame, write_frame
+from omegadot.adapters.plain_text import one_line
+from omegadot.adapters.worker import MEMORY_VARIABLE
+from omegadot.harness.machine import memory_of_machine
+from omegadot.harness.worker_pipes import Lost, Pipes, end_group
 
-STDERR_BYTES_KEPT = 4000
 SECONDS_TO_LEAVE = 2.0
-FAILED_TO_ANSWER = {"crashed", "timeout"}
+# Importing an engine takes as long as it takes, however short a request may be asked to be.
+SECONDS_TO_START = 20.0
 
 
 @dataclass(frozen=True)
@@ -36,31 +37,41 @@ class Answer:
         return self.outcome == "ok"
 
 
-def _worker_environment() -> dict[str, str]:
+def _worker_environment(memory: int | None) -> dict[str, str]:
     # One thread an engine: the workers run side by side, and timings must not share cores.
     single = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-    return {**os.environ, **single, "PYTHONUNBUFFERED": "1"}
+    limit = {MEMORY_VARIABLE: str(memory)} if memory else {}
+    return {**os.environ, **single, "PYTHONUNBUFFERED": "1", **limit}
 
 
 class WorkerProcess:
-    """One engine's process. It is started when first asked and again after it dies."""
+    """One engine's process. It is started when first asked and again after it dies.
+
+    timeout: s, for one request; a start has 20 s at least.  memory: bytes of data that it may
+    hold; half of the machine's where none is given, and no limit where that is not known.
+    """
 
     def __init__(
-        self, target: str, setup: str, timeout: float, command: Sequence[str] | None = None
+        self,
+        target: str,
+        setup: str,
+        timeout: float,
+        command: Sequence[str] | None = None,
+        memory: int | None = None,
     ) -> None:
         python = [sys.executable, "-m", "omegadot.adapters.worker"]
         self._command = [*(command or python), target, setup]
         self._timeout = timeout
+        self._memory = memory or memory_of_machine() // 2
         self._process: subprocess.Popen[bytes] | None = None
-        self._answers: queue.Queue[dict[str, Any] | None] = queue.Queue()
-        self._stderr: deque[bytes] = deque()
-        self._drain: threading.Thread | None = None
+        self._pipes: Pipes | None = None
         self.deaths: list[str] = []
 
     @property
     def pid(self) -> int | None:
         """The process's number while it lives."""
-        return self._process.pid if self._process else None
+        process = self._process
+        return process.pid if process else None
 
     @property
     def started(self) -> bool:
@@ -70,109 +81,89 @@ class WorkerProcess:
     def start(self) -> Answer:
         """Start the process; the result is the engine's description."""
         self.stop()
-        self._answers, self._stderr = queue.Queue(), deque()
         try:
-            self._process = subprocess.Popen(
+            process = subprocess.Popen(
                 self._command,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                env=_worker_environment(),
+                env=_worker_environment(self._memory),
                 start_new_session=True,  # Ctrl-C is the harness's to handle
             )
         except OSError as error:
             return Answer("crashed", f"the worker could not be started: {error}")
-        process, answers, stderr = self._process, self._answers, self._stderr
-        threading.Thread(target=_collect, args=(process, answers), daemon=True).start()
-        self._drain = threading.Thread(target=_keep_tail, args=(process, stderr), daemon=True)
-        self._drain.start()
-        answer = self._wait()
+        pipes = Pipes(process)
+        self._process, self._pipes = process, pipes
+        answer = self._wait(process, pipes, max(self._timeout, SECONDS_TO_START))
         if not answer.ok:
             self.stop()
         return answer
 
     def ask(self, operation: str, **fields: Any) -> Answer:
         """Put one request and wait for its answer, a death, or the time limit."""
-        if self._process is None:
+        process, pipes = self._process, self._pipes
+        if process is None or pipes is None:
             return Answer("crashed", "the worker is not running")
-        assert self._process.stdin is not None
-        # A dead worker shows as a broken pipe here and as an end of answers in _wait.
-        with contextlib.suppress(OSError):
-            write_frame(self._process.stdin, {"operation": operation, **fields})  # type: ignore[arg-type]
-        return self._wait()
+        pipes.send({"operation": operation, **fields})
+        return self._wait(process, pipes, self._timeout)
 
-    def _wait(self) -> Answer:
+    def _wait(self, process: subprocess.Popen[bytes], pipes: Pipes, seconds: float) -> Answer:
         try:
-            answer = self._answers.get(timeout=self._timeout)
+            answer = pipes.answers.get(timeout=seconds)
         except queue.Empty:
             self.stop()
-            return Answer("timeout", f"no answer within {self._timeout:g} s; the worker was ended")
-        if answer is None:
-            return Answer("crashed", self._post_mortem())
+            return Answer("timeout", f"no answer within {seconds:g} s; the worker was ended")
+        if isinstance(answer, Lost):
+            return Answer("crashed", self._post_mortem(process, pipes, answer.how))
+        if answer.get("leaves"):
+            self.stop()
         return Answer(
             answer["outcome"],
-            answer.get("reason", ""),
+            one_line(answer.get("reason", "")),
             answer.get("result"),
             answer.get("seconds", 0.0),
         )
 
-    def _post_mortem(self) -> str:
-        assert self._process is not None
-        code = self._process.wait()
-        if self._drain is not None:
-            self._drain.join(timeout=1.0)
-        if code < 0:
-            how = f"ended by signal {-code} ({signal.Signals(-code).name})"
+    def _post_mortem(self, process: subprocess.Popen[bytes], pipes: Pipes, how: str) -> str:
+        """Say how a worker came to give no more answers. how: why it is ended, if it lives."""
+        if how:
+            end_group(process)
+            process.wait()
+            how += "; the worker was ended"
         else:
-            how = f"ended with exit code {code}"
-        lines = b"".join(self._stderr).decode(errors="replace").strip().splitlines()[-3:]
-        said = " | ".join(" ".join(line.split()) for line in lines)[:400]
-        self._process = None
+            how = _ending(process.wait())
+        self._process = self._pipes = None
+        said = pipes.last_words()
         found = f"{how}; its last words: {said}" if said else how
         self.deaths.append(found)
         return found
 
     def finish(self) -> None:
         """Let an idle worker leave by itself, so that it may tidy up; end it if it does not."""
-        if self._process is None:
+        process, pipes = self._process, self._pipes
+        if process is None or pipes is None:
             return
-        if self._process.poll() is not None:  # it died while nobody asked it anything
-            self._post_mortem()
+        if process.poll() is not None:  # it died while nobody asked it anything
+            self._post_mortem(process, pipes, "")
             return
-        assert self._process.stdin is not None
-        with contextlib.suppress(OSError, subprocess.TimeoutExpired):
-            self._process.stdin.close()
-            self._process.wait(timeout=SECONDS_TO_LEAVE)
+        pipes.close_requests()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(timeout=SECONDS_TO_LEAVE)
         self.stop()
 
     def stop(self) -> None:
         """End the process and everything it started, at once."""
-        if self._process is None:
-            return
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.wait()
-        self._process = None
+        process, self._process, self._pipes = self._process, None, None
+        if process is not None:
+            end_group(process)
+            process.wait()
 
 
-def _collect(process: subprocess.Popen[bytes], answers: queue.Queue[dict[str, Any] | None]) -> None:
-    """Move answers from the pipe to the queue; None says that there will be no more."""
-    assert process.stdout is not None
-    while True:
-        try:
-            answers.put(read_frame(process.stdout))  # type: ignore[arg-type]
-        except (EOFError, OSError, ValueError):
-            answers.put(None)
-            return
-
-
-def _keep_tail(process: subprocess.Popen[bytes], tail: deque[bytes]) -> None:
-    """Keep the last lines of standard error and drop the rest, however much comes."""
-    assert process.stderr is not None
-    kept = 0
-    with contextlib.suppress(OSError, ValueError):
-        while chunk := process.stderr.read1(STDERR_BYTES_KEPT):  # type: ignore[attr-defined]
-            tail.append(chunk)
-            kept += len(chunk)
-            while len(tail) > 1 and kept - len(tail[0]) >= STDERR_BYTES_KEPT:
-                kept -= len(tail.popleft())
+def _ending(code: int) -> str:
+    """A process's end in words, of its return code."""
+    if code >= 0:
+        return f"ended with exit code {code}"
+    try:
+        return f"ended by signal {-code} ({signal.Signals(-code).name})"
+    except ValueError:  # the real-time signals have no names
+        return f"ended by signal {-code}"

@@ -46,12 +46,15 @@ class Workers:
         """Start every engine asked for, and the two that know the truth."""
         wanted = {choice.name: choice for choice in self.request.choices}
         helpers = [EngineChoice(n, BUILT_IN[n]) for n in ("exact", "reference") if n not in wanted]
-        setup, timeout = self.request.setup, self.request.timeout
+        setup, timeout, memory = self.request.setup, self.request.timeout, self.request.memory
+        limit = None if memory is None else int(memory * 2**30)
         for choice in (*wanted.values(), *helpers):
-            self._processes[choice.name] = WorkerProcess(choice.target, setup, timeout)
+            worker = WorkerProcess(choice.target, setup, timeout, memory=limit)
+            self._processes[choice.name] = worker
             self._threads[choice.name] = ThreadPoolExecutor(1, choice.name)
         started = {
-            n: self._threads[n].submit(worker.start) for n, worker in self._processes.items()
+            name: self._threads[name].submit(self._start_one, worker)
+            for name, worker in self._processes.items()
         }
         for choice in (*wanted.values(), *helpers):
             answer = started[choice.name].result()
@@ -65,6 +68,10 @@ class Workers:
             self.drivers[choice.name] = Driver(engine, worker, self._slots, self._stopping)
             if choice.name in wanted:
                 self.engines.append(engine)
+
+    def _start_one(self, worker: WorkerProcess) -> Answer:
+        with self._slots:  # many engines that start together would only be late together
+            return worker.start()
 
     def stop(self) -> None:
         """End every worker at once; answers that were on their way become interruptions."""

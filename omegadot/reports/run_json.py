@@ -41,10 +41,32 @@ def check_run(run: dict[str, Any], where: str) -> None:
             for name in names:
                 if not isinstance(entry.get(name), str):
                     raise RecordError(f"{where}: {key}[{number}].{name} must be a text; run again.")
+    _check_clusters(run.get("clusters", []), where)
     for number, task in enumerate(run["tasks"]):
         _check_word(task.get("outcome"), schema.OUTCOMES, f"{where}: tasks[{number}].outcome")
         for gate, verdict in (task.get("gates") or {}).items():
             _check_word(verdict, schema.VERDICTS, f"{where}: tasks[{number}].gates.{gate}")
+
+
+def _check_clusters(clusters: object, where: str) -> None:
+    """Records from before there were clusters have none."""
+    if not isinstance(clusters, list):
+        raise RecordError(f"{where}: clusters must be a list of objects; run again.")
+    for number, cluster in enumerate(clusters):
+        entry = cluster if isinstance(cluster, dict) else {}
+        members, scheme = entry.get("members"), entry.get("scheme")
+        sound = (
+            isinstance(entry.get("scenario"), str)
+            and isinstance(entry.get("timestep"), int | float)
+            and isinstance(scheme, str | None)
+            and isinstance(members, list | tuple)
+            and all(isinstance(member, str) for member in members)
+        )
+        if not sound:
+            raise RecordError(
+                f"{where}: clusters[{number}] must have a scenario, a timestep, a scheme or null, "
+                "and members, a list of texts; run again."
+            )
 
 
 def _check_word(found: object, allowed: tuple[str, ...], where: str) -> None:

@@ -14,8 +14,8 @@ from omegadot.harness.ask_truth import case_companions, case_truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.gates.course import SchemeKey
 from omegadot.harness.judge_case import JudgedRun, judge_integrator
+from omegadot.harness.outcome import EngineCase
 from omegadot.harness.plan import Case, Engine, EngineChoice
-from omegadot.harness.run import EngineCase
 from omegadot.harness.truth import Truth
 from omegadot.harness.usage import case_of
 from omegadot.harness.worker_process import Answer
@@ -40,10 +40,6 @@ class Local:
         self.adapter.load(case.system)
         answer = OPERATIONS[operation](self.adapter, _sent(fields))
         return Answer("ok", result=_sent({"result": answer})["result"])
-
-
-class Stepping(ReferenceAdapter):
-    """The reference's schemes, to be declared as whatever one likes."""
 
 
 def builtin(name: str, *timesteps: float) -> Case:
@@ -83,20 +79,21 @@ def judged(
     case: Case, truth: Truth, integrator: Integrator, adapter: Any = None, steps: str = ""
 ) -> list[JudgedRun]:
     """An integrator sent through the gates. steps: the reference's scheme that it really takes."""
-    answers = answers_of(case, adapter or Stepping(), steps or integrator.name)
+    answers = answers_of(case, adapter or ReferenceAdapter(), steps or integrator.name)
     return list(judge_integrator(truth, integrator, list(case.sweeps), answers, {}))
 
 
 def engine_case(
-    case: Case, truth: Truth, name: str, integrators: dict[Integrator, str]
+    case: Case, truth: Truth, name: str, *integrators: tuple[Integrator, str]
 ) -> EngineCase:
     """An engine of several integrators, each with the scheme that it really takes."""
     result, runs = CaseResult(name, case.name), []
-    adapter = Stepping()
-    for integrator, steps in integrators.items():
+    adapter = ReferenceAdapter()
+    for integrator, steps in integrators:
         answers = answers_of(case, adapter, steps)
         result.runs.update({(integrator.name, step): a for step, a in answers.items()})
         runs += list(judge_integrator(truth, integrator, list(case.sweeps), answers, {}))
-    description = replace(adapter.description, name=name, integrators=tuple(integrators))
-    engine = Engine(EngineChoice(name, ""), description, tuple(integrators))
+    own = tuple(integrator for integrator, _ in integrators)
+    description = replace(adapter.description, name=name, integrators=own)
+    engine = Engine(EngineChoice(name, ""), description, own)
     return EngineCase(engine, result, [], runs)

@@ -8,10 +8,11 @@ from command_line import WRONG
 from in_process import builtin, declared, judged, truth_of
 
 from omegadot.adapters.registry import build_adapter
-from omegadot.harness.gates.course import Course, Declared
-from omegadot.harness.gates.scheme import order_rows, orders_seen
+from omegadot.harness.gates.course import Course, Declared, SchemeKey
+from omegadot.harness.gates.scheme import keys_beside, order_rows, orders_seen
 from omegadot.harness.likeness import likeness, share_of
 from omegadot.harness.plan import Sweep
+from omegadot.reference_impl.schemes import SCHEMES
 
 STEPS = (0.02, 0.01, 0.005)
 
@@ -157,3 +158,13 @@ def test_a_likeness_names_where_it_is_least():
     found = likeness(distances, bounds)
     assert (found.channel, found.distance, found.agree) == ("energy", 0.05, False)
     assert found.share == pytest.approx(10.0)
+
+
+def test_who_declares_no_scheme_is_held_against_all_of_them(case):
+    assert keys_beside(declared("own", "lie-rk4"), case.system) == [SchemeKey("lie-rk4", False)]
+    silent = keys_beside(declared("own"), case.system)
+    assert {key.scheme for key in silent} == set(SCHEMES)
+    offset = builtin("offset-com").system
+    at_origin = replace(declared("own"), steps_origin=True)
+    assert {key.at_origin for key in keys_beside(at_origin, offset)} == {True}
+    assert {key.at_origin for key in keys_beside(at_origin, case.system)} == {False}

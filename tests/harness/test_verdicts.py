@@ -21,7 +21,7 @@ def test_a_power_of_the_step_shows_its_order(order: int) -> None:
 
 def test_a_constant_error_has_order_zero() -> None:
     seen = observed_order([0.04, 0.02, 0.01], [1e-3, 1e-3, 1e-3])
-    assert seen == ObservedOrder(0.0, True)
+    assert seen == ObservedOrder(0.0, True, 0.0)
 
 
 def test_two_slopes_that_differ_are_not_resolved() -> None:
@@ -92,3 +92,13 @@ def test_beyond_the_schemes_own_end_nothing_is_judged() -> None:
     assert "until the scheme blows up" in finding.note
     left[1] = 1e-11
     assert judge(Evidence(LARGE, bound, left, (None, None)), "scheme", 1).verdict == "fail"
+
+
+def test_a_slope_that_is_still_rising_is_not_held_against_anyone() -> None:
+    steps = [0.04, 0.02, 0.01]
+    seen = observed_order(steps, [h - 9 * h**2 for h in steps])
+    assert seen is not None
+    assert seen.resolved is False
+    rising = ObservedOrder(0.83, True, 0.08)
+    assert kind(LARGE, None, (rising,), 1) == "unresolved"
+    assert kind(LARGE, None, (ObservedOrder(0.83, True, -0.01),), 1) == "unexplained"

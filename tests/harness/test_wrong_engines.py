@@ -52,6 +52,7 @@ FAULTS = {
     "StepSlightlyLong": "trajectory",
     "FirstSampleMissing": "trajectory",
     "LogsOneSampleLate": "trajectory",
+    "EnergyCorrected": "scheme",
 }
 
 

@@ -138,6 +138,18 @@ def engine_entry(name, integrators):
     }
 
 
+def clusters(scenario, timestep, engines):
+    """One cluster a scheme, the reference having no vote."""
+    groups = {}
+    for engine, integrators in engines.items():
+        for integrator in integrators if engine != "reference" else ():
+            groups.setdefault(SCHEMES.get(integrator), []).append(f"{engine}:{integrator}")
+    return [
+        {"scenario": scenario, "timestep": timestep, "scheme": scheme, "members": members}
+        for scheme, members in groups.items()
+    ]
+
+
 def build(scenarios=("sphere", "spun-again"), engines=INTEGRATORS, steps=STEPS, samples=SAMPLES):
     """Every scenario on every engine: late by the step to the power of the scheme's order."""
     frames, metrics, tasks = [], [], []
@@ -152,13 +164,20 @@ def build(scenarios=("sphere", "spun-again"), engines=INTEGRATORS, steps=STEPS, 
                     off = 1e-3 * h**order * (engine != "dart")
                     columns = spinning(clocks[h], late, off)
                     frames.append(_rows(scenario, engine, integrator, h, columns))
-                    tasks.append(task(scenario, engine, integrator, h))
+                    scheme = SCHEMES.get(integrator)
+                    tasks.append(task(scenario, engine, integrator, h, scheme=scheme))
                     add = [scenario, engine, integrator, h]
+                    seen = {"gate": "scheme", "channel": "attitude"}
                     metrics += [
                         metric(*add, "model", "model", "mass", 0.0),
                         metric(*add, "equation", "omega_dot", "residual", 3.1e-15 * (place + 1)),
                         metric(*add, "invariants", "angular_momentum", "drift_full", h**order),
+                        metric(*add, **seen, name="match", value=0.02 * h, bound=1.0),
+                        metric(
+                            *add, **seen, name="observed_order", value=order + 0.01, bound=order
+                        ),
                         metric(*add, "trajectory", "attitude", "error_max", late[-1], unit="rad"),
+                        metric(*add, "trajectory", "attitude", "unexplained_max", h * 1e-12),
                         metric(
                             *add, "cost", "time", "time_per_step", 2e-6, unit="s", verdict="info"
                         ),
@@ -175,6 +194,7 @@ def build(scenarios=("sphere", "spun-again"), engines=INTEGRATORS, steps=STEPS, 
         "versions": {"python": "3.11.2", "numpy": "2.0.0"},
         "engines": [engine_entry(name, own) for name, own in engines.items()],
         "scenarios": [scenario_entry(name) for name in scenarios],
+        "clusters": [entry for s in scenarios for h in steps for entry in clusters(s, h, engines)],
         "tasks": tasks,
     }
     table = pl.DataFrame(metrics, infer_schema_length=None)

@@ -7,7 +7,7 @@ from synthetic_record import build, scenario_entry
 from omegadot.reports import draw_page
 
 HOSTILE = "<script>document.title='broken'</script><img src=x onerror=\"document.title='broken'\">"
-CHARTS = 8
+CHARTS = 12
 DRAWN = f"Number(document.documentElement.dataset.drawn || 0) >= {CHARTS}"
 # The lines of the fourth chart, the attitude error of the first scenario.
 LINES = """[...document.querySelectorAll(".chart")[3].data].map(
@@ -49,7 +49,11 @@ def test_charts_are_drawn_and_nothing_is_complained_of(page, path):
     assert page.messages == []
     assert page.evaluate("document.querySelectorAll('.chart svg.main-svg').length") >= CHARTS
     assert page.evaluate("document.getElementById('no-charts').hidden")
-    assert page.evaluate("document.querySelectorAll('.chart .scatterlayer .js-line').length") == 40
+    # Five lines a chart; two guides and the rounding line stand beside those of convergence.
+    lines = 2 * (4 * 5 + 5 + 5 + 3)
+    assert (
+        page.evaluate("document.querySelectorAll('.chart .scatterlayer .js-line').length") == lines
+    )
 
 
 def test_the_network_is_left_alone(page, path):
@@ -107,8 +111,46 @@ def test_a_switch_acts_on_all_charts_and_the_keyboard_reaches_it(page):
     page.press(" ", 32, " ")
     page.wait(DRAWN)
     counts = page.evaluate("[...document.querySelectorAll('.chart')].map((c) => c.data.length)")
-    assert counts == [3] * CHARTS
+    assert counts == [3, 3, 3, 3, 6, 3] * 2
     assert page.evaluate(LINES)[0]["name"] == "mujoco Euler"
+
+
+SWEEP = """((kind) => [...document.querySelector(`[data-kind=${kind}]`).data].map(
+    (t) => ({name: t.name, x: [...t.x], y: [...t.y], dash: t.line.dash})))"""
+
+
+def test_convergence_is_drawn_over_the_step_with_its_slopes(page):
+    drawn = {line["name"]: line for line in page.evaluate(f"{SWEEP}('convergence')")}
+    assert drawn["dart semi-implicit"]["x"] == [0.005, 0.01, 0.02]
+    assert drawn["dart semi-implicit"]["y"] == pytest.approx([6e-3, 1.2e-2, 2.4e-2])
+    (low, high), (start, end) = drawn["order 4"]["x"], drawn["order 4"]["y"]
+    assert (low, high) == (0.005, 0.02)
+    assert end / start == pytest.approx(4.0**4, rel=1e-3)
+    assert drawn["rounding"]["y"] == [1e-13] * 3
+    layout = "document.querySelector('[data-kind=convergence]').layout"
+    assert page.evaluate(f"{layout}.xaxis.type + {layout}.yaxis.type") == "loglog"
+    assert page.evaluate(f"{layout}.xaxis.ticktext") == ["0.005", "0.01", "0.02"]
+    assert page.evaluate(f"{layout}.yaxis.range[0]") <= -13
+
+
+def test_work_is_drawn_against_precision(page):
+    drawn = {line["name"]: line for line in page.evaluate(f"{SWEEP}('cost')")}
+    assert len(drawn) == 5
+    assert drawn["mujoco RK4"]["x"] == pytest.approx([4e-4, 2e-4, 1e-4])
+    assert drawn["mujoco RK4"]["y"] == pytest.approx([1.2 * h**4 for h in (0.005, 0.01, 0.02)])
+    text = page.evaluate("document.querySelector('[data-kind=cost]').data[3].text[0]")
+    assert text == "step 0.005 s: 7.50e-10 rad<br>4.00e-4 s per simulated second"
+
+
+def test_sweeps_keep_colour_and_dash_and_leave_with_their_engine(page):
+    looks = {line["name"]: line["dash"] for line in page.evaluate(f"{SWEEP}('cost')")}
+    assert looks["mujoco Euler"] == looks["dart semi-implicit"] == "solid"
+    again(page, "document.querySelectorAll('fieldset[data-engine] .all')[1].click()")
+    left = {line["name"] for line in page.evaluate(f"{SWEEP}('convergence')")}
+    assert left == {
+        *("reference semi-implicit-euler", "reference lie-rk4", "dart semi-implicit"),
+        *("order 1", "order 4", "rounding"),
+    }
 
 
 def test_axes_are_logarithmic_and_zeros_lie_on_a_marked_floor(page):

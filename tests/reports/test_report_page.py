@@ -99,7 +99,7 @@ def test_all_head_cells_have_a_scope_and_no_heading_is_skipped(sound):
 def test_every_chart_has_a_text_alternative_and_a_table(sound):
     outline = Outline(sound)
     charts = [a for a in outline.named("div") if a.get("class") == "chart"]
-    assert len(charts) == 2 * 4
+    assert len(charts) == 2 * (4 + 2)
     assert all(a["role"] == "img" and "table" in a["aria-label"] for a in charts)
     assert sound.count("The numbers behind these charts") == 2
 
@@ -176,6 +176,24 @@ def test_a_long_list_of_failures_says_how_much_is_left(record):
         for k in range(_JUDGED_SHOWN + 7)
     ]
     assert "7 more stand in metrics.parquet" in draw_page(with_metrics(record, *rows))
+
+
+def test_the_page_says_why(sound):
+    why = re.search(r'<section id="why".*?</section>', sound, re.S).group(0)
+    text = text_of(why)
+    assert "mujoco Euler and dart semi-implicit are one scheme, semi-implicit-euler: two" in text
+    assert "On all of 2 scenarios." in text
+    assert why.count("6 of 6") == 3
+    assert "1.01 (1)" in text
+    assert text_of(sound).count("3 runs at step 0.005 s make 2 different courses") == 2
+    assert sound.count('data-kind="convergence"') == sound.count('data-kind="cost"') == 2
+
+
+def test_a_record_from_before_clusters_is_still_drawn(record):
+    run = {key: value for key, value in record.run.items() if key != "clusters"}
+    page = draw_page(replace(record, run=run))
+    assert "copies, one vote" not in page
+    assert 'id="why"' in page
 
 
 def test_what_did_not_run_is_not_green(record):

@@ -164,6 +164,9 @@ def test_a_missing_file_and_folder_are_named(folder, name):
         read_record(folder / "nowhere")
 
 
+WHOLE = '{"schema": 1, "engines": [], "scenarios": [], "tasks": [], "clusters": %s}'
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -174,6 +177,9 @@ def test_a_missing_file_and_folder_are_named(folder, name):
         ('{"schema": 1, "engines": [], "scenarios": []}', "tasks"),
         ('{"schema": 1, "engines": [{}], "scenarios": [], "tasks": []}', r"engines\[0\].name"),
         ('{"schema": 1, "engines": [], "scenarios": [], "tasks": [{}]}', r"tasks\[0\].scenario"),
+        (WHOLE % "7", "clusters must be a list"),
+        (WHOLE % "[7]", r"clusters\[0\]"),
+        (WHOLE % '[{"scenario": "s", "timestep": 1, "members": [3]}]', r"clusters\[0\]"),
         ("[" * 100_000, "JSON"),
         ("\xff", "run.json"),
     ],

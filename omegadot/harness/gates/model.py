@@ -19,6 +19,11 @@ def _largest(values: Array) -> float:
     return float(np.max(np.abs(values)))
 
 
+def _spectral_norm(matrix: Array) -> float:
+    # Where an entry is NaN or infinite the singular values are not found; it is no number then.
+    return float(np.linalg.norm(matrix, 2)) if np.all(np.isfinite(matrix)) else float("nan")
+
+
 def body_rows(case: Case, body: Body) -> list[Row]:
     """Mass, centre of mass and inertia read back, against what was asked.
 
@@ -27,8 +32,8 @@ def body_rows(case: Case, body: Body) -> list[Row]:
     asked, scale = case.system.body, body_scale(case.system)
     mass = abs(float(body.mass) - scale.mass) / scale.mass
     offset = float(norm(np.asarray(body.center_of_mass) - asked.center_of_mass))
-    size = float(np.linalg.norm(asked.inertia, 2))
-    inertia = float(np.linalg.norm(np.asarray(body.inertia) - asked.inertia, 2)) / size
+    size = _spectral_norm(asked.inertia)
+    inertia = _spectral_norm(np.asarray(body.inertia) - asked.inertia) / size
     return [
         within(GATE, "model", "mass", mass, "1", ROUNDINGS * EPS),
         within(GATE, "model", "center_of_mass", offset, "m", ROUNDINGS * EPS * scale.lever),
@@ -41,7 +46,9 @@ def state_rows(case: Case, asked: State, back: State) -> list[Row]:
     lever = body_scale(case.system).lever
     rate, reach = norm(asked.angular_velocity), norm(asked.position) + lever
     speed = norm(asked.linear_velocity) + rate * lever
-    turn = attitude_angle(asked.orientation, back.orientation)
+    # The angle is blind to a quaternion's length, which is an error of its own.
+    length = np.abs(norm(back.orientation) - 1.0)
+    turn = np.maximum(attitude_angle(asked.orientation, back.orientation), length)
     values = {
         "attitude": (turn, "rad", np.ones_like(turn)),
         "omega": (norm(back.angular_velocity - asked.angular_velocity), "rad/s", rate),

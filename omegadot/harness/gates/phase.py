@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.harness.gates.course import Course
 from omegadot.harness.interpolation import Hermite, error_factor, zero_crossings
@@ -29,7 +30,7 @@ class Shift:
     residual: Array
 
 
-def _mean_squares(exact: Array, omega: Array, farthest: int) -> tuple[Array, Array]:
+def _mean_squares(exact: Array, omega: Array, farthest: int) -> tuple[NDArray[np.intp], Array]:
     """Lags in samples, and the mean square of ``omega[i] - exact[i + lag]`` where both exist."""
     n = len(omega)
     lags = np.arange(-farthest, farthest + 1)

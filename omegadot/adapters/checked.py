@@ -1,0 +1,116 @@
+"""An adapter's answers, held to the protocol's types and shapes before they leave the worker."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+import numpy as np
+
+from omegadot.adapters.protocol import Channel, Description, Integrator, Trajectory
+from omegadot.reference_impl.system import Acceleration, Array, Body, State
+
+Shape = tuple[int, ...]
+STATE_WIDTHS = {"orientation": 4, "angular_velocity": 3, "position": 3, "linear_velocity": 3}
+CHANNELS = get_args(Channel)
+
+
+class AnswerError(TypeError):
+    """An adapter's answer is not what the protocol asks for; the message says what and where."""
+
+
+def _expect(what: str, value: Any, kind: type) -> None:
+    if not isinstance(value, kind):
+        name = type(value).__name__
+        raise AnswerError(f"{what} is of type {name}; answer with a {kind.__name__}")
+
+
+def numbers(what: str, value: Any, shape: Shape) -> Array:
+    """The value as an array of this shape. Raises AnswerError where it is no such thing."""
+    try:
+        array = np.asarray(value)
+    except ValueError as error:  # rows of different lengths
+        raise AnswerError(f"{what} is no array: {error}") from error
+    if array.dtype.kind not in "fiu":
+        raise AnswerError(f"{what} holds {array.dtype.name}; answer with real numbers")
+    if array.shape != shape:
+        raise AnswerError(f"{what} has the shape {array.shape}; answer with {shape}")
+    return array.astype(float, copy=False)
+
+
+def checked_state(what: str, state: Any, lead: Shape) -> State:
+    """A state whose arrays have the leading axes `lead`."""
+    _expect(what, state, State)
+    fields = {
+        name: numbers(f"{what}.{name}", getattr(state, name), (*lead, width))
+        for name, width in STATE_WIDTHS.items()
+    }
+    return State(**fields)
+
+
+def checked_trajectory(trajectory: Any) -> Trajectory:
+    """A trajectory with as many states as times; how many there should be is a gate's to judge."""
+    _expect("run()", trajectory, Trajectory)
+    count = np.size(trajectory.time)
+    time = numbers("run().time", trajectory.time, (max(1, count),))
+    return Trajectory(time, checked_state("run().state", trajectory.state, (count,)))
+
+
+def checked_acceleration(found: Any, lead: Shape) -> Acceleration:
+    """Angular and linear acceleration at as many states as were asked for."""
+    what = "forward_dynamics()"
+    _expect(what, found, Acceleration)
+    angular = numbers(f"{what}.angular", found.angular, (*lead, 3))
+    return Acceleration(angular, numbers(f"{what}.linear", found.linear, (*lead, 3)))
+
+
+def checked_torque(found: Any, lead: Shape) -> Array:
+    """A torque for each state that was asked for."""
+    return numbers("inverse_dynamics()", found, (*lead, 3))
+
+
+def checked_bodies(bodies: Any, count: int) -> tuple[Body, ...]:
+    """As many bodies as were loaded, each with its mass, centre of mass and inertia."""
+    _expect("model()", bodies, tuple)
+    if len(bodies) != count:
+        raise AnswerError(f"model() has {len(bodies)} bodies; answer with {count}")
+    found = []
+    for body in bodies:
+        _expect("a body of model()", body, Body)
+        mass = numbers("model().mass", body.mass, ())
+        center = numbers("model().center_of_mass", body.center_of_mass, (3,))
+        found.append(Body(mass, center, numbers("model().inertia", body.inertia, (3, 3))))
+    return tuple(found)
+
+
+def checked_description(found: Any) -> Description:
+    """A description whose fields are what its annotations say."""
+    if not isinstance(found, Description):
+        raise AnswerError(f"description is of type {type(found).__name__}; answer with Description")
+    for name in ("name", "version", "licence"):
+        _expect(f"description.{name}", getattr(found, name), str)
+    if found.precision not in ("float64", "float32"):
+        raise AnswerError(f"description.precision is {found.precision!r}; write float64 or float32")
+    for name in ("conventions", "switched_off", "links", "features"):
+        for item in getattr(found, name):
+            _expect(f"an item of description.{name}", item, str)
+    for integrator in found.integrators:
+        _expect("an item of description.integrators", integrator, Integrator)
+        _check_integrator(integrator)
+    names = [integrator.name for integrator in found.integrators]
+    if len(set(names)) < len(names):
+        raise AnswerError(f"description.integrators has a name twice, of {', '.join(names)}")
+    return found
+
+
+def _check_integrator(integrator: Integrator) -> None:
+    _expect("an integrator's name", integrator.name, str)
+    if integrator.scheme is not None:
+        _expect(f"the scheme of {integrator.name}", integrator.scheme, str)
+    for channel, order in integrator.orders.items():
+        if channel not in CHANNELS:
+            known = ", ".join(CHANNELS)
+            raise AnswerError(
+                f"the orders of {integrator.name} name {channel!r}; give one of {known}"
+            )
+        if order is not None:
+            _expect(f"the order of {integrator.name} in {channel}", order, int)

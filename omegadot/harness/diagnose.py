@@ -1,0 +1,47 @@
+"""The likeliest cause of what the gates found, in words.
+
+``diagnose(case, truth, questions, result, runs) -> list[str]`` is a pure function of what the
+harness has after judging one engine on one case: the `Case`, its `Truth` (with the companions of
+the schemes in question), the `Questions` that were asked, the `CaseResult` with the engine's own
+answers, and the `JudgedRun` list of `judge_case`. Each sentence names a cause that was tried on
+those answers and explains them within the gates' own bounds. Where nothing does, or nothing failed,
+the list is empty: no guess is better than a wrong one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from omegadot.harness.diagnosis import equation, model, runs_told, stepping
+from omegadot.harness.drive import CaseResult, Questions
+from omegadot.harness.judge_case import JudgedRun, shared_rows
+from omegadot.harness.plan import Case
+from omegadot.harness.truth import Truth
+
+
+def diagnose(
+    case: Case,
+    truth: Truth,
+    questions: Questions,
+    result: CaseResult,
+    runs: Sequence[JudgedRun],
+) -> list[str]:
+    """Sentences that explain the failed gates, the most basic cause first; none without failure.
+
+    A wrong model or equation is looked for first, and explains the runs after it: these are looked
+    at by themselves only where neither gate failed.
+    """
+    failed = {row.gate for row in shared_rows(case, questions, result) if row.verdict == "fail"}
+    found: list[str] = []
+    if "model" in failed:
+        found += model.causes(case, questions, result)
+    if "equation" in failed and not found:
+        found += equation.causes(case, questions, result)
+    if not failed:
+        for run in runs:
+            if any(row.verdict == "fail" for row in run.rows):
+                found += runs_told.causes(case, truth, result, run)
+                found += [] if found else stepping.causes(case, truth, result, run)
+            if found:
+                break
+    return list(dict.fromkeys(found))

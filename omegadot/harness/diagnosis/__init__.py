@@ -1,0 +1,1 @@
+"""Causes that are tried on an engine's own answers, one file a gate."""

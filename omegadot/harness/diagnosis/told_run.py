@@ -1,0 +1,85 @@
+"""One run as it was told, beside the same run stepped by the reference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.adapters.wire import state_from
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.faults.restep import step_anew
+from omegadot.harness.gates.course import CHANNELS, scheme_key
+from omegadot.harness.judge_case import JudgedRun
+from omegadot.harness.plan import Case, Sweep
+from omegadot.harness.truth import Truth
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.schemes import SCHEMES, Scheme
+from omegadot.reference_impl.system import Array, State, System
+
+
+def rows(state: State, which: object) -> State:
+    """Some samples of a run."""
+    return State(*(values[which] for values in vars(state).values()))  # type: ignore[index]
+
+
+@dataclass(frozen=True)
+class ToldRun:
+    """time and state as told; own: the reference's run of the declared scheme, with the samples.
+
+    growth: (n,), how far rounding may have grown along it.
+    """
+
+    case: Case
+    truth: Truth
+    integrator: Integrator
+    sweep: Sweep
+    time: Array
+    state: State
+    own: State
+    growth: Array
+
+    @property
+    def bounds(self) -> dict[str, Array]:
+        """(n,) per channel: what rounding may account for."""
+        step, numbers = self.sweep.timestep, self.sweep.sample_steps
+        return self.truth.yardstick.round_off(step, numbers, self.growth)
+
+    def agrees(
+        self, state: State, other: State, samples: object = slice(None), slack: float = 1.0
+    ) -> bool:
+        """Whether two courses are the same within rounding, at these samples."""
+        bounds, yardstick = self.bounds, self.truth.yardstick
+        with np.errstate(all="ignore"):
+            return all(
+                bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))  # type: ignore[index]
+                for c in CHANNELS
+            )
+
+    def stepped(
+        self,
+        scheme: Scheme | None = None,
+        system: System | None = None,
+        initial: State | None = None,
+        timestep: float | None = None,
+        every_step: bool = False,
+    ) -> State:
+        """The reference's run with something else in it; the declared where nothing is given."""
+        wanted, sweep = system or self.case.system, self.sweep
+        declared = SCHEMES[self.integrator.scheme or ""]
+        plan = (timestep or sweep.timestep, sweep.steps, 1 if every_step else sweep.every)
+        how = (wanted, acceleration_of(wanted), scheme or declared, self.integrator.steps_origin)
+        return step_anew(*how, initial or self.case.initial, plan)[1]
+
+
+def told_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> ToldRun | None:
+    """The run that was judged; None where it failed or no scheme is declared for it."""
+    integrator, sweep = run.integrator, run.sweep
+    answer = result.runs.get((integrator.name, sweep.timestep))
+    key = scheme_key(integrator, case.system)
+    own = truth.companions.get((key, sweep.timestep)) if key else None
+    if answer is None or not answer.ok or own is None or integrator.scheme not in SCHEMES:
+        return None
+    time, state = answer.result["time"], state_from(answer.result["state"])
+    return ToldRun(case, truth, integrator, sweep, time, state, own.state, own.growth)

@@ -1,0 +1,1 @@
+"""Sound engines with one thing broken in each, and what catches it."""

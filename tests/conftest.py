@@ -1,0 +1,11 @@
+"""Hypothesis profiles: `ci` is small and always the same, `thorough` is large and random.
+
+Choose with ``pytest --hypothesis-profile thorough``. Tests with settings of their own keep them.
+"""
+
+from hypothesis import HealthCheck, settings
+
+slow = [HealthCheck.too_slow, HealthCheck.data_too_large]
+settings.register_profile("ci", derandomize=True, max_examples=12, deadline=None)
+settings.register_profile("thorough", max_examples=400, deadline=None, suppress_health_check=slow)
+settings.load_profile("ci")

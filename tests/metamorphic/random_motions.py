@@ -1,0 +1,167 @@
+"""Random bodies, loads and states, and how far rounding may take two equal answers apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from hypothesis import strategies as st
+
+from omegadot.adapters.protocol import Adapter
+from omegadot.harness.gates.course import CHANNELS, scheme_key
+from omegadot.harness.measures import Yardstick
+from omegadot.harness.scales import (
+    EPS,
+    ROUNDINGS_PER_EVALUATION,
+    body_scale,
+    linear_size,
+    norm,
+    torque_size,
+)
+from omegadot.reference_impl.companion import Steps, companion
+from omegadot.reference_impl.inertia import inertia_of_moments
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.rotations import normalize, rotation_matrix
+from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
+
+STATES = 6
+STEPS = 20
+# Two evaluations, and the change of frame of what goes in and of what comes out.
+ROUNDINGS = 2 * ROUNDINGS_PER_EVALUATION + 16
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A system and n states of it."""
+
+    system: System
+    states: State
+
+    @property
+    def first(self) -> State:
+        return State(*(values[0] for values in vars(self.states).values()))
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a property can be asked of. damped: torques that break time reversal."""
+
+    pivoted: bool = True
+    damped: bool = True
+    offset: bool = True
+
+
+def random_motion(seed: int, wanted: Wanted = Wanted()) -> Motion:  # noqa: B008
+    """A body of any attitude and shape, moments over two decades; loads are there or not."""
+    random = np.random.default_rng(seed)
+    mass = 10.0 ** random.uniform(-2.0, 2.0)
+    size = 10.0 ** random.uniform(-1.0, 1.0)
+    squares = (size * 10.0 ** random.uniform(-1.0, 0.0, 3)) ** 2
+    axes = rotation_matrix(normalize(random.standard_normal(4)))
+    inertia = axes @ inertia_of_moments(mass, squares) @ axes.T
+    inertia = (inertia + inertia.T) / 2.0
+    there = random.integers(0, 2, 5)
+    center = size * random.standard_normal(3) * there[0] * wanted.offset
+    rate = 10.0 ** random.uniform(-1.0, 1.0)
+    twist = rate**2 * float(np.trace(inertia))
+    load = Load(
+        gravity=10.0 * random.standard_normal(3) * there[1],
+        pivot=size * random.standard_normal(3) if there[2] and wanted.pivoted else None,
+        damping=np.asarray(twist / rate * there[3] * wanted.damped * random.uniform()),
+        torque_body=twist * random.standard_normal(3) * there[4],
+        torque_world=twist * random.standard_normal(3) * there[4] * wanted.damped,
+    )
+    system = System((Body(np.asarray(mass), center, inertia),), load)
+    states = State(
+        normalize(random.standard_normal((STATES, 4))),
+        rate * random.standard_normal((STATES, 3)),
+        size * random.standard_normal((STATES, 3)),
+        size * rate * random.standard_normal((STATES, 3)),
+    )
+    return Motion(system, place_on_pivot(system, states))
+
+
+def motions(wanted: Wanted = Wanted()) -> st.SearchStrategy[Motion]:  # noqa: B008
+    """Random motions for a property."""
+    return st.integers(0, 2**32 - 1).map(lambda seed: random_motion(seed, wanted))
+
+
+def turned(system: System, state: State) -> State:
+    """The state, with a pivoted body where its pivot holds it."""
+    return place_on_pivot(system, state)
+
+
+def accelerations(adapter: Adapter, motion: Motion) -> Acceleration:
+    """The engine's answer."""
+    adapter.load(motion.system)
+    return adapter.forward_dynamics(motion.states)
+
+
+def equation_gap(
+    motions: tuple[Motion, Motion], expected: Acceleration, found: Acceleration
+) -> float:
+    """The distance of two accelerations over what rounding allows, at its largest.
+
+    Rounding allows ``eps cond S / J`` an operation on either side: S the terms of equation (8) by
+    size, J the largest inertia, cond that over the smallest; the same sizes as the equation gate.
+    """
+    angular = linear = 0.0
+    for side in motions:
+        scale = body_scale(side.system)
+        allowed = torque_size(side.system, side.states, expected) / scale.smallest
+        angular = np.maximum(angular, ROUNDINGS * EPS * allowed)
+        allowed = linear_size(side.system, side.states, expected)
+        linear = np.maximum(linear, ROUNDINGS * EPS * allowed)
+    return float(
+        np.max(
+            [
+                norm(found.angular - expected.angular) / angular,
+                norm(found.linear - expected.linear) / linear,
+            ]
+        )
+    )
+
+
+def timestep_of(motion: Motion) -> float:
+    """A step in which the fastest body turns by a twentieth of a radian."""
+    return 0.05 / float(np.max(norm(motion.first.angular_velocity)))
+
+
+def course(adapter: Adapter, motion: Motion, integrator: str, timestep: float) -> State:
+    """The engine's states over some steps, from the first state."""
+    adapter.load(motion.system)
+    return adapter.run(motion.first, integrator, timestep, STEPS, 1).state
+
+
+def course_gap(
+    adapter: Adapter,
+    motion: Motion,
+    integrator: str,
+    timestep: float,
+    expected: State,
+    found: State,
+) -> float:
+    """The distance of two courses of a motion over what rounding may grow to in both.
+
+    The growth is that of the declared scheme along its own course; where none is declared, of RK4.
+    """
+    system = motion.system
+    times = timestep * np.arange(STEPS + 1)
+    yardstick = Yardstick(system, times, expected)
+    named = next(i for i in adapter.description.integrators if i.name == integrator)
+    key = scheme_key(named, system)
+    scheme, at_origin = (key.scheme, key.at_origin) if key else ("rk4-quaternion", False)
+    plan = [Steps(timestep, STEPS, 1)]
+    own = companion(system, motion.first, scheme, yardstick.rate, plan, at_origin)[0]
+    bounds = yardstick.round_off(timestep, np.arange(STEPS + 1.0), own.growth)
+    gaps = [
+        np.max(yardstick.distance(channel, expected, found) / (2.0 * bounds[channel]))
+        for channel in CHANNELS
+    ]
+    return float(np.max(gaps))
+
+
+def with_load(motion: Motion, **fields: Array) -> Motion:
+    """The same motion under other loads."""
+    load = replace(motion.system.load, **fields)
+    return Motion(replace(motion.system, load=load), motion.states)

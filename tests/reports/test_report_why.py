@@ -1,0 +1,219 @@
+"""Why engines differ, as the page tells it: copies, schemes, orders, convergence, cost."""
+
+from dataclasses import replace
+
+import numpy as np
+import polars as pl
+import pytest
+from synthetic_record import build, metric, with_metrics
+
+from omegadot.reports.copies import copies_of, sentence, votes, where
+from omegadot.reports.headline import truth
+from omegadot.reports.summary import summarise
+from omegadot.reports.sweeps import (
+    Point,
+    Sweep,
+    decades,
+    guides,
+    rounding,
+    sweep_payload,
+    sweeps_of,
+)
+from omegadot.reports.why import order_table, scheme_table
+
+
+def cluster(scenario, members, scheme="euler", timestep=0.01):
+    return {
+        "scenario": scenario,
+        "timestep": timestep,
+        "scheme": scheme,
+        "members": members.split(),
+    }
+
+
+def of(*clusters):
+    return {"clusters": list(clusters)}
+
+
+def test_three_copies_are_one_vote():
+    (copies,) = copies_of(of(cluster("a", "x:Euler y:step z:aba+euler"), cluster("a", "x:RK4")))
+    assert sentence(copies) == (
+        "x Euler, y step and z aba+euler are one scheme, euler: three copies, one vote."
+    )
+    assert where(copies) == "On all of 1 scenario."
+    assert copies.engines == 3
+
+
+def test_an_exception_does_not_part_copies_and_is_named():
+    same = [cluster(name, "x:a y:b") for name in ("one", "two", "three")]
+    apart = [cluster("four", "x:a", "other"), cluster("four", "y:b")]
+    (copies,) = copies_of(of(*same, *apart))
+    assert copies.scheme == "euler"
+    assert where(copies) == "On 3 of 4 scenarios; they part on four."
+    many = [cluster(n, m) for n in "pqrst" for m in ("x:a", "y:b")]
+    (copies,) = copies_of(of(*same, *[cluster(n, "x:a y:b") for n in "klmno"], *many))
+    assert where(copies) == "On 8 of 13 scenarios; they part on p, q, r and 2 more."
+
+
+def test_a_motion_that_tells_nothing_apart_makes_no_copies():
+    simple = cluster("sphere", "x:a y:b x:c")
+    telling = [cluster(name, own) for name in ("one", "two") for own in ("x:a y:b", "x:c")]
+    assert [copies.members for copies in copies_of(of(simple, *telling))] == [("x:a", "y:b")]
+
+
+def test_together_means_at_every_step():
+    clusters = [
+        cluster("one", "x:a y:b", timestep=0.02),
+        cluster("one", "x:a", timestep=0.01),
+        cluster("one", "y:b", timestep=0.01),
+    ]
+    assert copies_of(of(*clusters)) == []
+
+
+def test_in_a_group_every_two_agree():
+    # a mostly goes with b, and b with c, but a seldom with c: b cannot bring them together.
+    clusters = [
+        *(cluster("one", own) for own in ("x:a y:b", "z:c")),
+        *(cluster("two", own) for own in ("y:b z:c", "x:a")),
+        cluster("three", "x:a y:b z:c"),
+    ]
+    assert [copies.members for copies in copies_of(of(*clusters))] == [("x:a", "y:b")]
+
+
+def test_a_scheme_that_nobody_knows_has_no_name():
+    (copies,) = copies_of(of(cluster("one", "x:a y:b", None)))
+    assert "one scheme that the reference does not know: two copies" in sentence(copies)
+
+
+def test_a_record_without_clusters_says_nothing():
+    assert copies_of({}) == []
+    assert votes({}, "sphere") == ""
+    assert votes(of(cluster("one", "x:a")), "sphere") == ""
+
+
+def test_one_scenarios_votes_are_those_of_its_finest_step():
+    coarse = cluster("one", "x:a y:b z:c", timestep=0.02)
+    said = votes(of(coarse, cluster("one", "x:a z:c"), cluster("one", "y:b")), "one")
+    assert said == "3 runs at step 0.01 s make 2 different courses: x a = z c."
+
+
+def row(table, *heads):
+    (found,) = [r for r in table.rows if r.heads[: len(heads)] == heads]
+    return found
+
+
+def test_the_scheme_table_leaves_the_reference_out(record):
+    table = scheme_table(record)
+    assert {r.heads[0] for r in table.rows} == {"mujoco", "dart"}
+    euler = row(table, "mujoco", "Euler")
+    assert euler.heads[2] == "semi-implicit-euler"
+    assert [value.text for value in euler.values] == ["6 of 6", "4.0e-4", "–", "2.0e-14"]
+
+
+def test_a_scheme_that_is_not_equalled_stands_out(record):
+    add = ["sphere", "dart", "semi-implicit", 0.04, "scheme", "omega", "match"]
+    found = with_metrics(record, metric(*add, 3e8, verdict="fail"))
+    equalled, share, *_ = row(scheme_table(found), "dart").values
+    assert (equalled.text, equalled.mark) == ("6 of 7 ✗ fail", "fail")
+    assert share.text == "3.0e8"
+
+
+def test_a_scheme_that_depends_on_the_system_is_told(record):
+    tasks = [dict(task) for task in record.run["tasks"]]
+    for task in tasks:
+        if task["integrator"] == "Euler" and task["scenario"] == "sphere":
+            task["scheme"] = "another" if task["timestep"] == 0.02 else task["scheme"]
+        if task["engine"] == "dart":
+            task["scheme"] = None
+    table = scheme_table(replace(record, run={**record.run, "tasks": tasks}))
+    assert row(table, "mujoco", "Euler").heads[2] == "semi-implicit-euler (another in 1 run)"
+    assert row(table, "dart").heads[2] == "none declared"
+
+
+def test_orders_are_ranges_of_what_was_judged(record):
+    add = ["sphere", "dart", "semi-implicit", 0.04, "scheme", "attitude", "observed_order"]
+    more = [
+        metric(*add, 0.88, bound=1.0),
+        metric(*add, 0.2, bound=1.0, verdict="info", note="not resolved"),
+    ]
+    cells = row(order_table(with_metrics(record, *more)), "dart").values
+    assert cells[1].text == "0.88 … 1.01 (1)"
+    assert {cell.text for place, cell in enumerate(cells) if place != 1} == {"–"}
+    failed = metric(*add, 0.3, bound=1.0, verdict="fail")
+    cell = row(order_table(with_metrics(record, failed)), "dart").values[1]
+    assert (cell.text, cell.mark) == ("0.30 … 1.01 (1) ✗ fail", "fail")
+
+
+def test_sweeps_hold_error_and_cost_per_simulated_second(record):
+    found = sweeps_of(record.metrics)
+    assert set(found) == {"sphere", "spun-again"}
+    (dart,) = [s for s in found["sphere"] if s.engine == "dart"]
+    assert dart.order == 1.0
+    assert [p.timestep for p in dart.points] == [0.005, 0.01, 0.02]
+    assert [p.cost for p in dart.points] == pytest.approx([4e-4, 2e-4, 1e-4])
+    assert [p.error for p in dart.points] == pytest.approx([6e-3, 1.2e-2, 2.4e-2])
+    assert dart.points[0].bound == 1e-13
+
+
+def test_what_is_not_finite_is_not_drawn(record):
+    add = ["sphere", "dart", "semi-implicit", 0.04]
+    wild = with_metrics(
+        record,
+        metric(*add, "trajectory", "attitude", "error_max", float("nan"), bound=float("inf")),
+        metric(*add, "cost", "time", "time_per_step", None),
+    )
+    (dart,) = [s for s in sweeps_of(wild.metrics)["sphere"] if s.engine == "dart"]
+    assert dart.points[-1] == Point(0.04, None, None, None)
+
+
+def sweep(order, *errors, bound=1e-13):
+    steps = (0.01, 0.02, 0.04)
+    return Sweep(
+        "x", "physics", "a", order, tuple(map(Point, steps, errors, [bound] * 3, [1.0] * 3))
+    )
+
+
+def test_guides_have_the_slope_that_they_name():
+    found = guides(
+        [sweep(2.0, 1e-6, 4e-6, 1.6e-5), sweep(2.0, 1e-8, 1e-8, 1e-8), sweep(None, 1, 1, 1)]
+    )
+    ((order, h0, e0, h1, e1),) = found
+    assert (order, h0, h1) == (2.0, 0.01, 0.04)
+    assert e0 == pytest.approx(2e-6)  # above the larger of the two
+    assert np.log(e1 / e0) / np.log(h1 / h0) == pytest.approx(2.0)
+
+
+def test_no_guide_starts_in_rounding_or_goes_beyond_half_a_turn():
+    assert guides([sweep(1.0, 2.0, 3.0, 3.0)]) == []
+    assert guides([sweep(1.0, 1e-14, 1e-14, 1e-14)]) == []
+    ((_, _, _, end, error),) = guides([sweep(2.0, 0.3, 1.2, 3.0)])
+    assert end < 0.04
+    assert error == pytest.approx(np.pi)
+
+
+def test_the_rounding_line_is_the_largest_bound_that_means_something():
+    wide = [sweep(1.0, 1, 1, 1, bound=1e-9), sweep(1.0, 1, 1, 1), sweep(1.0, 1, 1, 1, bound=9.0)]
+    assert rounding(wide) == [[0.01, 1e-9], [0.02, 1e-9], [0.04, 1e-9]]
+
+
+def test_axes_hold_all_values_and_know_of_zeros():
+    assert decades(np.array([2e-5, 3e-2])) == {"low": -5, "high": -1, "floor": False}
+    assert decades(np.array([0.0, 3e-2])) == {"low": -17, "high": -1, "floor": True}
+    assert decades(np.array([])) == {"low": -16, "high": -16, "floor": False}
+
+
+def test_only_lines_of_the_page_are_drawn():
+    found = sweep_payload([sweep(1.0, 1e-3, 2e-3, None)], {("x", "physics", "a"): 4})
+    assert found["lines"] == [[4, [[0.01, 0.001, 1.0], [0.02, 0.002, 1.0], [0.04, None, 1.0]]]]
+    assert sweep_payload([sweep(1.0, 1e-3, 2e-3, 4e-3)], {})["lines"] == []
+
+
+def test_the_kinds_of_truth_are_counted(record):
+    assert truth(summarise(record)) == ["Truth: closed-form on 2 of 2 scenarios."]
+    series = pl.when(pl.col("scenario") == "sphere").then(pl.lit("series"))
+    mixed = record.trajectories.with_columns(integrator=series.otherwise(pl.col("integrator")))
+    assert truth(summarise(replace(record, trajectories=mixed))) == [
+        "Truth: closed-form on 1 and series on 1 of 2 scenarios."
+    ]
+    empty = build(("sphere",)).trajectories.clear()
+    assert truth(summarise(replace(record, trajectories=empty))) == []
