@@ -6,6 +6,6 @@ Choose with ``pytest --hypothesis-profile thorough``. Tests with settings of the
 from hypothesis import HealthCheck, settings
 
 slow = [HealthCheck.too_slow, HealthCheck.data_too_large]
-settings.register_profile("ci", derandomize=True, max_examples=12, deadline=None)
+settings.register_profile("ci", derandomize=True, max_examples=30, deadline=None)
 settings.register_profile("thorough", max_examples=400, deadline=None, suppress_health_check=slow)
 settings.load_profile("ci")

@@ -18,6 +18,8 @@ from omegadot.harness.judge_case import JudgedRun, shared_rows
 from omegadot.harness.plan import Case
 from omegadot.harness.truth import Truth
 
+MOST_STEPS = 5000  # of a run that causes are tried on: a step of a scheme is about 0.1 ms
+
 
 def diagnose(
     case: Case,
@@ -38,10 +40,18 @@ def diagnose(
     if "equation" in failed and not found:
         found += equation.causes(case, questions, result)
     if not failed:
-        for run in runs:
-            if any(row.verdict == "fail" for row in run.rows):
-                found += runs_told.causes(case, truth, result, run)
-                found += [] if found else stepping.causes(case, truth, result, run)
+        for run in _shortest_failed(runs):
+            found += runs_told.causes(case, truth, result, run)
+            found += [] if found else stepping.causes(case, truth, result, run)
             if found:
                 break
     return list(dict.fromkeys(found))
+
+
+def _shortest_failed(runs: Sequence[JudgedRun]) -> list[JudgedRun]:
+    """Of each integrator the failed run of the fewest steps, for hypotheses are stepped anew."""
+    failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
+    shortest: dict[str, JudgedRun] = {}
+    for run in sorted(failed, key=lambda run: run.sweep.steps):
+        shortest.setdefault(run.integrator.name, run)
+    return [run for run in shortest.values() if run.sweep.steps <= MOST_STEPS]

@@ -22,6 +22,11 @@ def without_scheme(value: Any) -> Any:
     return value
 
 
+def unbroken(text: str) -> str:
+    """The text with its exponents kept on one line: ``1e-10`` may else part at the hyphen."""
+    return re.sub(r"(?<=\de)-(?=\d)", "-\u2060", text)
+
+
 @cache
 def environment() -> Environment:
     """The page's templates: everything escaped, no address active."""
@@ -35,6 +40,7 @@ def environment() -> Environment:
     found.filters["short"] = short
     found.filters["knob"] = lambda row: knob(row["timestep"], row["accuracy"])
     found.filters["unit"] = unit_text
+    found.filters["unbroken"] = unbroken
     return found
 
 

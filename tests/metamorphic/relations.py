@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from random_motions import Motion
@@ -22,14 +22,17 @@ StateMap = Callable[[State], State]
 
 @dataclass(frozen=True)
 class Retold:
-    """The motion in other words. state and acceleration: what maps an answer about the first motion
-    to one about this. time: how much longer its seconds last.
+    """The motion in other words.
+
+    state and acceleration: what maps an answer about the first motion to one about this.
+    time: what a duration is multiplied by.  drift: m/s, of the new frame.
     """
 
     motion: Motion
     state: StateMap
     acceleration: Callable[[Acceleration], Acceleration]
     time: float = 1.0
+    drift: Array = field(default_factory=lambda: np.zeros(3))
 
 
 def _along(matrix: Array, vectors: Array) -> Array:
@@ -139,7 +142,7 @@ def galilean(motion: Motion, random: np.random.Generator) -> Retold:
         moved = state.position + place
         return replace(state, position=moved, linear_velocity=state.linear_velocity + velocity)
 
-    return Retold(Motion(motion.system, told(motion.states)), told, lambda a: a)
+    return Retold(Motion(motion.system, told(motion.states)), told, lambda a: a, drift=velocity)
 
 
 def scaled_units(motion: Motion, random: np.random.Generator) -> Retold:

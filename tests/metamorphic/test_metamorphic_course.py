@@ -1,8 +1,8 @@
 """The course of a motion does not depend on the words it is told in, step by step.
 
 Catches, over what the equation shows: an update of the attitude in the wrong frame (rotated world
-and body), a body put to sleep below so many rad/s (scaled units), a position that is stepped in
-the body's frame (Galilean shift). Explained errors of a scheme are the same in all words.
+and body), a body put to sleep below so many rad/s (scaled units) or m/s (Galilean shift). The
+errors of a scheme are the same in all words.
 """
 
 from dataclasses import replace
@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_motions import Motion, Wanted, course, course_gap, random_motion, timestep_of
+from random_motions import STEPS, Motion, Wanted, course, course_gap, random_motion, timestep_of
 from relations import galilean, relabelled, rotated_body, rotated_world, scaled_units
 from test_metamorphic_equation import ENGINES, engine
 
@@ -20,6 +20,7 @@ from omegadot.adapters.protocol import Adapter, Trajectory
 from omegadot.reference_impl.rotations import turn_in_world
 from omegadot.reference_impl.system import State
 
+FAULT_SEEDS = 100
 FREE = Wanted(pivoted=False)
 
 
@@ -36,7 +37,7 @@ class TurnsInTheWorld(faults.Wrong):
         return Trajectory(found.time, replace(found.state, orientation=np.array(q)))
 
 
-class MovesInTheBody(faults.Wrong):
+class StopsWhenSlow(faults.Wrong):
     """Stops a body that moves slower than 1 m/s."""
 
     def run(
@@ -52,7 +53,7 @@ RELATIONS = [
     (rotated_world, Wanted(), TurnsInTheWorld),
     (rotated_body, Wanted(), faults.DiagonalInertia),
     (relabelled, Wanted(), faults.SortedMoments),
-    (galilean, FREE, MovesInTheBody),
+    (galilean, FREE, StopsWhenSlow),
     (scaled_units, Wanted(), faults.FallsAsleep),
 ]
 NAMES = [f"{relation.__name__}-{fault.__name__}" for relation, _, fault in RELATIONS]
@@ -63,6 +64,8 @@ def gap(adapter: Adapter, relation, motion: Motion, integrator: str, seed: int) 
     retold = relation(motion, np.random.default_rng(seed))
     step = timestep_of(motion)
     expected = retold.state(course(adapter, motion, integrator, step))
+    moved = np.arange(STEPS + 1)[:, None] * step * retold.drift
+    expected = replace(expected, position=expected.position + moved)
     step *= retold.time
     found = course(adapter, retold.motion, integrator, step)
     return course_gap(adapter, retold.motion, integrator, step, expected, found)
@@ -82,5 +85,5 @@ def test_the_course_is_the_same_in_other_words(name, relation, wanted, fault, se
 @pytest.mark.parametrize(("relation", "wanted", "fault"), RELATIONS, ids=NAMES)
 def test_each_relation_catches_its_fault(relation, wanted, fault) -> None:
     name = fault().description.integrators[0].name
-    gaps = [gap(fault(), relation, random_motion(s, wanted), name, s) for s in range(12)]
-    assert max(gaps) > 1.0
+    gaps = (gap(fault(), relation, random_motion(s, wanted), name, s) for s in range(FAULT_SEEDS))
+    assert any(found > 1.0 for found in gaps)

@@ -1,4 +1,4 @@
-"""omega-dot and the acceleration of the centre of mass do not depend on the words they are asked in.
+"""omega-dot and the centre of mass's acceleration do not depend on the words of the question.
 
 Each property names the wrong code that it catches, and is shown to catch it.
 """

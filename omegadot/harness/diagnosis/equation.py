@@ -72,12 +72,15 @@ def causes(case: Case, questions: Questions, result: CaseResult) -> list[str]:
 def _forward(match: Match) -> list[str]:
     if not np.all(np.isfinite(match.found.angular)):
         return ["omega-dot is not finite"]
+    scaled = scaled_terms(match)
+    if scaled:
+        return [scaled]
     if len(match.found.angular) > 1 and not np.any(np.diff(match.found.angular, axis=0)):
         return ["omega-dot is the same at every state"]
     for said, candidate in (*_told(match), *_misread(match), *_other_systems(match)):
         if match.fits(candidate):
             return [said]
-    for fit in (scaled_terms, constant_inertia, difference_quotient):
+    for fit in (constant_inertia, difference_quotient):
         said = fit(match)
         if said:
             return [said]
@@ -120,14 +123,13 @@ def _other_systems(match: Match) -> Iterator[tuple[str, Acceleration]]:
     loads = {"the applied torque is taken in the wrong frame": swapped}
     if load.pivot is not None:
         loads["the pivot is ignored: the body moves freely"] = replace(load, pivot=None)
-        loads["the body hangs by its origin instead of the pivot"] = replace(
-            load, pivot=0 * load.pivot
-        )
+        at_origin = replace(load, pivot=np.zeros_like(load.pivot))
+        loads["the body hangs by its origin instead of the pivot"] = at_origin
         loads["the pivot has the wrong sign"] = replace(load, pivot=-load.pivot)
     for said, other in loads.items():
         yield said, forward_dynamics(replace(system, load=other), states)
-    at_origin = _gravity_at_origin(match)
-    yield "gravity acts at the body's origin instead of the centre of mass", at_origin
+    weight_moved = _gravity_at_origin(match)
+    yield "gravity acts at the body's origin instead of the centre of mass", weight_moved
     yield "gravity is fixed to the body instead of the world", _gravity_in_body(match)
     centers = {
         "the centre of mass is ignored": 0 * body.center_of_mass,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +16,11 @@ from omegadot.reference_impl.loads import (
     gravity_torque,
     torque,
 )
-from omegadot.reference_impl.motion import acceleration_of, center_of_mass_acceleration
+from omegadot.reference_impl.motion import (
+    acceleration_of,
+    center_of_mass_acceleration,
+    forward_dynamics,
+)
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array
@@ -39,19 +44,8 @@ def _term(match: Match, moment: Array, gravity: float) -> Acceleration:
 
 def _fit(match: Match, term: Acceleration) -> float | None:
     """The k with ``found = true + k term``, each state weighted by its bound; None if none fits."""
-
-    def weighted(acceleration: Acceleration) -> Array:
-        parts = (
-            acceleration.angular / match.angular_bound[:, None],
-            acceleration.linear / match.linear_bound[:, None],
-        )
-        return np.concatenate([np.ravel(part) for part in parts])
-
-    true, found = match.true, match.found
-    rest = weighted(
-        Acceleration(found.angular - true.angular, found.linear - true.linear),
-    )
-    line = weighted(term)
+    true = match.true
+    rest, line = _weighted(match, _difference(match.found, true)), _weighted(match, term)
     if not np.any(line):
         return None
     k = float(rest @ line / (line @ line))
@@ -89,19 +83,37 @@ def scaled_terms(match: Match) -> str:
 
 
 def _gravity_vector(match: Match) -> str:
-    """Another constant gravity than the one asked for, told by a free body's fall."""
-    if match.system.load.pivot is not None:
+    """Another constant gravity than the one asked for, by least squares."""
+    system, states = match.system, match.states
+    rest = _weighted(match, _difference(match.found, match.true))
+    lines = []
+    for unit in np.eye(3):
+        other = replace(system, load=replace(system.load, gravity=system.load.gravity + unit))
+        more = _difference(forward_dynamics(other, states), match.true)
+        lines.append(_weighted(match, more))
+    change = np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
+    asked = system.load.gravity
+    other = replace(system, load=replace(system.load, gravity=asked + change))
+    if not match.fits(forward_dynamics(other, states), SLACK):
         return ""
-    g = np.mean(match.found.linear, axis=0)
-    other = Acceleration(match.true.angular, np.broadcast_to(g, match.true.linear.shape))
-    if not match.fits(other, SLACK):
-        return ""
-    asked = match.system.load.gravity
-    return f"gravity is {_vector(g)} m/s^2, where {_vector(asked)} was asked for"
+    return f"gravity is {_vector(asked + change)} m/s^2, where {_vector(asked)} was asked for"
+
+
+def _difference(one: Acceleration, other: Acceleration) -> Acceleration:
+    return Acceleration(one.angular - other.angular, one.linear - other.linear)
+
+
+def _weighted(match: Match, acceleration: Acceleration) -> Array:
+    """All components in one row, each state's in parts of its bound."""
+    parts = (
+        acceleration.angular / match.angular_bound[:, None],
+        acceleration.linear / match.linear_bound[:, None],
+    )
+    return np.concatenate([np.ravel(part) for part in parts])
 
 
 def _vector(values: Array) -> str:
-    return f"({', '.join(f'{value:.4g}' for value in values)})"
+    return f"({', '.join(f'{value:.6g}' for value in values)})"
 
 
 def constant_inertia(match: Match) -> str:
@@ -130,9 +142,9 @@ def constant_inertia(match: Match) -> str:
         linear = center_of_mass_acceleration(match.system, match.states, angular)
     if not match.fits(Acceleration(angular, linear), SLACK * moments[-1] / moments[0]):
         return ""
-    wanted = np.linalg.eigvalsh(asked)
-    said = f"the dynamics are those of moments {_vector(moments)} kg m^2"
-    return f"{said}, where {_vector(wanted)} were asked for"
+    off = float(np.linalg.norm(tensor - asked, 2) / np.linalg.norm(asked, 2))
+    said = f"the dynamics are those of another inertia, {100 * off:.2g} % off"
+    return f"{said}: its moments are {_vector(moments)} kg m^2"
 
 
 def _symmetric_basis() -> Array:

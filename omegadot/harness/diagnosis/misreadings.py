@@ -50,8 +50,16 @@ def _scaled_omega(factor: float) -> Change:
 
 
 OF_ANY_STATE = (
-    Misreading("omega looks like world axes: it matches after R^T", _omega(rotate_inverse), _omega(rotate)),
-    Misreading("omega looks turned twice: it matches after R", _omega(rotate), _omega(rotate_inverse)),
+    Misreading(
+        "omega looks like world axes: it matches after R^T",
+        _omega(rotate_inverse),
+        _omega(rotate),
+    ),
+    Misreading(
+        "omega looks turned twice: it matches after R",
+        _omega(rotate),
+        _omega(rotate_inverse),
+    ),
     Misreading(
         "omega looks like degrees per second: it matches after pi/180",
         _scaled_omega(np.pi / 180),
@@ -73,7 +81,7 @@ OF_ANY_STATE = (
         _velocity(rotate),
         _velocity(rotate_inverse),
     ),
-)  # fmt: skip
+)
 NOT_UNIT = Misreading(
     "the quaternion is not of unit length: it matches once normalised",
     _quaternion(normalize),

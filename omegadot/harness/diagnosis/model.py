@@ -76,6 +76,7 @@ def _state(case: Case, asked: State, back: State) -> list[str]:
         if not failures(one.right(back)):
             return [one.says]
     single = State(*(f.astype(np.float32).astype(float) for f in vars(asked).values()))
-    if all(np.array_equal(a, b) for a, b in zip(vars(single).values(), vars(back).values())):
+    pairs = zip(vars(single).values(), vars(back).values(), strict=True)
+    if all(np.array_equal(a, b) for a, b in pairs):
         return ["the state is kept in single precision"]
     return []

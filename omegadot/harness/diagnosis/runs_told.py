@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from omegadot.adapters.wire import state_from
 from omegadot.harness.diagnosis.misreadings import OF_ANY_STATE, misreadings
 from omegadot.harness.diagnosis.told_run import ToldRun, rows, told_run
 from omegadot.harness.drive import CaseResult
@@ -23,11 +24,23 @@ def causes(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list
     told = told_run(case, truth, result, run)
     if told is None:
         return []
+    if _begin_apart(told, result):
+        return ["runs begin at other states than the one given: one is left over from a run before"]
     for cause in (_samples, _clock, _not_finite, _misread, _late, _start, _rescaled):
         said = cause(told)
         if said:
             return [said]
     return []
+
+
+def _begin_apart(told: ToldRun, result: CaseResult) -> bool:
+    """Whether runs of the same case do not even begin at the same state."""
+    starts, first = [], slice(0, 1)
+    for run in result.runs.values():
+        if run.ok and len(run.result["time"]) and run.result["time"][0] == 0.0:
+            start = rows(state_from(run.result["state"]), first)
+            starts += [start] if np.all(np.isfinite(start.angular_velocity)) else []
+    return any(not told.agrees(start, starts[0], first) for start in starts[1:])
 
 
 def _samples(told: ToldRun) -> str:
@@ -43,9 +56,8 @@ def _samples(told: ToldRun) -> str:
 
 
 def _counted(missing: int, which: str) -> str:
-    return (
-        f"the {which} sample is missing" if missing == 1 else f"the {which} {missing} are missing"
-    )
+    counted = "sample is" if missing == 1 else f"{missing} samples are"
+    return f"the {which} {counted} missing"
 
 
 def _clock(told: ToldRun) -> str:

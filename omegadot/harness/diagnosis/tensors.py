@@ -16,10 +16,8 @@ AXES = "xyz"
 def _permuted(tensor: Array) -> Iterator[tuple[str, Array]]:
     for order in permutations(range(3)):
         if order != (0, 1, 2):
-            names = "".join(AXES[k] for k in order)
-            said = (
-                f"the inertia's axes are permuted: x, y, z hold what belongs to {', '.join(names)}"
-            )
+            names = ", ".join(AXES[k] for k in order)
+            said = f"the inertia's axes are permuted: x, y, z hold what belongs to {names}"
             yield said, tensor[np.ix_(order, order)]
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.wire import state_from
@@ -19,9 +21,9 @@ from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.system import Array, State, System
 
 
-def rows(state: State, which: object) -> State:
+def rows(state: State, which: slice | NDArray[Any]) -> State:
     """Some samples of a run."""
-    return State(*(values[which] for values in vars(state).values()))  # type: ignore[index]
+    return State(*(values[which] for values in vars(state).values()))
 
 
 @dataclass(frozen=True)
@@ -47,13 +49,13 @@ class ToldRun:
         return self.truth.yardstick.round_off(step, numbers, self.growth)
 
     def agrees(
-        self, state: State, other: State, samples: object = slice(None), slack: float = 1.0
+        self, state: State, other: State, samples: slice = slice(None), slack: float = 1.0
     ) -> bool:
         """Whether two courses are the same within rounding, at these samples."""
         bounds, yardstick = self.bounds, self.truth.yardstick
         with np.errstate(all="ignore"):
             return all(
-                bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))  # type: ignore[index]
+                bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))
                 for c in CHANNELS
             )
 

@@ -61,7 +61,7 @@ class InertiaProductsReversed(OtherInertia):
 
     def inertia(self, tensor: Array) -> Array:
         """Off the diagonal, the other sign."""
-        return 2 * np.diag(np.diag(tensor)) - tensor
+        return np.asarray(2 * np.diag(np.diag(tensor)) - tensor)
 
 
 @fault("model", "model", "full-inertia")
@@ -80,7 +80,8 @@ class InertiaPermuted(OtherInertia):
 
     def inertia(self, tensor: Array) -> Array:
         """X for z, y for x, z for y."""
-        return tensor[np.ix_(NEXT_AXIS, NEXT_AXIS)]
+        permuted: Array = tensor[np.ix_(NEXT_AXIS, NEXT_AXIS)]
+        return permuted
 
 
 @fault("model", "model")

@@ -8,7 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.harness.scales import norm
-from omegadot.reference_impl.rotations import conjugate, quaternion_product, turn_in_body
+from omegadot.reference_impl.rotations import (
+    conjugate,
+    normalize,
+    quaternion_product,
+    turn_in_body,
+)
 from omegadot.reference_impl.schemes import AccelerationOf, Scheme
 from omegadot.reference_impl.system import Array, State
 
@@ -26,8 +31,9 @@ def with_end(scheme: Scheme, end: End) -> Scheme:
 
 def left_multiplied(before: State, after: State, dt: float | Array) -> State:
     """The attitude's change in body axes from the left: ``dq q`` for ``q dq``."""
-    change = quaternion_product(conjugate(before.orientation), after.orientation)
-    return replace(after, orientation=quaternion_product(change, before.orientation))
+    q = normalize(before.orientation)
+    change = quaternion_product(conjugate(q), after.orientation)
+    return replace(after, orientation=quaternion_product(change, q))
 
 
 def straight_quaternion(before: State, after: State, dt: float | Array) -> State:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -40,25 +39,31 @@ class SecretDamping(ExtraTorque):
 class StepEnds(Restepped):
     """Every step ends in a state that `end` makes of the right one."""
 
-    end: ClassVar[step_ends.End]
+    def end(self, before: State, after: State, dt: float | Array) -> State:
+        """The wrong state."""
+        return after
 
     def scheme(self, declared: Scheme) -> Scheme:
         """The declared scheme with the wrong ends."""
-        return step_ends.with_end(declared, type(self).end)
+        return step_ends.with_end(declared, self.end)
 
 
 @fault("stepping", "scheme trajectory")
 class AttitudeLeftMultiplied(StepEnds):
     """The attitude's change in body axes is multiplied from the left."""
 
-    end = staticmethod(step_ends.left_multiplied)
+    def end(self, before: State, after: State, dt: float | Array) -> State:
+        """The change from the left."""
+        return step_ends.left_multiplied(before, after, dt)
 
 
 @fault("stepping", "scheme trajectory")
 class QuaternionDrifts(StepEnds):
     """The attitude is stepped as ``q + h/2 q omega`` and never normalised."""
 
-    end = staticmethod(step_ends.straight_quaternion)
+    def end(self, before: State, after: State, dt: float | Array) -> State:
+        """A straight step of the quaternion."""
+        return step_ends.straight_quaternion(before, after, dt)
 
     def acceleration(self) -> AccelerationOf:
         """Asked at the unit quaternion of the same direction, as engines do."""
@@ -70,28 +75,36 @@ class QuaternionDrifts(StepEnds):
 class AttitudeByLastOmega(StepEnds):
     """The attitude turns by the step's last omega, whatever the scheme made of omega."""
 
-    end = staticmethod(step_ends.turned_by_last_omega)
+    def end(self, before: State, after: State, dt: float | Array) -> State:
+        """The exponential of the end's omega."""
+        return step_ends.turned_by_last_omega(before, after, dt)
 
 
 @fault("stepping", "scheme")
 class SinglePrecision(StepEnds):
     """The state is kept in single precision."""
 
-    end = staticmethod(step_ends.single_precision)
+    def end(self, before: State, after: State, dt: float | Array) -> State:
+        """Rounded."""
+        return step_ends.single_precision(before, after, dt)
 
 
 @fault("stepping", "scheme trajectory", "slow")
 class FallsAsleep(StepEnds):
     """Below 0.05 rad/s the body is put to rest."""
 
-    end = staticmethod(step_ends.asleep_below(SLEEPY))
+    def end(self, before: State, after: State, dt: float | Array) -> State:
+        """At rest."""
+        return step_ends.asleep_below(SLEEPY)(before, after, dt)
 
 
 @fault("stepping", "scheme trajectory", "fast")
 class OmegaClamped(StepEnds):
     """omega is held below 1 rad/s."""
 
-    end = staticmethod(step_ends.held_below(FASTEST))
+    def end(self, before: State, after: State, dt: float | Array) -> State:
+        """No faster than the limit."""
+        return step_ends.held_below(FASTEST)(before, after, dt)
 
 
 @fault("stepping", "scheme", "torque-free")

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import cache
 from typing import TypeAlias
 
 import numpy as np
@@ -27,6 +28,7 @@ Jacobi: TypeAlias = Callable[[Frame], tuple[Array, Array, Array]]
 
 TERMS = 9  # the ninth term of every series here is below 1e-20 of the first
 _NEGLIGIBLE = Decimal("1e-18")
+_UNFELT = Decimal("1e-30")  # of the largest term; the polynomials' own coefficients stay below 1e6
 
 
 @dataclass(frozen=True)
@@ -141,8 +143,7 @@ def _scaled(coefficients: Sequence[Decimal], factor: Decimal) -> Polynomial:
 
 def cosines(a: Sequence[Decimal]) -> Row:
     """``Σ a_n cos 2nz`` as a polynomial in ``y = sin² z``."""
-    t = _chebyshev(len(a), first=(ONE, [ONE, Decimal(-2)]))
-    return _combine(a, t)
+    return _combine(a, _first_kind(len(a)))
 
 
 def sines(a: Sequence[Decimal]) -> Row:
@@ -153,16 +154,27 @@ def sines(a: Sequence[Decimal]) -> Row:
 
 def odd_sines(a: Sequence[Decimal]) -> Row:
     """``Σ a_n sin (2n+1)z / sin z`` as a polynomial in y."""
-    u = _second_kind(len(a))
-    return _combine(a, [u[0]] + [_add(u[n], u[n - 1], ONE) for n in range(1, len(a))])
+    return _combine(a, _neighbours(len(a), ONE))
 
 
 def odd_cosines(a: Sequence[Decimal]) -> Row:
     """``Σ a_n cos (2n+1)z / cos z`` as a polynomial in y."""
-    u = _second_kind(len(a))
-    return _combine(a, [u[0]] + [_add(u[n], u[n - 1], -ONE) for n in range(1, len(a))])
+    return _combine(a, _neighbours(len(a), -ONE))
 
 
+# Whole numbers that only depend on how many are wanted: formed once.
+@cache
+def _first_kind(count: int) -> list[Row]:
+    return _chebyshev(count, first=(ONE, [ONE, Decimal(-2)]))
+
+
+@cache
+def _neighbours(count: int, sign: Decimal) -> list[Row]:
+    u = _second_kind(count)
+    return [u[0]] + [_add(u[n], u[n - 1], sign) for n in range(1, count)]
+
+
+@cache
 def _second_kind(count: int) -> list[Row]:
     return _chebyshev(count, first=(ONE, [Decimal(2), Decimal(-4)]))
 
@@ -184,7 +196,8 @@ def _add(p: Row, q: Row, factor: Decimal) -> Row:
 
 
 def _combine(a: Sequence[Decimal], polynomials: Sequence[Row]) -> Row:
-    total = [ZERO]
+    total, least = [ZERO], _UNFELT * max(map(abs, a), default=ZERO)
     for factor, polynomial in zip(a, polynomials, strict=False):
-        total = _add(total, polynomial, factor)
+        if abs(factor) > least:
+            total = _add(total, polynomial, factor)
     return total
