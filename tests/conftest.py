@@ -1,11 +1,17 @@
-"""Hypothesis profiles: `ci` is small and always the same, `thorough` is large and random.
+"""Hypothesis profiles: `ci` is small and always the same, `thorough` is large and random, and
+`mutation` stops at the first failure.
 
 Choose with ``pytest --hypothesis-profile thorough``. Tests with settings of their own keep them.
 """
 
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 slow = [HealthCheck.too_slow, HealthCheck.data_too_large]
 settings.register_profile("ci", derandomize=True, max_examples=30, deadline=None)
 settings.register_profile("thorough", max_examples=400, deadline=None, suppress_health_check=slow)
+# Mutation testing wants to know that a test fails, not by how little.
+phases = (Phase.explicit, Phase.generate)
+settings.register_profile(
+    "mutation", derandomize=True, max_examples=30, deadline=None, phases=phases
+)
 settings.load_profile("ci")

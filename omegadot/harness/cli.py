@@ -1,4 +1,4 @@
-"""The command line: ``omegadot run | check | engines | scenarios | schemes | report``."""
+"""The command line: ``omegadot run | check | engines | scenarios | schemes | faults | report``."""
 
 from __future__ import annotations
 

@@ -12,13 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from omegadot.harness.diagnosis import equation, model, runs_told, stepping
 from omegadot.harness.drive import CaseResult, Questions
 from omegadot.harness.judge_case import JudgedRun, shared_rows
 from omegadot.harness.plan import Case
 from omegadot.harness.truth import Truth
-
-MOST_STEPS = 5000  # of a run that causes are tried on: a step of a scheme is about 0.1 ms
 
 
 def diagnose(
@@ -33,6 +33,17 @@ def diagnose(
     A wrong model or equation is looked for first, and explains the runs after it: these are looked
     at by themselves only where neither gate failed.
     """
+    with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+        return _causes(case, truth, questions, result, runs)
+
+
+def _causes(
+    case: Case,
+    truth: Truth,
+    questions: Questions,
+    result: CaseResult,
+    runs: Sequence[JudgedRun],
+) -> list[str]:
     failed = {row.gate for row in shared_rows(case, questions, result) if row.verdict == "fail"}
     found: list[str] = []
     if "model" in failed:
@@ -41,8 +52,8 @@ def diagnose(
         found += equation.causes(case, questions, result)
     if not failed:
         for run in _shortest_failed(runs):
-            found += runs_told.causes(case, truth, result, run)
-            found += [] if found else stepping.causes(case, truth, result, run)
+            found = runs_told.causes(case, truth, result, run)
+            found = found or stepping.causes(case, truth, result, run)
             if found:
                 break
     return list(dict.fromkeys(found))
@@ -54,4 +65,4 @@ def _shortest_failed(runs: Sequence[JudgedRun]) -> list[JudgedRun]:
     shortest: dict[str, JudgedRun] = {}
     for run in sorted(failed, key=lambda run: run.sweep.steps):
         shortest.setdefault(run.integrator.name, run)
-    return [run for run in shortest.values() if run.sweep.steps <= MOST_STEPS]
+    return list(shortest.values())

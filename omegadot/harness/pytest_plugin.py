@@ -65,6 +65,14 @@ def _is_among(option: str, args: list[str]) -> bool:
     return any(arg == option or arg.startswith(f"{option}=") for arg in args)
 
 
+def _is_free(option: str, parser: pytest.Parser) -> bool:
+    """Whether nobody has taken an option: it is then unknown to the parser."""
+    try:
+        return option in parser.parse_known_and_unknown_args([option, "0"])[1]
+    except pytest.UsageError:  # somebody knows it, and does not like its value
+        return False
+
+
 @pytest.hookimpl(hookwrapper=True)
 def pytest_load_initial_conftests(
     early_config: pytest.Config, parser: pytest.Parser, args: list[str]
@@ -74,11 +82,9 @@ def pytest_load_initial_conftests(
     group = parser.getgroup("omegadot")
     asked_for_help = any(word in args for word in HELP)
     for name, how in OPTIONS.items():
-        if asked_for_help or _is_among(f"--{name}", args):
-            try:
-                group.addoption(f"--{name}", dest=dest_of(name), **how)
-            except ValueError:  # somebody else's option
-                continue
+        wanted = asked_for_help or _is_among(f"--{name}", args)
+        if wanted and _is_free(f"--{name}", parser):
+            group.addoption(f"--{name}", dest=dest_of(name), **how)
 
 
 @pytest.hookimpl(trylast=True)

@@ -50,7 +50,11 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
         return f"{who} a gate: {listed(failing)}, on {shown}."
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
-    agreeing = [name for name in measured if name in passed]
+    # A declared exception is a failure that is known: such an engine is not said to agree.
+    excused = [n for n, cells in engines.items() if any(c.runs.get("declared") for c in cells)]
+    agreeing = [name for name in measured if name in passed and name not in excused]
+    if excused and not agreeing:
+        return f"Every gate holds but for declared exceptions: {listed(excused)}."
     if not agreeing:
         return "No verdict: no run of an engine was judged on the equation of motion."
     largest = max((measured[name] for name in agreeing), key=size)
@@ -58,9 +62,10 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     if len(agreeing) < len(engines):
         who = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
     verb = "agrees" if len(agreeing) == 1 else "agree"
+    apart = f" Declared exceptions: {listed(excused)}." if excused else ""
     return (
         f"{who} {verb} with the Newton–Euler equations at identical states: the largest omega-dot "
-        f"residual is {_quantity(largest)} ({largest.engine} on {largest.scenario})."
+        f"residual is {_quantity(largest)} ({largest.engine} on {largest.scenario}).{apart}"
     )
 
 

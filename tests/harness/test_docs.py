@@ -8,6 +8,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from pytest_line import pytest_command
 
 from omegadot.scenarios import scenario_of
 
@@ -32,9 +33,18 @@ def blocks(language: str) -> list[tuple[str, str]]:
 
 
 def commands() -> list[str]:
-    lines = [line for _, block in blocks("bash") for line in block.strip().splitlines()]
-    # Format, lint and types are continuous integration's own lines.
-    return [line for line in lines if line not in INSTALLING and "ruff" not in line]
+    """The commands of every block, joined by &&: a later one may need what an earlier one left."""
+    found = []
+    for _, block in blocks("bash"):
+        # Format, lint and types are continuous integration's own lines.
+        lines = [
+            line
+            for line in block.strip().splitlines()
+            if line not in INSTALLING and "ruff" not in line
+        ]
+        if lines:
+            found.append(" && ".join(lines))
+    return found
 
 
 def in_this_environment(command: str) -> list[list[str]]:
@@ -45,6 +55,8 @@ def in_this_environment(command: str) -> list[list[str]]:
         program = words[0].removeprefix(".venv/bin/")
         if program == "omegadot":
             start = [sys.executable, "-c", "from omegadot.harness.cli import main; main()"]
+        elif program == "pytest":
+            start = pytest_command()
         else:
             start = [sys.executable, "-m", program]
         found.append([*start, *words[1:]])
@@ -100,6 +112,7 @@ def test_the_page_shows_the_toy_engine_as_it_is() -> None:
     example = (ROOT / "docs" / "examples" / "toy_engine.py").read_text()
     shown = [text for name, text in blocks("python") if name == "add-an-engine.md"]
     assert shown == [example]
+    assert len(example[example.index("class ToyAdapter") :].splitlines()) <= 60
 
 
 def test_local_links_lead_somewhere() -> None:

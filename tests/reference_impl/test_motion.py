@@ -78,12 +78,14 @@ def excess_over_particles(
     force = masses[:, None] * (a - system.load.gravity)
     arm = r + lever(system)
     moment = np.sum(np.cross(arm, force), axis=0)
-    size = np.sum(masses * np.linalg.norm(arm, axis=-1) * np.linalg.norm(force, axis=-1))
+    # a and g may cancel, and leave their roundings.
+    sizes = masses * (np.linalg.norm(a, axis=-1) + np.linalg.norm(system.load.gravity))
+    size = np.sum(np.linalg.norm(arm, axis=-1) * sizes)
     condition = np.linalg.cond(moving_inertia(system))
     excess = np.max(np.abs(moment)) / (EPS * condition * size + 1e-300)
     if pivot is None:
-        total = np.sum(np.linalg.norm(force, axis=-1))
-        excess = max(excess, np.max(np.abs(np.sum(force, axis=0))) / (EPS * total + 1e-300))
+        total = np.max(np.abs(np.sum(force, axis=0)))
+        excess = max(excess, total / (EPS * np.sum(sizes) + 1e-300))
     return float(excess)
 
 

@@ -45,4 +45,4 @@ def failure(rows: Sequence[Row], cause: str = "") -> str:
     said = sentence(worst)
     if others:
         said += f"; {listed(list(others))} {'fail' if len(others) > 1 else 'fails'} as well"
-    return f"{said}. Likely cause: {cause}" if cause else f"{said}."
+    return f"{said}. Likely cause: {cause.rstrip('.')}." if cause else f"{said}."

@@ -15,7 +15,6 @@ from omegadot.harness.drive import CaseResult, Questions
 from omegadot.harness.gates.equation import BOUND, forward_rows, inverse_rows
 from omegadot.harness.plan import Case
 from omegadot.harness.scales import BodyScale, body_scale, linear_size, norm, torque_size
-from omegadot.reference_impl.body_origin import origin_acceleration_of
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
@@ -70,8 +69,11 @@ def causes(case: Case, questions: Questions, result: CaseResult) -> list[str]:
 
 
 def _forward(match: Match) -> list[str]:
-    if not np.all(np.isfinite(match.found.angular)):
-        return ["omega-dot is not finite"]
+    told = {"omega-dot": match.found.angular, "the linear acceleration": match.found.linear}
+    for what, values in told.items():
+        finite = int(np.count_nonzero(np.isfinite(values).all(-1)))
+        if finite < len(values):
+            return [f"{what} is not finite at {len(values) - finite} of {len(values)} states"]
     scaled = scaled_terms(match)
     if scaled:
         return [scaled]
@@ -97,11 +99,10 @@ def _told(match: Match) -> Iterator[tuple[str, Acceleration]]:
     yield "omega-dot has the wrong sign", Acceleration(-true.angular, true.linear)
     body = Acceleration(true.angular, rotate_inverse(q, true.linear))
     yield "the linear acceleration looks like body axes: it matches after R", body
-    told = origin_acceleration_of(replace(system, load=replace(system.load, pivot=None)))
-    lever = told(match.states).linear - system.load.gravity
-    of_origin = Acceleration(true.angular, true.linear + lever)
-    if system.load.pivot is None:
-        yield "the linear acceleration looks like that of the body's origin", of_origin
+    w, c = match.states.angular_velocity, system.body.center_of_mass
+    lever = rotate(q, cross(true.angular, c) + cross(w, cross(w, c)))
+    of_origin = Acceleration(true.angular, true.linear - lever)
+    yield "the linear acceleration looks like that of the body's origin", of_origin
 
 
 def _misread(match: Match) -> Iterator[tuple[str, Acceleration]]:

@@ -19,6 +19,8 @@ def causes(case: Case, questions: Questions, result: CaseResult) -> list[str]:
     if not result.model.ok:
         return []
     held = body_from(result.model.result["bodies"][0])
+    if not all(np.all(np.isfinite(values)) for values in vars(held).values()):
+        return ["the model reads back numbers that are not finite"]
     failed = {row.metric for row in body_rows(case, held) if row.verdict == "fail"}
     found = []
     if "mass" in failed:
@@ -28,7 +30,8 @@ def causes(case: Case, questions: Questions, result: CaseResult) -> list[str]:
     if "inertia" in failed:
         found += _inertia(case, held)
     first = State(*(values[0] for values in vars(questions.random).values()))
-    return found + _state(case, first, state_from(result.model.result["state"]))
+    # Of a wrong body the state follows: where it hangs, where its centre of mass is.
+    return found or _state(case, first, state_from(result.model.result["state"]))
 
 
 def _mass(asked: Body, held: Body) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,13 @@ from omegadot.harness.judge_case import JudgedRun
 from omegadot.harness.plan import Case, Sweep
 from omegadot.harness.truth import Truth
 from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
-from omegadot.reference_impl.system import Array, State, System
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+LEAST_SAMPLES = 6
+# In parts of what rounding may do: a fitted number is then good to six digits.
+DISTINCT = 1e6
 
 
 def rows(state: State, which: slice | NDArray[Any]) -> State:
@@ -70,8 +75,13 @@ class ToldRun:
         """The reference's run with something else in it; the declared where nothing is given."""
         wanted, sweep = system or self.case.system, self.sweep
         declared = SCHEMES[self.integrator.scheme or ""]
+        exact = acceleration_of(wanted)
         plan = (timestep or sweep.timestep, sweep.steps, 1 if every_step else sweep.every)
-        how = (wanted, acceleration_of(wanted), scheme or declared, self.integrator.steps_origin)
+
+        def acceleration(state: State) -> Acceleration:  # a wrong end may leave q too long
+            return exact(replace(state, orientation=normalize(state.orientation)))
+
+        how = (wanted, acceleration, scheme or declared, self.integrator.steps_origin)
         return step_anew(*how, initial or self.case.initial, plan)[1]
 
 
@@ -84,4 +94,22 @@ def told_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> To
     if answer is None or not answer.ok or own is None or integrator.scheme not in SCHEMES:
         return None
     time, state = answer.result["time"], state_from(answer.result["state"])
-    return ToldRun(case, truth, integrator, sweep, time, state, own.state, own.growth)
+    whole = ToldRun(case, truth, integrator, sweep, time, state, own.state, own.growth)
+    return _until_it_shows(whole) if len(time) == len(sweep.times) else whole
+
+
+def _until_it_shows(told: ToldRun) -> ToldRun:
+    """The beginning of a run, until it has departed from the reference's beyond any doubt.
+
+    Causes are tried by stepping anew: a short course is quicker, and followed more surely where the
+    motion magnifies what is not quite right yet.
+    """
+    numbers, bounds = told.sweep.sample_steps, told.bounds
+    distances = {c: told.truth.yardstick.distance(c, told.state, told.own) for c in CHANNELS}
+    apart = np.any([~(distances[c] <= DISTINCT * bounds[c]) for c in CHANNELS], axis=0)
+    first = int(np.argmax(apart)) if apart.any() else len(numbers)
+    count = min(max(2 * first, LEAST_SAMPLES), len(numbers))
+    begun = slice(0, count)
+    sweep = Sweep(told.sweep.timestep, int(numbers[count - 1]), told.sweep.every)
+    part = (told.time[begun], rows(told.state, begun), rows(told.own, begun), told.growth[begun])
+    return ToldRun(told.case, told.truth, told.integrator, sweep, *part)

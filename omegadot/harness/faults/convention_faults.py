@@ -80,7 +80,7 @@ class OmegaInWorldReadBack(Spoiled):
         return omega_in_world(state)
 
 
-@fault("convention", "scheme trajectory")
+@fault("convention", "scheme")
 class OmegaInWorldInRuns(Spoiled):
     """omega is logged in world axes during a run."""
 
@@ -111,7 +111,7 @@ class RotationTransposed(Misread):
         return transposed(state)
 
 
-@fault("convention", "scheme trajectory")
+@fault("convention", "scheme")
 class RotationTransposedThroughout(Throughout):
     """The rotation is taken and told transposed, so that what goes in comes out."""
 
@@ -133,7 +133,7 @@ class QuaternionScalarLast(Misread):
         return scalar_last(state)
 
 
-@fault("convention", "scheme trajectory")
+@fault("convention", "scheme")
 class QuaternionScalarLastThroughout(Throughout):
     """The quaternion is taken as x, y, z, w and told so, so that what goes in comes out."""
 

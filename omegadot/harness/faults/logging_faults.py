@@ -27,7 +27,7 @@ class FirstSampleMissing(Spoiled):
         return Trajectory(trajectory.time[1:], rows(trajectory.state, slice(1, None)))
 
 
-@fault("logging", "scheme trajectory")
+@fault("logging", "scheme")
 class LastStepMissing(Spoiled):
     """The last step is not taken: the end is told as it was a step before."""
 
@@ -41,7 +41,7 @@ class LastStepMissing(Spoiled):
         return Trajectory(found.time, State(*(np.vstack([a[:-1], b[-1:]]) for a, b in old)))
 
 
-@fault("logging", "scheme trajectory")
+@fault("logging", "scheme")
 class LogsOneStepLate(Spoiled):
     """Every sample after the first is the state one step before."""
 
@@ -54,7 +54,7 @@ class LogsOneStepLate(Spoiled):
         return Trajectory(kept * timestep, rows(found.state, np.maximum(kept - 1, 0)))
 
 
-@fault("logging", "scheme trajectory")
+@fault("logging", "scheme")
 class LogsOneSampleLate(Spoiled):
     """Every sample after the first is the one before."""
 
@@ -87,7 +87,7 @@ class NotFiniteAfterAWhile(Spoiled):
         return Trajectory(trajectory.time, replace(trajectory.state, angular_velocity=w))
 
 
-@fault("state", "scheme trajectory")
+@fault("state", "scheme")
 class StaleState(Spoiled):
     """A run begins where the last one ended, whatever state it is given."""
 

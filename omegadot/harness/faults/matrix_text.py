@@ -105,16 +105,17 @@ HEAD = """\
 This page is the output of `{command}`.
 
 **How to read it.** Every fault is put into a sound engine, and the engine through the gates on
-{bodies} random bodies that have what the fault needs to show at all: masses over two decades, sizes
-over one, tensors in any axes, centres of mass off the origin or on it, rates over two decades, free,
-driven, damped and hung. A number is the share of these bodies, in per cent, on which a gate fails;
+{bodies} random bodies that have what the fault needs to show at all: masses and rates over two
+decades, sizes over one, tensors in any axes, centres of mass off the origin or on it, free, driven,
+damped and hung. A number is the share of these bodies, in per cent, on which a gate fails;
 *any gate* is what decides. What a finer step could still decide is not counted. *Cause named* is
 the share on which `omegadot` says in words what is wrong, and is right. Each engine runs with one
 integrator of order 1 and, where it has one, one of order 4.
 
 **The published checks** beside them are tests that engines ship with, put to the same faulty
-engines as they stand: the same body, rates, step, length and bounds, from {bodies} random attitudes. A
-dash says that the check's scenarios, or the engine's integrators, lack what the fault needs.
+engines as they stand: the same body, rates, step, length and bounds, from {bodies} random
+attitudes. A dash says that the check's scenarios, or the engine's integrators, lack what the fault
+needs.
 """
 
 

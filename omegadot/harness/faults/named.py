@@ -74,7 +74,7 @@ NAMES: dict[str, tuple[str, ...]] = {
     "NotFiniteAfterAWhile": ("angular velocity: not finite",),
     "StaleState": ("left over from a run before",),
     "LeaksBetweenScenarios": ("those of another inertia",),
-    "GravityOfTheLastScenario": ("gravity is (",),
+    "GravityOfTheLastScenario": ("gravity is (", "gravity is missing"),
 }
 
 

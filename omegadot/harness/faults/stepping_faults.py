@@ -23,7 +23,7 @@ SLEEPY = 0.05  # rad/s
 FASTEST = 1.0  # rad/s
 
 
-@fault("stepping", "scheme invariants trajectory")
+@fault("stepping", "scheme")
 class SecretDamping(ExtraTorque):
     """A damping of 1e-4 N m s/rad that nobody asked for acts in the steps."""
 
@@ -48,7 +48,7 @@ class StepEnds(Restepped):
         return step_ends.with_end(declared, self.end)
 
 
-@fault("stepping", "scheme trajectory")
+@fault("stepping", "scheme")
 class AttitudeLeftMultiplied(StepEnds):
     """The attitude's change in body axes is multiplied from the left."""
 
@@ -57,7 +57,7 @@ class AttitudeLeftMultiplied(StepEnds):
         return step_ends.left_multiplied(before, after, dt)
 
 
-@fault("stepping", "scheme trajectory")
+@fault("stepping", "scheme")
 class QuaternionDrifts(StepEnds):
     """The attitude is stepped as ``q + h/2 q omega`` and never normalised."""
 
@@ -71,7 +71,7 @@ class QuaternionDrifts(StepEnds):
         return lambda state: sound(replace(state, orientation=normalize(state.orientation)))
 
 
-@fault("stepping", "scheme trajectory", "order-4")
+@fault("stepping", "scheme", "order-4")
 class AttitudeByLastOmega(StepEnds):
     """The attitude turns by the step's last omega, whatever the scheme made of omega."""
 
@@ -89,7 +89,7 @@ class SinglePrecision(StepEnds):
         return step_ends.single_precision(before, after, dt)
 
 
-@fault("stepping", "scheme trajectory", "slow")
+@fault("stepping", "scheme", "slow")
 class FallsAsleep(StepEnds):
     """Below 0.05 rad/s the body is put to rest."""
 
@@ -98,7 +98,7 @@ class FallsAsleep(StepEnds):
         return step_ends.asleep_below(SLEEPY)(before, after, dt)
 
 
-@fault("stepping", "scheme trajectory", "fast")
+@fault("stepping", "scheme", "fast")
 class OmegaClamped(StepEnds):
     """omega is held below 1 rad/s."""
 
@@ -133,7 +133,7 @@ class MomentumCorrected(Spoiled):
         return Trajectory(trajectory.time, replace(state, angular_velocity=w))
 
 
-@fault("stepping", "scheme trajectory")
+@fault("stepping", "scheme")
 class StepSlightlyLong(Spoiled):
     """Steps are 0.1 % longer than they say."""
 
@@ -145,7 +145,7 @@ class StepSlightlyLong(Spoiled):
         return Trajectory(found.time / 1.001, found.state)
 
 
-@fault("stepping", "scheme trajectory", "order-4")
+@fault("stepping", "scheme", "order-4")
 class EulerAsRungeKutta(Restepped):
     """Runge-Kutta of order 4 is declared, and semi-implicit Euler is stepped."""
 
@@ -154,7 +154,7 @@ class EulerAsRungeKutta(Restepped):
         return SCHEMES["semi-implicit-euler"]
 
 
-@fault("stepping", "scheme trajectory", "order-4")
+@fault("stepping", "scheme", "order-4")
 class AttitudeOfOrderTwo(Restepped):
     """The attitude is of order 2 under a declared 4: the stages' rotations do not commute."""
 

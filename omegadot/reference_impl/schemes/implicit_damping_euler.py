@@ -28,12 +28,23 @@ def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State
     h = per_component(dt)
     found = acceleration(state)
     at_rest = replace(state, angular_velocity=np.zeros_like(state.angular_velocity))
-    _, angular, linear = acceleration_and_jacobian(acceleration, at_rest)
+    size = _natural_rate(state.angular_velocity, found.angular)
+    _, angular, linear = acceleration_and_jacobian(acceleration, at_rest, size)
     turn = h if isinstance(h, float) else h[..., None]
     change = solve_one_minus(turn * angular, h * found.angular)
     w = state.angular_velocity + change
     v = state.linear_velocity + h * (found.linear + apply(linear, change))
     return State(turn_in_body(state.orientation, w, h), w, state.position + h * v, v)
+
+
+def _natural_rate(w: Array, omega_dot: Array) -> Array:
+    """(..., 1) rad/s: ``(|ω|² + |ω̇|)^½``, at which what depends on ω is as large as what does not.
+
+    Unlike any constant it scales with the unit of time.
+    """
+    spin, pull = np.add.reduce(w * w, -1), np.add.reduce(omega_dot * omega_dot, -1)
+    rate: Array = np.sqrt(spin + np.sqrt(pull))[..., None]
+    return rate
 
 
 SCHEME = Scheme(

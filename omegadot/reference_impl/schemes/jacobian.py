@@ -11,16 +11,18 @@ from omegadot.reference_impl.system import Acceleration, Array, State
 
 
 def acceleration_and_jacobian(
-    acceleration: AccelerationOf, state: State
+    acceleration: AccelerationOf, state: State, size: Array | None = None
 ) -> tuple[Acceleration, Array, Array]:
     """Accelerations, ``∂ω̇/∂ω`` and ``∂a/∂ω``, the latter two (..., 3, 3), row by component.
 
     By central differences, in one call over seven states. Both accelerations are quadratic in ω
     (equation (8), and the pivot's ``ω × (ω × r)``), for which the central difference is exact at
-    any distance; one as large as |ω| itself leaves the least rounding.
+    any distance; one as large as |ω| itself leaves the least rounding. size: (..., 1) rad/s, the
+    distance where ω itself gives none, as at rest.
     """
     w = state.angular_velocity
-    size = np.sqrt(np.add.reduce(w * w, -1))[..., None]
+    if size is None:
+        size = np.sqrt(np.add.reduce(w * w, -1))[..., None]
     distance = np.where(size > 0, size, 1)  # rad/s; any does at rest
     moves = np.zeros((7, *(1,) * (w.ndim - 1), 3), w.dtype)
     for axis in range(3):
