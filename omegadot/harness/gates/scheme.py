@@ -157,9 +157,7 @@ def match_row(
     return _row(nearest, "info", said)
 
 
-def _left_is_of_higher_order(
-    course: Course, courses: list[Course], integrator: Integrator
-) -> bool:
+def _left_is_of_higher_order(course: Course, courses: list[Course], integrator: Integrator) -> bool:
     """Whether, in every channel, what is left of the scheme is rounding or of a higher order."""
     for channel in CHANNELS:
         evidence = evidence_of(course, courses, channel)
