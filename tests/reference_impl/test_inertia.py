@@ -168,3 +168,16 @@ def test_moments_broadcast() -> None:
     many = inertia_of_moments(np.array([1.0, 2.0]), squares)
     assert np.array_equal(many[0], np.diag([5.0, 4.0, 3.0]))
     assert np.array_equal(many[1], 2 * np.diag([11.0, 10.0, 9.0]))
+
+
+def test_the_parallel_axis_broadcasts() -> None:
+    offsets = np.array([[[1.0, 2.0, 3.0], [0.5, 0.0, -1.0]]])
+    masses = np.array([[2.0, 3.0]])
+    found = parallel_axis(masses, offsets)
+    assert found.shape == (1, 2, 3, 3)
+    for place_ in np.ndindex(1, 2):
+        d = offsets[place_]
+        expected = masses[place_] * (d @ d * np.eye(3) - np.outer(d, d))
+        np.testing.assert_allclose(
+            found[place_], expected, rtol=0, atol=8 * EPS * masses[place_] * 14
+        )

@@ -35,19 +35,22 @@ class Match:
     def __init__(self, system: System, states: State, found: Acceleration) -> None:
         self.system, self.states, self.found = system, states, found
         self.true = forward_dynamics(system, states)
-        scale: BodyScale = body_scale(system)
-        condition = scale.largest / scale.smallest
-        size = torque_size(system, states, self.true) / scale.largest
-        self.angular_bound = BOUND * condition * size
-        self.linear_bound = BOUND * linear_size(system, states, self.true)
+        self.angular_bound, self.linear_bound = self._bounds(self.true)
+
+    def _bounds(self, acceleration: Acceleration) -> tuple[Array, Array]:
+        """(n,) rad/s^2 and m/s^2: what rounding may make of accelerations of this size."""
+        scale: BodyScale = body_scale(self.system)
+        angular = torque_size(self.system, self.states, acceleration) / scale.smallest
+        return BOUND * angular, BOUND * linear_size(self.system, self.states, acceleration)
 
     def fits(self, candidate: Acceleration, slack: float = 1.0) -> bool:
         """Within `slack` times the bounds. A candidate's own terms may be larger: they count."""
         angular = norm(self.found.angular - candidate.angular)
         linear = norm(self.found.linear - candidate.linear)
+        own_angular, own_linear = self._bounds(candidate)
         return bool(
-            np.all(angular <= slack * self.angular_bound)
-            and np.all(linear <= slack * self.linear_bound)
+            np.all(angular <= slack * np.maximum(self.angular_bound, own_angular))
+            and np.all(linear <= slack * np.maximum(self.linear_bound, own_linear))
         )
 
 
