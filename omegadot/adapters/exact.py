@@ -7,7 +7,7 @@ import numpy as np
 from omegadot import __version__
 from omegadot.adapters.protocol import Description, Integrator, Trajectory, UnsupportedError
 from omegadot.adapters.reference import FEATURES, ReferenceAdapter
-from omegadot.reference_impl.closed_forms import closed_form_of
+from omegadot.reference_impl.exact_solution import exact_states
 from omegadot.reference_impl.series import solve_series
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import State
@@ -38,7 +38,8 @@ class ExactAdapter(ReferenceAdapter):
     ) -> Trajectory:
         """The exact states at the times of the kept steps; NaN from a state that is not finite.
 
-        Raises UnsupportedError for another integrator, and for a closed form that is not known.
+        Where no closed form is known the series stands in for it. Raises UnsupportedError for
+        another integrator.
         """
         if integrator not in (CLOSED_FORM, SERIES):
             raise UnsupportedError(f"the exact solution has no integrator {integrator!r}.")
@@ -47,10 +48,7 @@ class ExactAdapter(ReferenceAdapter):
             return Trajectory(times, _nowhere(len(times)))
         if integrator == SERIES:
             return Trajectory(times, solve_series(self.system, initial, times))
-        form = closed_form_of(self.system, initial)
-        if form is None:
-            raise UnsupportedError("no closed form is known for this motion; take the series.")
-        return Trajectory(times, form(times))
+        return Trajectory(times, exact_states(self.system, initial, times)[1])
 
 
 def _is_finite(state: State) -> bool:
