@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+import numpy as np
+
 from omegadot.harness.ask_truth import case_companions, case_truth, reference_runs
 from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.gates.course import SchemeKey, scheme_key
@@ -23,7 +25,7 @@ from omegadot.harness.plan import Case, Engine, Sweep
 from omegadot.harness.questions import questions_of
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine, refined_sweeps
 from omegadot.harness.truth import Truth
-from omegadot.harness.workers import Workers
+from omegadot.harness.workers import Workers, outcome_of
 
 
 class Runner:
@@ -57,7 +59,7 @@ class Runner:
             if missing:
                 driver = self.workers.drivers["reference"]
                 call = partial(case_companions, driver, case, truth, missing, [sweep])
-                truth.companions.update(self.workers.submit("reference", call).result())
+                truth.companions.update(outcome_of(self.workers.submit("reference", call)))
 
     def _examine(self, engine: Engine, case: Case, pending: PendingTruth) -> CaseResult:
         truth, driver = pending.truth.result(), self.workers.drivers[engine.name]
@@ -92,24 +94,36 @@ class Runner:
 
     def judge(self, pending: PendingCase, finer: dict[str, Refinements]) -> JudgedCase:
         """Wait for one case and send it through the gates. finer: refinements, by engine."""
-        case, truth = pending.case, pending.known.truth.result()
-        results = {name: future.result() for name, future in pending.results.items()}
+        case, truth = pending.case, outcome_of(pending.known.truth)
+        results = {name: outcome_of(future) for name, future in pending.results.items()}
         if isinstance(truth, str):
             unjudged = [EngineCase(e, results[e.name], [], []) for e in self.workers.engines]
             return JudgedCase(case, None, truth, unjudged)
-        truth.companions.update(pending.known.companions.result())
+        truth.companions.update(outcome_of(pending.known.companions))
         refined = [sweep for known in finer.values() for sweep in refined_sweeps(known)]
         unique = {sweep.timestep: sweep for sweep in (*case.sweeps, *refined)}
         self._add_companions(case, truth, list(results.values()), list(unique.values()))
-        questions, judged = questions_of(case, truth, self.request.seed), []
-        for engine in self.workers.engines:
-            result = results[engine.name]
-            shared = shared_rows(case, questions, result)
-            runs: list[JudgedRun] = []
+        judged = [
+            self._judge_engine(case, truth, engine, results[engine.name], finer)
+            for engine in self.workers.engines
+        ]
+        return JudgedCase(case, truth, "", judged)
+
+    def _judge_engine(
+        self,
+        case: Case,
+        truth: Truth,
+        engine: Engine,
+        result: CaseResult,
+        finer: dict[str, Refinements],
+    ) -> EngineCase:
+        runs: list[JudgedRun] = []
+        # A run that blew up is measured like any other: what overflows is infinitely far off.
+        with np.errstate(over="ignore", invalid="ignore"):
+            shared = shared_rows(case, questions_of(case, truth, self.request.seed), result)
             if engine.name != "exact":
                 runs = judge_case(truth, case, result, finer.get(engine.name, {}))
-            judged.append(EngineCase(engine, result, shared, runs))
-        return JudgedCase(case, truth, "", judged)
+        return EngineCase(engine, result, shared, runs)
 
     def _resolve(self, pending: PendingCase, judged: JudgedCase) -> JudgedCase:
         """Judge a case again with finer steps, as long as these can still decide something."""
@@ -122,7 +136,7 @@ class Runner:
                 if any(run.unresolved for run in found.runs):
                     call = partial(refine, driver, judged.case, found.runs, known)
                     asked.append(self.workers.submit(name, call))
-            done = [future.result() for future in asked]
+            done = [outcome_of(future) for future in asked]
             if not any(done):
                 break
             judged = self.judge(pending, finer)

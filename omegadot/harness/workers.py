@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import TypeVar
 
 from omegadot.adapters.protocol import Description, Integrator
@@ -17,6 +17,18 @@ from omegadot.harness.usage import check_integrators
 from omegadot.harness.worker_process import Answer, WorkerProcess
 
 Result = TypeVar("Result")
+SECONDS_ASLEEP = 0.2
+
+
+def outcome_of(future: Future[Result]) -> Result:
+    """A future's result, waited for in short turns.
+
+    A signal may reach another thread than the main one, which then sees it only when it wakes: a
+    single long wait would sleep through Ctrl-C.
+    """
+    while not future.done():
+        wait([future], timeout=SECONDS_ASLEEP)
+    return future.result()
 
 
 def integrators_chosen(choice: EngineChoice, description: Description) -> tuple[Integrator, ...]:
@@ -57,7 +69,7 @@ class Workers:
             for name, worker in self._processes.items()
         }
         for choice in (*wanted.values(), *helpers):
-            answer = started[choice.name].result()
+            answer = outcome_of(started[choice.name])
             if not answer.ok:
                 self.missing.append((choice, answer))
                 continue
