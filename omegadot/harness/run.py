@@ -99,7 +99,8 @@ class Runner:
         if isinstance(truth, str):
             unjudged = [EngineCase(e, results[e.name], [], []) for e in self.workers.engines]
             return JudgedCase(case, None, truth, unjudged)
-        truth.companions.update(outcome_of(pending.known.companions))
+        companions = outcome_of(pending.known.companions)
+        truth.companions.update(companions)
         refined = [sweep for known in finer.values() for sweep in refined_sweeps(known)]
         unique = {sweep.timestep: sweep for sweep in (*case.sweeps, *refined)}
         self._add_companions(case, truth, list(results.values()), list(unique.values()))
