@@ -82,6 +82,17 @@ def checked_bodies(bodies: Any, count: int) -> tuple[Body, ...]:
     return tuple(found)
 
 
+def checked_native(found: Any) -> dict[str, dict[str, str]]:
+    """Conventions and defaults, both names with texts."""
+    for part in ("conventions", "defaults"):
+        _expect("native()", found, dict)
+        _expect(f"native()[{part!r}]", found.get(part), dict)
+        for name, value in found[part].items():
+            _expect(f"a name of native()[{part!r}]", name, str)
+            _expect(f"native()[{part!r}][{name!r}]", value, str)
+    return {part: dict(found[part]) for part in ("conventions", "defaults")}
+
+
 def checked_description(found: Any) -> Description:
     """A description whose fields are what its annotations say."""
     if not isinstance(found, Description):

@@ -31,8 +31,8 @@ CONVENTIONS = (
     "the start of each step, as the applied torques are",
     "rotations of less than 1e-3 rad, those of a step included, are expanded to second order: they "
     "turn by angle**3 / 6 too far",
-    "from 6.17 a non-finite transform is replaced by the identity and a non-finite acceleration by "
-    "zero: where DART's own coordinates are not finite, the adapter gives NaN",
+    "from 6.16.6 a non-finite acceleration is replaced by zero, and from 6.17 a non-finite "
+    "transform by the identity: where DART's own coordinates are not finite, the adapter gives NaN",
 )
 FEATURES = frozenset(
     {
@@ -128,6 +128,12 @@ class DartAdapter:
                 joint.step(count)
             rows.append(joint.get_state())
         return Trajectory(np.multiply(kept, timestep), stack(rows))
+
+    def native(self) -> dict[str, dict[str, str]]:
+        """Conventions as measured of the engine itself, and its defaults."""
+        from omegadot.adapters.dart_native import native
+
+        return native(self._engine)
 
     def _loaded(self) -> DartJoint:
         if self._joint is None:

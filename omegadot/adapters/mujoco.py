@@ -71,6 +71,7 @@ class MujocoAdapter:
             version=version_of(self._mujoco.__version__),
             pivoted=pivoted,
             offset=offset and not pivoted,
+            falls=bool(np.any(load.gravity)),
             damped=bool(np.any(load.damping)),
             euler_damps=self._setup == "as-shipped",
             turns_torque=bool(np.any(load.torque_world) or (pivoted and np.any(load.gravity))),
@@ -101,6 +102,12 @@ class MujocoAdapter:
         if flag is None:
             raise UnsupportedError(f"MuJoCo {self._mujoco.__version__} has no {integrator!r}.")
         self._model.opt.integrator = flag
+
+    def native(self) -> dict[str, dict[str, str]]:
+        """Conventions as measured of the engine itself, and its defaults."""
+        from omegadot.adapters.mujoco_native import native
+
+        return native(self._mujoco)
 
     def model(self) -> tuple[Body, ...]:
         """Mass, centre of mass and inertia, read back from the compiled model."""

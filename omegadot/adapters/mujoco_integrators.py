@@ -33,13 +33,14 @@ class Case:
     """What the choice of scheme, and its orders, depend on.
 
     pivoted: hung on a ball joint.  offset: free, with the centre of mass off the body's origin.
-    damped: the body has damping.  euler_damps: damping is implicit in ``Euler`` too.
+    falls: gravity acts.  damped: the body has damping.  euler_damps: it is implicit in ``Euler``.
     turns_torque: a torque that depends on the attitude acts.
     """
 
     version: tuple[int, ...]
     pivoted: bool = False
     offset: bool = False
+    falls: bool = False
     damped: bool = False
     euler_damps: bool = False
     turns_torque: bool = False
@@ -70,10 +71,16 @@ def _linearly_implicit(name: str) -> Integrator:
 
 
 def _midpoint(name: str, case: Case) -> Integrator:
-    """Of order 2 in rotation, unless a torque changes within the step."""
+    """Of order 2 in rotation, unless a torque changes within the step.
+
+    The energy has a part of order 1 where the fall, or the velocity of an origin, takes part.
+    """
     order = 1 if case.damped or case.turns_torque else 2
+    orders = _orders(order, 1)
+    if case.offset or case.falls:
+        orders["energy"] = 1
     note = "I (ω₁ - ω₀) = dt (τ₀ - ω_m × I ω_m), ω_m = (ω₀ + ω₁)/2, q₁ = q₀ exp(dt ω_m)"
-    return Integrator(name, None, _orders(order, 1), note=note)
+    return Integrator(name, None, orders, note=note)
 
 
 def _euler(case: Case) -> Integrator:

@@ -12,11 +12,12 @@ from omegadot.adapters.checked import (
     checked_acceleration,
     checked_bodies,
     checked_description,
+    checked_native,
     checked_state,
     checked_torque,
     checked_trajectory,
 )
-from omegadot.adapters.protocol import Adapter, Trajectory
+from omegadot.adapters.protocol import Adapter, Trajectory, UnsupportedError
 from omegadot.adapters.wire import acceleration_from, state_from, system_from
 from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.exact_solution import exact_solution
@@ -97,6 +98,20 @@ def _run(adapter: Adapter, request: Request) -> Any:
     }
 
 
+def _first_steps(adapter: Adapter, request: Request) -> Any:
+    """The states (m, k, ...) that single steps of (m, k) sizes lead to from m states."""
+    states, ends = state_from(request["states"]), []
+    for index, timesteps in enumerate(request["timesteps"]):
+        start = State(*(values[index] for values in vars(states).values()))
+        for timestep in timesteps:
+            run = adapter.run(start, request["integrator"], float(timestep), 1, 1)
+            state = checked_trajectory(run).state
+            ends.append([values[-1] for values in vars(state).values()])
+    shape = request["timesteps"].shape
+    stacked = (np.array(values) for values in zip(*ends, strict=True))
+    return State(*(values.reshape(*shape, -1) for values in stacked))
+
+
 def _solve(_: Adapter, request: Request) -> Any:
     """The exact states, their floor, and exact omega-dot; no engine takes part."""
     system, initial = system_from(request["system"]), state_from(request["initial"])
@@ -122,7 +137,16 @@ def _companion(_: Adapter, request: Request) -> Any:
     ]
 
 
+def _native(adapter: Adapter, _: Request) -> Any:
+    """The engine's own conventions and defaults; no part of the protocol, so it may be lacking."""
+    ask = getattr(adapter, "native", None)
+    if ask is None:
+        raise UnsupportedError("the adapter cannot tell the engine's own conventions.")
+    return checked_native(ask())
+
+
 OPERATIONS: dict[str, Callable[[Adapter, Request], Any]] = {
+    "native": _native,
     "solve": _solve,
     "companion": _companion,
     "load": _load,
@@ -130,4 +154,5 @@ OPERATIONS: dict[str, Callable[[Adapter, Request], Any]] = {
     "forward": _forward,
     "inverse": _inverse,
     "run": _run,
+    "first_steps": _first_steps,
 }

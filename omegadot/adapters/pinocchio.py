@@ -143,6 +143,12 @@ class PinocchioAdapter:
         times, state = step_through(scheme, system, acceleration, initial, timestep, steps, every)
         return Trajectory(times, state)
 
+    def native(self) -> dict[str, dict[str, str]]:
+        """Conventions as measured of the engine itself, and its defaults."""
+        from omegadot.adapters.pinocchio_native import native
+
+        return native(self._engine)
+
     def _loaded(self) -> PinocchioJoint:
         if self._joint is None:
             raise RuntimeError("no system is loaded: call load() first")

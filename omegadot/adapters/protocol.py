@@ -34,6 +34,8 @@ class Integrator:
     orders: declared order of the accumulated error per channel.
     knob: "timestep", or "accuracy" for an error-controlled integrator.
     steps_origin: the engine steps the position of a free body's origin, not its centre of mass's.
+    one_step: a step depends on the state alone; False for a multistep method, which keeps earlier
+    steps in mind.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Integrator:
     knob: Literal["timestep", "accuracy"] = "timestep"
     note: str = ""
     steps_origin: bool = False
+    one_step: bool = True
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,16 @@ from typing import Annotated
 import typer
 
 from omegadot.harness.commands.check import check
+from omegadot.harness.commands.choose import choose
+from omegadot.harness.commands.compare import compare
 from omegadot.harness.commands.engines import engines
 from omegadot.harness.commands.faults import faults
 from omegadot.harness.commands.report import report
 from omegadot.harness.commands.run import run
 from omegadot.harness.commands.scenarios import scenarios
 from omegadot.harness.commands.schemes import schemes
+from omegadot.harness.commands.score import score
+from omegadot.harness.commands.versions import versions
 
 app = typer.Typer(
     name="omegadot",
@@ -31,7 +35,11 @@ app.command()(scenarios)
 app.command()(schemes)
 app.command()(check)
 app.command()(faults)
+app.command()(choose)
 app.command()(report)
+app.command()(score)
+app.command()(compare)
+app.command()(versions)
 
 
 def _version(show: bool) -> None:
@@ -63,8 +71,14 @@ def main() -> None:
         if sentence is None:
             raise
         print(f"omegadot: {sentence}", file=sys.stderr)
-        sys.exit(2)
+        sys.exit(3 if _is_our_own(error) else 2)
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _is_our_own(error: Exception) -> bool:
+    """Whether a worker of ours failed to start, rather than the words being wrong."""
+    workers = sys.modules.get("omegadot.harness.workers")
+    return workers is not None and isinstance(error, workers.NoTruthError)
 
 
 def _sentence(error: Exception) -> str | None:
@@ -77,6 +91,8 @@ def _sentence(error: Exception) -> str | None:
     from omegadot.reports.schema import RecordError
     from omegadot.scenarios import ScenarioError
 
+    if _is_our_own(error):
+        return str(error)
     if isinstance(error, AdapterError | UsageError | RecordError | ScenarioError):
         return str(error)
     return None

@@ -8,7 +8,11 @@ from typing import Any
 import numpy as np
 import polars as pl
 
+from omegadot import __version__
 from omegadot.adapters.wire import state_from
+from omegadot.harness.checks.causes import causes_of
+from omegadot.harness.checks.judge import Cause
+from omegadot.harness.exact_floor import floor_rows
 from omegadot.harness.exact_rows import exact_rows
 from omegadot.harness.judge_case import JudgedRun
 from omegadot.harness.outcome import EngineCase, JudgedCase, Outcome
@@ -17,6 +21,9 @@ from omegadot.harness.rows import Row, worst
 from omegadot.reference_impl.system import Array, State
 from omegadot.reports import schema
 
+# Causes are tried by stepping anew, which takes seconds: a run asks about so many of an engine's
+# failed integrators, in the order of the scenarios. `omegadot check` asks about all.
+MOST_CAUSES = 12
 COLUMNS = {
     "orientation": ("qw", "qx", "qy", "qz"),
     "angular_velocity": ("wx", "wy", "wz"),
@@ -51,8 +58,35 @@ def _gates(rows: list[Row]) -> dict[str, str]:
     return found
 
 
-def _judged_entry(task: Task, version: str, found: EngineCase, judged: JudgedRun) -> dict[str, Any]:
-    """A task that ran, or whose run failed; a failure before it counts where it ran well."""
+class _Causes:
+    """Asks for the likeliest causes, as long as an engine has not had its share."""
+
+    def __init__(self, seed: int) -> None:
+        self._seed = seed
+        self._asked: dict[str, set[tuple[str, str]]] = {}
+
+    def of(self, case: JudgedCase, found: EngineCase) -> Cause:
+        """The causes of one engine's runs on one case."""
+        ask = causes_of(case, found, self._seed)
+        asked = self._asked.setdefault(found.engine.name, set())
+
+        def cause(run: JudgedRun | None) -> str:
+            key = (case.case.name, run.integrator.name if run else "")
+            if key not in asked and len(asked) >= MOST_CAUSES:
+                return ""
+            asked.add(key)
+            return ask(run)
+
+        return cause
+
+
+def _judged_entry(
+    task: Task, version: str, found: EngineCase, judged: JudgedRun, cause: Cause
+) -> dict[str, Any]:
+    """A task that ran, or whose run failed; a failure before it counts where it ran well.
+
+    Where a gate fails, the likeliest cause comes first among its reasons, if there is one.
+    """
     earlier = found.result.first_failure()
     outcome, reason = judged.outcome, judged.reason
     if outcome == "ok" and earlier is not None:
@@ -60,6 +94,9 @@ def _judged_entry(task: Task, version: str, found: EngineCase, judged: JudgedRun
     entry = _task_entry(task, version, outcome, reason)
     entry["gates"] = _gates([*found.shared, *judged.rows])
     entry["why"] = judged.why
+    likeliest = cause(judged) if "fail" in entry["gates"].values() else ""
+    if likeliest:
+        entry["why"] = f"likely cause: {likeliest}" + (f" ({judged.why})" if judged.why else "")
     entry["scheme"] = judged.integrator.scheme
     return entry
 
@@ -83,7 +120,9 @@ def _outcome_without_truth(reason: str) -> str:
     return "interrupted" if "interrupted" in reason else "raised"
 
 
-def _engine_tasks(case: JudgedCase, found: EngineCase, setup: str) -> Iterator[dict[str, Any]]:
+def _engine_tasks(
+    case: JudgedCase, found: EngineCase, setup: str, causes: _Causes
+) -> Iterator[dict[str, Any]]:
     version, name = found.engine.description.version, found.engine.name
     if case.truth is None:
         for integrator in found.engine.integrators:
@@ -91,19 +130,28 @@ def _engine_tasks(case: JudgedCase, found: EngineCase, setup: str) -> Iterator[d
                 task = Task(case.case.name, name, setup, integrator.name, sweep.timestep)
                 outcome = _outcome_without_truth(case.reason)
                 yield _task_entry(task, version, outcome, case.reason)
+    cause = causes.of(case, found)
     for judged in found.runs:
         step = judged.sweep.timestep
         task = Task(case.case.name, name, setup, judged.integrator.name, step)
-        yield _judged_entry(task, version, found, judged)
+        yield _judged_entry(task, version, found, judged, cause)
 
 
-def tasks_of_run(outcome: Outcome, cases: list[Case], setup: str) -> list[dict[str, Any]]:
-    """Every task with its outcome; engines that did not start have one task a scenario."""
-    found = []
+def tasks_of_run(
+    outcome: Outcome, cases: list[Case], setup: str, seed: int
+) -> list[dict[str, Any]]:
+    """Every task with its outcome; engines that did not start have one task a scenario.
+
+    seed: that of the run, by which the questions were drawn that a cause must answer.
+    """
+    found: list[dict[str, Any]] = []
+    causes = _Causes(seed)
     for case in outcome.cases:
         for engine in case.engines:
-            tasks = _exact_tasks if engine.engine.name == "exact" else _engine_tasks
-            found += list(tasks(case, engine, setup))
+            if engine.engine.name == "exact":
+                found += _exact_tasks(case, engine, setup)
+            else:
+                found += _engine_tasks(case, engine, setup, causes)
     for choice, answer in outcome.missing:
         for prepared in cases:
             wanted = choice.integrators or ("",)
@@ -128,6 +176,15 @@ def _metric(
     }
 
 
+def _floors(case: JudgedCase, setup: str) -> list[dict[str, Any]]:
+    """The exact solution's resolvable floors, which stand there whatever engines were asked for."""
+    if case.truth is None:
+        return []
+    labels = _labels(case.case.name, "exact", setup, case.truth.source, None)
+    labels["engine_version"] = __version__
+    return [{**labels, **vars(row)} for row in floor_rows(case.truth)]
+
+
 def metrics_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
     """One value a row; rows that belong to engine and scenario have no integrator and step."""
     rows = []
@@ -141,6 +198,7 @@ def metrics_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
                 source = case.truth.source
                 for row in exact_rows(case.case, case.truth):
                     rows.append(_metric(row, name, engine, setup, None, source))
+        rows += _floors(case, setup)
     columns = {name: f.dtype for name, f in schema.METRICS.items()}
     return (
         pl.DataFrame(rows, schema=columns, orient="row") if rows else schema.empty(schema.METRICS)

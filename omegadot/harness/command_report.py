@@ -1,4 +1,4 @@
-"""``omegadot report``: the page of a stored run, drawn again."""
+"""``omegadot report``: a stored run drawn again, as a page, as figures, or in words; or two."""
 
 from __future__ import annotations
 
@@ -6,16 +6,59 @@ import os
 import secrets
 from pathlib import Path
 
-from omegadot.reports.page import draw_page
+from omegadot.harness.usage import UsageError
 from omegadot.reports.record import PAGE, read_record
 from omegadot.reports.schema import RecordError
 
+TWO_RUNS = Path("two-runs.html")
 
-def redraw(folder: Path) -> Path:
-    """Draw the page anew and put it in the run's folder; returns its path. Raises RecordError."""
-    page = draw_page(read_record(folder))
-    target = folder / PAGE
-    fresh = folder / f".{PAGE}.{secrets.token_hex(6)}"
+
+def report_of(folders: list[Path], out: Path | None, figures: Path | None, markdown: bool) -> str:
+    """What is to be printed: what was written, or words. Raises RecordError, UsageError."""
+    if len(folders) > 2:
+        raise UsageError(f"{len(folders)} runs are given; give one, or two to hold side by side.")
+    if markdown and (out is not None or figures is not None):
+        raise UsageError("--markdown prints and writes no file; leave out --out and --figures.")
+    if len(folders) == 2:
+        return _of_two(folders[0], folders[1], out, figures, markdown)
+    if markdown:
+        from omegadot.reports.markdown import markdown_of
+
+        return markdown_of(read_record(folders[0])).rstrip("\n")
+    if figures is None:
+        return str(redraw(folders[0], out))
+    from omegadot.reports.static import write_figures
+
+    written = [redraw(folders[0], out)] if out is not None else []
+    return "\n".join(map(str, [*written, *write_figures(read_record(folders[0]), figures)]))
+
+
+def redraw(folder: Path, out: Path | None = None) -> Path:
+    """Draw the page anew, into the run's folder or where `out` says. Raises RecordError."""
+    from omegadot.reports.page import draw_page
+
+    return _write(draw_page(read_record(folder)), out or folder / PAGE)
+
+
+def _of_two(was: Path, now: Path, out: Path | None, figures: Path | None, markdown: bool) -> str:
+    from omegadot.reports.two_runs import compare_records
+    from omegadot.reports.two_runs.page import draw_two_runs
+    from omegadot.reports.two_runs.text import as_markdown
+
+    if figures is not None:
+        raise UsageError("--figures draws one run; give one run alone.")
+    records = read_record(was), read_record(now)
+    comparison = compare_records(*records, (was.as_posix(), now.as_posix()))
+    if markdown:
+        return as_markdown(comparison).rstrip("\n")
+    return str(_write(draw_two_runs(comparison), out or TWO_RUNS))
+
+
+def _write(page: str, target: Path) -> Path:
+    """Write a page, whole or not at all."""
+    if target.is_dir():
+        raise RecordError(f"{target}: is a folder; name a file.")
+    fresh = target.with_name(f".{target.name}.{secrets.token_hex(6)}")
     try:
         fresh.write_text(page, encoding="utf-8", errors="replace", newline="\n")
         os.replace(fresh, target)

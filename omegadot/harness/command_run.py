@@ -69,7 +69,7 @@ def record_of(outcome: Outcome, request: RunRequest, command: list[str], seconds
         "scenarios": [_scenario(case) for case in request.cases],
         "worker_deaths": [{"engine": name, "how": how} for name, how in outcome.deaths],
         "clusters": [vars(cluster) for cluster in clusters_of_run(outcome.cases)],
-        "tasks": tasks_of_run(outcome, list(request.cases), request.setup),
+        "tasks": tasks_of_run(outcome, list(request.cases), request.setup, request.seed),
     }
     return Record(
         run,

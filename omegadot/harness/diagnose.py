@@ -14,7 +14,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from omegadot.harness.diagnosis import equation, model, runs_told, stepping
+from omegadot.harness.diagnosis import equation, model, pieces, runs_told, stepping
+from omegadot.harness.diagnosis.samples_told import omega_dot_late
+from omegadot.harness.diagnosis.told_run import told_run
 from omegadot.harness.drive import CaseResult, Questions
 from omegadot.harness.judge_case import JudgedRun, shared_rows
 from omegadot.harness.plan import Case
@@ -52,11 +54,26 @@ def _causes(
         found += equation.causes(case, questions, result)
     if not failed:
         for run in _shortest_failed(runs):
-            found = runs_told.causes(case, truth, result, run)
-            found = found or stepping.causes(case, truth, result, run)
+            found = _of_run(case, truth, result, run)
             if found:
                 break
     return list(dict.fromkeys(found))
+
+
+def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list[str]:
+    """What is told of one run, then how it is stepped, then where it is sound and where it isn't.
+
+    Where nothing but the omega-dot told along it failed, only that is looked at.
+    """
+    told = told_run(case, truth, result, run)
+    if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
+        late = "" if told is None else omega_dot_late(told, result)
+        return [late] if late else []
+    found = runs_told.causes(case, truth, result, run)
+    found = found or stepping.causes(case, truth, result, run)
+    if found or told is None or len(told.time) != len(told.sweep.times):
+        return found
+    return pieces.causes(told)
 
 
 def _shortest_failed(runs: Sequence[JudgedRun]) -> list[JudgedRun]:

@@ -16,7 +16,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.wire import description_of
 from omegadot.harness.plan import Case, Engine, Sweep
 from omegadot.harness.worker_process import Answer, WorkerProcess
-from omegadot.reference_impl.system import Acceleration, State
+from omegadot.reference_impl.system import Acceleration, Array, State
 
 MOST_TIMEOUTS_IN_A_ROW = 3
 # Outcomes of loading a scenario that deserve a second attempt; the others would come again.
@@ -33,11 +33,21 @@ class Questions:
     asked: Acceleration
 
 
+@dataclass(frozen=True)
+class Probe:
+    """States (m, ...) to take one step from, and the steps (m, k) in s to try there."""
+
+    states: State
+    timesteps: Array
+
+
 @dataclass
 class CaseResult:
     """What one engine answered for one scenario; answers that failed are kept as such.
 
     integrators: those that are run, as the engine declares them for this system.
+    first_steps, restarts: of integrators whose scheme is unknown, what was asked and what came:
+    steps from several states, and the sample from which a run was begun anew with the rest of it.
     """
 
     engine: str
@@ -48,6 +58,9 @@ class CaseResult:
     path: Answer = INTERRUPTED
     inverse: Answer = INTERRUPTED
     runs: dict[tuple[str, float], Answer] = field(default_factory=dict)
+    first_steps: dict[str, tuple[Probe, Answer]] = field(default_factory=dict)
+    restarts: dict[tuple[str, float], tuple[int, Answer]] = field(default_factory=dict)
+    precision: str = "float64"
 
     def first_failure(self) -> Answer | None:
         """The first answer besides the runs that failed; unsupported parts are no failure."""
@@ -124,12 +137,14 @@ class Driver:
         loaded = self._load(case)
         return self._ask(partial(self.worker.ask, operation, **fields)) if loaded.ok else loaded
 
-    def run(self, case: Case, integrator: str, sweep: Sweep) -> Answer:
-        """One integrator with one step size."""
+    def run(
+        self, case: Case, integrator: str, sweep: Sweep, initial: State | None = None
+    ) -> Answer:
+        """One integrator with one step size, from the case's own state or another."""
         return self.request(
             case,
             "run",
-            initial=case.initial,
+            initial=initial or case.initial,
             integrator=integrator,
             timestep=sweep.timestep,
             steps=sweep.steps,
@@ -138,7 +153,8 @@ class Driver:
 
     def ask_equations(self, case: Case, questions: Questions) -> CaseResult:
         """The model read back, and the engine's equations at the states in question."""
-        result = CaseResult(self.engine.name, case.name)
+        precision = self.engine.description.precision
+        result = CaseResult(self.engine.name, case.name, precision=precision)
         features = self.engine.description.features
         first = State(*(f[0] for f in vars(questions.random).values()))
         result.model = self.request(case, "model", state=first)

@@ -36,13 +36,4 @@ def exact_rows(case: Case, truth: Truth) -> list[Row]:
     whole = Sweep(float(times[-1]), 1, 1)
     course = Course(whole, drift, rounding)
     findings = {c: Finding("unexplained", "it should be constant") for c in channels}
-    return invariants.rows(course, findings, times, channels) + floor_rows(truth)
-
-
-def floor_rows(truth: Truth) -> list[Row]:
-    """The resolvable floor at its largest: below it no answer in double can be judged."""
-    units = {"omega": "1", "attitude": "rad"}
-    return [
-        Row("trajectory", channel, "resolvable_floor", float(np.max(values)), units[channel])
-        for channel, values in truth.floor.items()
-    ]
+    return invariants.rows(course, findings, times, channels)

@@ -10,7 +10,16 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.wire import acceleration_from, body_from, state_from
 from omegadot.harness.drive import CaseResult, Questions
-from omegadot.harness.gates import cost, equation, invariants, model, phase, scheme, trajectory
+from omegadot.harness.gates import (
+    cost,
+    equation,
+    invariants,
+    model,
+    phase,
+    scheme,
+    told,
+    trajectory,
+)
 from omegadot.harness.gates.course import (
     Course,
     Declared,
@@ -22,6 +31,7 @@ from omegadot.harness.gates.course import (
 from omegadot.harness.plan import Case, Sweep
 from omegadot.harness.rows import Row, worst
 from omegadot.harness.truth import Truth
+from omegadot.harness.unknown_schemes import rows_of_unknown
 from omegadot.harness.verdicts import Finding
 from omegadot.harness.worker_process import Answer
 from omegadot.reference_impl.system import State
@@ -123,8 +133,13 @@ def judge_integrator(
     sweeps: list[Sweep],
     answers: dict[float, Answer],
     refinements: dict[float, tuple[Sweep, Answer]],
+    result: CaseResult | None = None,
 ) -> Iterator[JudgedRun]:
-    """Judge every step size of one integrator; refinements only serve to see its order."""
+    """Judge every step size of one integrator; refinements only serve to see its order.
+
+    result: what else the engine answered, where its scheme is unknown.
+    """
+    result = result or CaseResult("", "")
     finer = {step: answer for step, (_, answer) in refinements.items()}
     every = [*sweeps, *(sweep for sweep, _ in refinements.values())]
     courses = _courses(truth, integrator, {**answers, **finer}, every)
@@ -139,13 +154,19 @@ def judge_integrator(
         state = state_from(answer.result["state"])
         findings = findings_of(course, declared, known)
         match = scheme.match_row(truth, integrator, course, state, known)
+        system = truth.yardstick.system
         rows = [match, *scheme.order_rows(seen, declared, course)]
+        unknown = rows_of_unknown(truth, system, integrator, sweep, result)
+        told_wrong = told.rows(truth, course, state, result.precision)
+        told_wrong += told.omega_dot_rows(system, state, answer.result["omega_dot"])
+        rows += unknown
         rows += invariants.rows(course, findings, sweep.times)
         rows.append(trajectory.time_row(sweep, answer.result["time"]))
-        rows += trajectory.rows(course, findings)
+        rows += [*told_wrong, *trajectory.rows(course, findings)]
         rows += phase.rows(truth, course, state)
         rows += cost.rows(sweep.timestep, answer.result["seconds_per_step"])
-        why = match.note if match.verdict == "fail" else _why(findings)
+        broken = [row.note for row in (*told_wrong, match, *unknown) if row.verdict == "fail"]
+        why = broken[0] if broken else _why(findings)
         unresolved = any(f.kind == "unresolved" for f in findings.values())
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
 
@@ -161,5 +182,5 @@ def judge_case(
     for integrator in result.integrators:
         answers = {s.timestep: result.runs[integrator.name, s.timestep] for s in sweeps}
         finer = refinements.get(integrator.name, {})
-        judged += list(judge_integrator(truth, integrator, sweeps, answers, finer))
+        judged += list(judge_integrator(truth, integrator, sweeps, answers, finer, result))
     return judged

@@ -102,10 +102,13 @@ class Yardstick:
             "omega": theta,
             "attitude": theta,
             "position": reach,
-            **self._invariant_round_off(theta, speed, reach),
+            **self.invariant_round_off(theta, speed, reach),
         }
 
-    def _invariant_round_off(self, theta: Array, speed: Array, reach: Array) -> dict[str, Array]:
+    def invariant_round_off(self, theta: Array, speed: Array, reach: Array) -> dict[str, Array]:
+        """(n,) per invariant: how far it is off where omega and attitude are off by theta, the
+        velocity by speed in m/s and the position by reach in m, to first order.
+        """
         mass, spin = self.scale.mass, self.scale.largest * self.rate
         turning = 2.0 * spin * theta  # |I d_omega| + |d_theta x I omega|
         moving = mass * self.speed * speed + mass * self.gravity * reach

@@ -25,6 +25,7 @@ from omegadot.harness.plan import Case, Engine, Sweep
 from omegadot.harness.questions import questions_of
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine, refined_sweeps
 from omegadot.harness.truth import Truth
+from omegadot.harness.unknown_schemes import ask_unknown_schemes
 from omegadot.harness.workers import Workers, outcome_of
 
 
@@ -66,7 +67,8 @@ class Runner:
         if isinstance(truth, str):
             self.on_advance(tasks_of(engine, case))
             return CaseResult(engine.name, case.name)
-        result = driver.ask_equations(case, questions_of(case, truth, self.request.seed))
+        questions = questions_of(case, truth, self.request.seed)
+        result = driver.ask_equations(case, questions)
         if engine.name == "exact":
             self.on_advance(1)
         elif engine.name == "reference":
@@ -74,6 +76,7 @@ class Runner:
             self.on_advance(tasks_of(engine, case))
         else:
             result.runs.update(driver.run_all(case, lambda: self.on_advance(1)))
+            ask_unknown_schemes(driver, case, questions, result)
         return result
 
     def _submit_case(self, case: Case) -> PendingCase:

@@ -57,6 +57,15 @@ class ObservedOrder:
     rise: float = 0.0
 
 
+def is_whole(order: float) -> bool:
+    """Whether an order can be one: those of smooth motion are whole numbers, and 0 is no order.
+
+    Between two of them, terms of different orders are still of a size, or the largest error has
+    moved to another sample.
+    """
+    return abs(order - round(order)) <= ORDER_TOLERANCE
+
+
 VANISHED = ObservedOrder(float("inf"), True)
 """Of an error that falls into rounding at the finest step: it shrinks, if too fast to measure."""
 
@@ -131,6 +140,6 @@ def _by_order(orders: tuple[ObservedOrder | None, ...], declared: int) -> Findin
         return Finding("unresolved", f"{UNSETTLED}: {said}")
     if lowest.value >= declared - ORDER_TOLERANCE:
         return Finding("consistent", f"consistent: {said}")
-    if lowest.value + lowest.rise >= declared - ORDER_TOLERANCE:
+    if lowest.value + lowest.rise >= declared - ORDER_TOLERANCE or not is_whole(lowest.value):
         return Finding("unresolved", f"{UNSETTLED}: {said}")
     return Finding("unexplained", said)

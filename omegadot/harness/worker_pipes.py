@@ -7,9 +7,7 @@ reading its requests, write what is no answer, or leave children behind that hol
 from __future__ import annotations
 
 import contextlib
-import os
 import queue
-import signal
 import subprocess
 import threading
 from dataclasses import dataclass
@@ -17,6 +15,7 @@ from typing import Any
 
 from omegadot.adapters.plain_text import one_line
 from omegadot.adapters.wire import encode_frame, read_frame
+from omegadot.harness.worker_family import end_family
 
 STDERR_BYTES_KEPT = 4000
 SECONDS_TO_DRAIN = 1.0
@@ -29,17 +28,11 @@ class Lost:
     how: str = ""
 
 
-def end_group(process: subprocess.Popen[bytes]) -> None:
-    """Kill the process and every child of its that has not left its group."""
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
-
-
 class Pipes:
-    """The streams of one process, from its start to its end."""
+    """The streams of one process, from its start to its end. mark: what its family bears."""
 
-    def __init__(self, process: subprocess.Popen[bytes]) -> None:
-        self._process = process
+    def __init__(self, process: subprocess.Popen[bytes], mark: str) -> None:
+        self._process, self._mark = process, mark
         self._tail = b""
         self._requests: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
         self.answers: queue.Queue[dict[str, Any] | Lost] = queue.Queue()
@@ -104,7 +97,7 @@ class Pipes:
     def _watch(self) -> None:
         """See the process's end even where a child of it still holds the pipe open."""
         self._process.wait()
-        end_group(self._process)
+        end_family(self._process, self._mark)
         self.close_requests()
         self._collector.join(SECONDS_TO_DRAIN)
         self.answers.put(Lost())

@@ -15,7 +15,8 @@ from typing import Any
 from omegadot.adapters.plain_text import one_line
 from omegadot.adapters.worker import MEMORY_VARIABLE
 from omegadot.harness.machine import memory_of_machine
-from omegadot.harness.worker_pipes import Lost, Pipes, end_group
+from omegadot.harness.worker_family import end_family, marked, new_mark
+from omegadot.harness.worker_pipes import Lost, Pipes
 
 SECONDS_TO_LEAVE = 2.0
 # Importing an engine takes as long as it takes, however short a request may be asked to be.
@@ -65,6 +66,7 @@ class WorkerProcess:
         self._memory = memory or memory_of_machine() // 2
         self._process: subprocess.Popen[bytes] | None = None
         self._pipes: Pipes | None = None
+        self._mark = new_mark()
         self.deaths: list[str] = []
 
     @property
@@ -81,18 +83,19 @@ class WorkerProcess:
     def start(self) -> Answer:
         """Start the process; the result is the engine's description."""
         self.stop()
+        self._mark = new_mark()
         try:
             process = subprocess.Popen(
                 self._command,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                env=_worker_environment(self._memory),
+                env=marked(_worker_environment(self._memory), self._mark),
                 start_new_session=True,  # Ctrl-C is the harness's to handle
             )
         except OSError as error:
             return Answer("crashed", f"the worker could not be started: {error}")
-        pipes = Pipes(process)
+        pipes = Pipes(process, self._mark)
         self._process, self._pipes = process, pipes
         answer = self._wait(process, pipes, max(self._timeout, SECONDS_TO_START))
         if not answer.ok:
@@ -127,7 +130,7 @@ class WorkerProcess:
     def _post_mortem(self, process: subprocess.Popen[bytes], pipes: Pipes, how: str) -> str:
         """Say how a worker came to give no more answers. how: why it is ended, if it lives."""
         if how:
-            end_group(process)
+            end_family(process, self._mark)
             process.wait()
             how += "; the worker was ended"
         else:
@@ -155,7 +158,7 @@ class WorkerProcess:
         """End the process and everything it started, at once."""
         process, self._process, self._pipes = self._process, None, None
         if process is not None:
-            end_group(process)
+            end_family(process, self._mark)
             process.wait()
 
 

@@ -38,6 +38,10 @@ def integrators_chosen(choice: EngineChoice, description: Description) -> tuple[
     return tuple(i for i in description.integrators if i.name in choice.integrators)
 
 
+class NoTruthError(Exception):
+    """The exact solution's or the reference's worker did not start: nothing can be judged."""
+
+
 class Workers:
     """Started once, asked through their drivers, ended together.
 
@@ -55,7 +59,10 @@ class Workers:
         self.missing: list[tuple[EngineChoice, Answer]] = []
 
     def start(self) -> None:
-        """Start every engine asked for, and the two that know the truth."""
+        """Start every engine asked for, and the two that know the truth.
+
+        Raises NoTruthError where one of those two does not start.
+        """
         wanted = {choice.name: choice for choice in self.request.choices}
         helpers = [EngineChoice(n, BUILT_IN[n]) for n in ("exact", "reference") if n not in wanted]
         setup, timeout, memory = self.request.setup, self.request.timeout, self.request.memory
@@ -80,6 +87,15 @@ class Workers:
             self.drivers[choice.name] = Driver(engine, worker, self._slots, self._stopping)
             if choice.name in wanted:
                 self.engines.append(engine)
+        self._demand_truth()
+
+    def _demand_truth(self) -> None:
+        for choice, answer in self.missing:
+            if choice.name in ("exact", "reference"):
+                raise NoTruthError(
+                    f"worker of {choice.name}: {answer.outcome} ({answer.reason}), and without it "
+                    "nothing can be judged; give it more memory or time (--memory, --timeout)."
+                )
 
     def _start_one(self, worker: WorkerProcess) -> Answer:
         with self._slots:  # many engines that start together would only be late together

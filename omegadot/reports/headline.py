@@ -108,5 +108,5 @@ def _remainder(summary: Summary) -> list[str]:
     )
     if skipped:
         total = sum(summary.runs.values())
-        said.append(f"{skipped} of {times(total, 'run')} gave no verdict; the reasons are below.")
+        said.append(f"{skipped} of {times(total, 'run')} gave no verdict; each has its reason.")
     return said

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -10,11 +9,14 @@ from typing import Any
 import numpy as np
 
 from omegadot.reference_impl.system import Array
-from omegadot.reports.courses import Chart, Course
-from omegadot.reports.numbers import knob, plain
-from omegadot.reports.packing import CEILING_DECADE, FLOOR, FLOOR_DECADE, codes_of
+from omegadot.reports.axes import axis_of, bounds_drawn, captions, drawn
+from omegadot.reports.bounds import Limits, floor_of
+from omegadot.reports.courses import Chart
+from omegadot.reports.numbers import plain
+from omegadot.reports.packing import CEILING_DECADE, FLOOR_DECADE, codes_of
 from omegadot.reports.palette import colours, dashes
-from omegadot.reports.sweeps import Sweep, decades, sweep_payload
+from omegadot.reports.provenance import Sources
+from omegadot.reports.sweeps import Sweep, sweep_payload
 
 _ORDINALS = ("finest", "second finest", "third finest")
 
@@ -83,13 +85,19 @@ def step_choices(charts: Iterable[Chart]) -> list[str]:
 
 
 def payload(
-    charts: Mapping[str, Chart], sweeps: Mapping[str, list[Sweep]], lines: list[Line]
+    charts: Mapping[str, Chart],
+    sweeps: Mapping[str, list[Sweep]],
+    lines: list[Line],
+    limits: Mapping[str, Limits] | None = None,
+    sources: Sources | None = None,
 ) -> tuple[dict[str, Any], Array]:
     """The script's description of every chart, by the scenario's place, and all codes in a row.
 
-    A course is ``[line, rank, times, start, count]``: its channels' codes follow each other from
-    `start`, `count` of each, in the order of the scenario's charts.
+    A course is ``[line, rank, times, start, count, bounds, source]``: its channels' codes follow
+    each other from `start`, `count` of each, in the order of the scenario's charts; bounds, a
+    channel each, are ``[part, bound, part, bound, ...]``.
     """
+    known = sources or Sources()
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
     times: dict[bytes, int] = {}
     clocks: list[list[float]] = []
@@ -98,6 +106,7 @@ def payload(
     scenarios: dict[str, Any] = {}
     for name, chart in charts.items():
         rank, entries = rank_of(chart), []
+        own = (limits or {}).get(name, Limits({}, {}))
         for course in chart.courses:
             key = course.time.tobytes()
             if key not in times:
@@ -106,49 +115,22 @@ def payload(
             line = places[course.engine, course.setup, course.integrator]
             count = len(course.time)
             knobs = rank[course.timestep, course.accuracy]
-            entries.append([line, knobs, times[key], used, count])
+            bounds, source = bounds_drawn(own, course, chart), known.number(vars(course))
+            entries.append([line, knobs, times[key], used, count, bounds, source])
             for channel in chart.units:
                 values.append(drawn(course, channel))
                 used += count
         scenarios[name] = {
-            "charts": [_axis(chart, channel) for channel in chart.units],
+            "charts": [axis_of(chart, channel, own) for channel in chart.units],
             "courses": entries,
-            "steps": _captions(rank),
-            "sweeps": sweep_payload(sweeps.get(name, []), places),
+            "steps": captions(rank),
+            "sweeps": sweep_payload(sweeps.get(name, []), places, known, floor_of(own)),
         }
     description = {
         "floor": FLOOR_DECADE,
         "ceiling": CEILING_DECADE,
-        "lines": [
-            {"name": n.name, "colour": n.colour, "dash": n.dash, "width": n.width} for n in lines
-        ],
+        "lines": [{**vars(n), "name": n.name} for n in lines],
         "times": clocks,
         "scenarios": scenarios,
     }
     return description, codes_of(np.concatenate([np.empty(0), *values]))
-
-
-def drawn(course: Course, channel: str) -> Array:
-    """A course as it is drawn: without the start where it was given, so that nothing is off."""
-    values = course.values[channel]
-    start = (course.time == 0.0) & (values <= FLOOR)
-    return np.where(start, np.nan, values)
-
-
-def _axis(chart: Chart, channel: str) -> dict[str, Any]:
-    """Decades that hold every step size's courses, so that a change of step moves no axis."""
-    values = np.concatenate([drawn(course, channel) for course in chart.courses])
-    known = values[~np.isnan(values)]
-    return {"channel": channel, "unit": chart.units[channel], **decades(known)}
-
-
-def _captions(rank: Mapping[tuple[float | None, float | None], int]) -> list[str]:
-    by_rank: dict[int, list[str]] = {}
-    for (timestep, accuracy), place in rank.items():
-        by_rank.setdefault(place, []).append(knob(timestep, accuracy))
-    return [", ".join(filter(None, by_rank[place])) for place in sorted(by_rank)]
-
-
-def command_of(run: Mapping[str, Any]) -> str:
-    """The command that made the record, as one would type it."""
-    return shlex.join(str(word) for word in run.get("command") or ())

@@ -147,7 +147,10 @@ def _identity(task: Mapping[str, Any]) -> tuple[str, str, str]:
 
 
 def _columns(tasks: Iterable[Mapping[str, Any]]) -> tuple[Column, ...]:
-    keys = list(dict.fromkeys(_identity(task) for task in tasks))
+    # The engines stand first: they are what the reader came for, and a phone shows two columns.
+    keys = sorted(
+        dict.fromkeys(_identity(task) for task in tasks), key=lambda k: k[0] in YARDSTICKS
+    )
     columns = []
     for engine, version, setup in keys:
         several = len({v for e, v, _ in keys if e == engine}) > 1

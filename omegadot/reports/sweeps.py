@@ -12,6 +12,7 @@ import polars as pl
 
 from omegadot.reference_impl.system import Array
 from omegadot.reports.packing import CEILING_DECADE, FLOOR
+from omegadot.reports.provenance import Sources
 
 # A guide of the declared order stands this much above the errors that it goes with.
 ABOVE = 2.0
@@ -135,17 +136,29 @@ def decades(values: Array) -> dict[str, Any]:
 
 
 def sweep_payload(
-    sweeps: list[Sweep], places: Mapping[tuple[str, str, str], int]
+    sweeps: list[Sweep],
+    places: Mapping[tuple[str, str, str], int],
+    sources: Sources | None = None,
+    floor: float = 0.0,
 ) -> dict[str, Any]:
-    """What the script draws: ``[line, [[h, error, cost], ...]]`` an integrator, guides, axis."""
+    """What the script draws: ``[line, [[h, error, cost, source], ...]]`` an integrator, guides,
+    axis.
+
+    floor: rad, below which attitude errors cannot be told apart; 0 where it is not known.
+    """
 
     def digits(value: float | None) -> float | None:
         return None if value is None else float(f"{value:.4g}")
 
+    known = sources or Sources()
+
+    def number(sweep: Sweep, point: Point) -> int:
+        return known.number({**vars(sweep), "timestep": point.timestep})
+
     lines = [
         [
             places[sweep.engine, sweep.setup, sweep.integrator],
-            [[p.timestep, digits(p.error), digits(p.cost)] for p in sweep.points],
+            [[p.timestep, digits(p.error), digits(p.cost), number(sweep, p)] for p in sweep.points],
         ]
         for sweep in sweeps
         if (sweep.engine, sweep.setup, sweep.integrator) in places
@@ -155,5 +168,6 @@ def sweep_payload(
         "lines": lines,
         "guides": [[digits(value) for value in guide] for guide in guides(sweeps)],
         "rounding": [[step, digits(bound)] for step, bound in rounding(sweeps)],
-        **decades(np.array(errors)),
+        "resolvable": digits(floor) if floor else None,
+        **decades(np.array(errors + ([floor] if floor else []))),
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -11,6 +11,7 @@ import polars as pl
 
 from omegadot.reports.courses import Chart
 from omegadot.reports.numbers import knob, short
+from omegadot.reports.provenance import Sources
 from omegadot.reports.schema import GATES
 from omegadot.reports.summary import task_status
 
@@ -29,6 +30,8 @@ CHANNEL_NAMES = {
 # One value an engine, whatever it is stepped with; the others are one value a run.
 ENGINE_GATES = ("model", "equation")
 _PLAIN_NUMBERS = ("scheme", "cost")
+_ENGINE = ["engine", "engine_version", "setup"]
+_RUN = [*_ENGINE, "integrator", "timestep", "accuracy"]
 
 
 @dataclass(frozen=True)
@@ -41,10 +44,13 @@ class Value:
 
 @dataclass(frozen=True)
 class Row:
-    """heads: the cells that name the row.  values: the cells below the columns."""
+    """heads: the cells that name the row.  values: the cells below the columns.  source: the
+    number of who gave them, where that is known.
+    """
 
     heads: tuple[str, ...]
     values: tuple[Value, ...]
+    source: int | None = None
 
 
 @dataclass(frozen=True)
@@ -67,36 +73,40 @@ def unit_text(unit: str, gate: str = "") -> str:
     return unit
 
 
-def engine_table(metrics: pl.DataFrame) -> Table:
+def engine_table(metrics: pl.DataFrame, sources: Sources | None = None) -> Table:
     """Model and equation, one row an engine: the worst value over its runs."""
-    heads = ["engine", "engine_version", "setup"]
-    return _pivot(metrics.filter(pl.col("gate").is_in(ENGINE_GATES)), heads, _engine_heads)
+    own = metrics.filter(pl.col("gate").is_in(ENGINE_GATES))
+    return _pivot(own, _ENGINE, _engine_heads, sources or Sources())
 
 
-def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]]) -> Table:
+def run_table(
+    metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]], sources: Sources | None = None
+) -> Table:
     """What each run came to, one row a run, with its verdict and the reason of it."""
-    heads = ["engine", "engine_version", "setup", "integrator", "timestep", "accuracy"]
+    sources = sources or Sources()
     # A match stands under the channel that is farthest off; here it has a column of its own.
     whole = pl.when(pl.col("metric") == "match").then(pl.lit("")).otherwise(pl.col("channel"))
     own = metrics.filter(~pl.col("gate").is_in(ENGINE_GATES)).with_columns(channel=whole)
-    table = _pivot(own, heads, run_heads)
-    values = {row.heads: row.values for row in table.rows}
+    table = _pivot(own, _RUN, run_heads, sources)
+    left = {row.heads: row for row in table.rows}
     blank = (EMPTY,) * len(table.columns)
     rows = []
     for task in tasks:
-        names = run_heads(tuple(task.get(name) for name in heads))
+        names = run_heads(tuple(task.get(name) for name in _RUN))
         status = task_status(task)
         reason = task.get("why") or task.get("reason") or ""
         mark = status if status in ("fail", "declared") else ""
-        found = values.pop(names, blank)
-        rows.append(Row(names, (Value(status, mark), *found, Value(reason))))
-    rows += [Row(names, (EMPTY, *found, EMPTY)) for names, found in values.items()]
+        found = left.pop(names).values if names in left else blank
+        cells = (Value(status, mark), *found, Value(reason))
+        rows.append(Row(names, cells, sources.number(task)))
+    rows += [replace(row, values=(EMPTY, *row.values, EMPTY)) for row in left.values()]
     groups = (("outcome", 1), *table.groups, ("reason", 1))
     return Table(("engine", "run"), groups, ("verdict", *table.columns, "why"), tuple(rows))
 
 
-def course_table(chart: Chart) -> Table:
+def course_table(chart: Chart, sources: Sources | None = None) -> Table:
     """The numbers behind a scenario's charts: each course's largest value, and its last."""
+    sources = sources or Sources()
     rows = [
         Row(
             run_heads((c.engine, "", c.setup, c.integrator, c.timestep, c.accuracy)),
@@ -105,6 +115,7 @@ def course_table(chart: Chart) -> Table:
                 for channel in chart.units
                 for value in (c.largest[channel], c.end[channel])
             ),
+            sources.number(vars(c)),
         )
         for c in chart.courses
     ]
@@ -127,17 +138,22 @@ def run_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
     return name, ", ".join(filter(None, (integrator, knob(timestep, accuracy))))
 
 
-def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any) -> Table:
+def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any, sources: Sources) -> Table:
     """One row a key, one column a (gate, channel, metric, unit), each cell its worst row."""
     keys = ["gate", "channel", "metric", "unit"]
-    found = metrics.select(keys).unique(maintain_order=True).rows()
-    columns = sorted(found, key=lambda column: GATES.index(column[0]))
+    found = metrics.select(*heads, *keys, "value", "bound", "verdict").rows()
+    width = len(heads)
+    named = dict.fromkeys(row[width : width + 4] for row in found)
+    columns = sorted(named, key=lambda column: GATES.index(column[0]))
     places = {column: place for place, column in enumerate(columns)}
     rows: dict[tuple[str, ...], list[Value]] = {}
+    numbers: dict[tuple[str, ...], int] = {}
     sizes: dict[tuple[tuple[str, ...], int], tuple[bool, float]] = {}
-    for row in metrics.select(*heads, *keys, "value", "bound", "verdict").iter_rows():
-        names = name(row[: len(heads)])
-        place = places[row[len(heads) : len(heads) + 4]]
+    for row in found:
+        names = name(row[:width])
+        if names not in numbers:
+            numbers[names] = sources.number(dict(zip(heads, row[:width], strict=True)))
+        place = places[row[width : width + 4]]
         value, bound, verdict = row[-3:]
         weight = (verdict == "fail", float("inf") if value is None or value != value else value)
         if sizes.get((names, place), (False, float("-inf"))) <= weight:
@@ -153,7 +169,7 @@ def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any) -> Table:
         ("engine",),
         tuple(groups),
         tuple(_column_name(*column) for column in columns),
-        tuple(Row(names, tuple(line)) for names, line in rows.items()),
+        tuple(Row(names, tuple(line), numbers[names]) for names, line in rows.items()),
     )
 
 

@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import re
-from functools import cache
+from collections.abc import Iterable
+from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any
 
 from jinja2 import Environment, PackageLoader
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from omegadot.reports.numbers import knob, short
 from omegadot.reports.packing import pack
-from omegadot.reports.tables import unit_text
+from omegadot.reports.tables import Table, unit_text
+
+# One idea a file; what comes first is spoken of by what comes after.
+SCRIPTS = (
+    *("unpack", "copying", "cards", "tables"),
+    *("looks", "courses", "sweeps", "equation", "linked", "report"),
+)
 
 
 def without_scheme(value: Any) -> Any:
@@ -20,6 +27,27 @@ def without_scheme(value: Any) -> Any:
     if isinstance(value, str) and "://" in value and not isinstance(value, Markup):
         return re.sub(r"https?://", "", value, flags=re.IGNORECASE)
     return value
+
+
+@lru_cache(maxsize=65536)
+def _cell(text: str) -> str:
+    return str(escape(without_scheme(text)))
+
+
+def table_body(table: Table) -> Markup:
+    """The rows of a table of many cells, escaped as the templates do it, in a tenth of the time."""
+    lines = []
+    for row in table.rows:
+        source = "" if row.source is None else f' data-source="{row.source}"'
+        heads = [f'<th scope="row">{_cell(head)}' for head in row.heads]
+        cells = [
+            f'<td class="v-{_cell(value.mark)}">{_cell(value.text)}'
+            if value.mark
+            else f"<td>{_cell(value.text)}"
+            for value in row.values
+        ]
+        lines.append(f"<tr{source}>{''.join(heads)}{''.join(cells)}</tr>\n")
+    return Markup("".join(lines))
 
 
 def unbroken(text: str) -> str:
@@ -41,6 +69,7 @@ def environment() -> Environment:
     found.filters["knob"] = lambda row: knob(row["timestep"], row["accuracy"])
     found.filters["unit"] = unit_text
     found.filters["unbroken"] = unbroken
+    found.filters["body"] = table_body
     return found
 
 
@@ -48,6 +77,12 @@ def asset(name: str) -> Markup:
     """The page's own style or script."""
     path = files("omegadot.reports").joinpath("templates", name)
     return Markup(path.read_text(encoding="utf-8"))
+
+
+def script(names: Iterable[str] = SCRIPTS) -> Markup:
+    """The page's own script: its files in their order, in one scope that nothing else sees."""
+    parts = (asset(f"{name}.js") for name in names)
+    return Markup('"use strict";\n(() => {{\n{}}})();\n').format(Markup("").join(parts))
 
 
 @cache

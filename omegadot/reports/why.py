@@ -9,6 +9,7 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.numbers import short, times
+from omegadot.reports.provenance import Sources
 from omegadot.reports.record import Record
 from omegadot.reports.tables import CHANNEL_NAMES, Row, Table, Value, run_heads
 
@@ -30,12 +31,13 @@ def _declared(record: Record) -> dict[Key, Counter[str]]:
     return found
 
 
-def scheme_table(record: Record) -> Table:
+def scheme_table(record: Record, sources: Sources | None = None) -> Table:
     """One row an integrator, over all scenarios and steps: does it equal the scheme it declares?
 
     In how many runs, at what largest part of the round-off bound, and how far off in omega and
     attitude. The reference is left out: it is what the others are held against.
     """
+    sources = sources or Sources()
     metrics = _of_runs(record).filter(pl.col("engine") != "reference")
     matches = _by_key(metrics.filter(pl.col("metric") == "match"))
     left = _by_key(metrics.filter(pl.col("metric") == "unexplained_max"))
@@ -47,6 +49,7 @@ def scheme_table(record: Record) -> Table:
                 *_equal_cells(found),
                 *(_largest(left.get(key, []), channel) for channel in ("omega", "attitude")),
             ),
+            _source(key, sources),
         )
         for key, found in matches.items()
     ]
@@ -58,12 +61,16 @@ def scheme_table(record: Record) -> Table:
     )
 
 
-def order_table(record: Record) -> Table:
+def order_table(record: Record, sources: Sources | None = None) -> Table:
     """One row an integrator: the range of its observed orders over all scenarios, by channel."""
     metrics = _of_runs(record)
     orders = _by_key(metrics.filter(pl.col("metric") == "observed_order"))
     rows = [
-        Row(_heads(key), tuple(_order_cell(found, channel) for channel in _CHANNELS))
+        Row(
+            _heads(key),
+            tuple(_order_cell(found, channel) for channel in _CHANNELS),
+            _source(key, sources or Sources()),
+        )
         for key, found in orders.items()
     ]
     return Table(
@@ -78,6 +85,10 @@ def _of_runs(record: Record) -> pl.DataFrame:
     return record.metrics.filter(
         pl.col("integrator").is_not_null() & pl.col("gate").is_in(["scheme", "trajectory"])
     )
+
+
+def _source(key: Key, sources: Sources) -> int:
+    return sources.number(dict(zip(("engine", "setup", "integrator"), key, strict=True)))
 
 
 def _heads(key: Key) -> tuple[str, ...]:

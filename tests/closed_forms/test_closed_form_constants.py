@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from closed_form_errors import EPS
 
+from omegadot.reference_impl.closed_forms.arcs import unit_circle
 from omegadot.reference_impl.closed_forms.digits import (
     agm,
     carlson_rf,
@@ -19,9 +20,11 @@ from omegadot.reference_impl.closed_forms.digits import (
     pi,
 )
 from omegadot.reference_impl.closed_forms.elliptic import Clock, Modulus
-from omegadot.reference_impl.closed_forms.phase import Phase, Times, unit_circle
+from omegadot.reference_impl.closed_forms.phase import Phase
 from omegadot.reference_impl.closed_forms.principal_axes import principal_axes
-from omegadot.reference_impl.closed_forms.theta import jacobi
+from omegadot.reference_impl.closed_forms.theta import jacobi_rows
+from omegadot.reference_impl.closed_forms.theta_series import Series
+from omegadot.reference_impl.closed_forms.times import Times
 
 
 def _mp(x: Decimal) -> mp.mpf:
@@ -36,7 +39,12 @@ def test_constants_have_the_digits_they_claim() -> None:
             c, s = cos_sin(Decimal(text))
             assert abs(_mp(c) - mp.cos(mp.mpf(text))) < tiny
             assert abs(_mp(s) - mp.sin(mp.mpf(text))) < tiny
-        for triple in (("0", "0.3", "1"), ("1e-40", "2e-40", "1"), ("0.1", "0.2", "0.3")):
+        for triple in (
+            ("0", "0.3", "1"),
+            ("1e-40", "2e-40", "1"),
+            ("1e-170", "1e-170", "1"),
+            ("0.1", "0.2", "0.3"),
+        ):
             value = carlson_rf(*map(Decimal, triple))
             assert abs(_mp(value) / mp.elliprf(*map(mp.mpf, triple)) - 1) < tiny
         assert abs(_mp(agm(Decimal(1), Decimal("1e-30"))) / mp.agm(1, mp.mpf("1e-30")) - 1) < tiny
@@ -71,16 +79,18 @@ def test_phase_keeps_its_digits_over_a_million_turns() -> None:
         rate, start = Decimal(2).sqrt(), Decimal("0.3")
         phase = Phase.of(rate, start)
     times = np.array([0.0, 1e-9, 1.7, 12345.678, -98765.4321, 1e6 / 7])
-    whole, part = phase.reduced(Times.of(times))
-    modulo = phase.modulo(Times.of(times))
-    for t, n, r, m in zip(times, whole, part, modulo, strict=True):
+    whole, part = phase.reduced(Times(times))
+    circle = phase.circle(Times(times))
+    for t, n, r, z in zip(times, whole, part, circle, strict=True):
         x = Fraction(float(t)) * Fraction(rate) + Fraction(start)
         # rounding of the remainder, and |x| 2^-79 of the rate's last part
         bound = EPS + abs(float(x)) * 2.0**-78
         off = float(x - Fraction(float(n)) - Fraction(float(r)))
         assert abs(off - 2 * round(off / 2)) <= bound  # the parity of n is kept
-        off = float(x - Fraction(float(m)))
-        assert abs(off - round(off)) <= bound
+        with mp.workdps(40):
+            truth = mp.expjpi(2 * (x.numerator % x.denominator) / mp.mpf(x.denominator))
+            # a rounding of each part, one of its small correction, and the phase's own
+            assert abs(mp.mpc(complex(z)) - truth) <= EPS + abs(float(x)) * 2.0**-76
 
 
 def test_unit_circle() -> None:
@@ -102,9 +112,12 @@ def test_jacobi_functions_by_the_complement(m1: str) -> None:
         with many_digits():
             modulus = Modulus.of(1 - Decimal(m1), Decimal(m1))
             clock = Clock.of(modulus, Decimal(1), Decimal("0.25"))
-            functions = jacobi(modulus, Decimal(1), Decimal(1), Decimal(1))
+            series = Series.of(jacobi_rows(modulus, Decimal(1), Decimal(1), Decimal(1)))
         times = np.linspace(-40.0, 40.0, 33)
-        found = functions(clock.read(Times.of(times)))
+        frame = clock.read(Times(times))
+        sn, cn, dn, divisor = series(frame)
+        odd, even, _ = frame.odd_even
+        found = sn * odd / divisor, cn * even / divisor, dn / divisor
         for k, t in enumerate(times):
             u = mp.mpf(float(t)) + mp.mpf("0.25")
             for name, values in zip(("sn", "cn", "dn"), found, strict=True):

@@ -34,7 +34,7 @@ def _state(omega: list[float]) -> State:
 def test_damped_spin(inertia: np.ndarray, omega: list[float], times: np.ndarray) -> None:
     system, initial = _system(inertia, damping=np.array(0.7)), _state(omega)
     assert problem_of(system, initial).kind == "fixed axis"
-    with mp.workdps(30):
+    with mp.workdps(50):
         truth = TaylorSeries(inertia.tolist(), 0.7).states(Q.tolist(), omega, times.tolist())
     state = closed_form_of(system, initial)(times)
     angle, speed = errors(state, truth)

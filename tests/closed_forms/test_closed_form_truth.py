@@ -84,6 +84,28 @@ def test_textbook_form_of_free_rotation(case: Case) -> None:
                 assert abs(world_R_body[i, i] - diagonal) < mp.mpf(10) ** -25
 
 
+@pytest.mark.parametrize("off", [1e-8, 1e-9, 1e-12, 1e-40])
+@pytest.mark.parametrize("axis", [0, 2])
+def test_closer_to_an_axis_than_the_series_feel(axis: int, off: float) -> None:
+    """ω goes round an ellipse, not a circle, however small it is; catches one taken for a top's."""
+    omega = [1.7 * off, -off, 0.6 * off]
+    omega[axis] = 1.3
+    case = Case("close", np.diag([1.0, 2.0, 3.0]), tuple(omega), (0.3, 5.0, 12.0))
+    with mp.workdps(120):
+        motion = free_rotation(case.inertia, case.orientation, case.omega, case.times)
+        truth = [[*_quaternion(world_R_body), *w] for world_R_body, w in motion]
+    angle, speed = errors(_solve(case), truth)
+    assert np.all(angle <= 16 * EPS)
+    assert np.all(speed <= 4 * EPS * 1.3)
+
+
+def _quaternion(matrix: mp.matrix) -> list[mp.mpf]:
+    """Of a rotation by less than half a turn: q_0 from the trace, the rest from what is odd."""
+    w = mp.sqrt(1 + matrix[0, 0] + matrix[1, 1] + matrix[2, 2]) / 2
+    odd = [matrix[i - 1, i - 2] - matrix[i - 2, i - 1] for i in range(3)]
+    return [w, *(x / (4 * w) for x in odd)]
+
+
 @pytest.mark.parametrize("name", ["top", "no-spin", "cusps", "loops", "sphere-top", "low"])
 def test_textbook_form_of_the_top(name: str) -> None:
     """Euler's angles by Legendre's integrals give the motion of the Taylor series."""

@@ -57,18 +57,19 @@ def test_a_row_of_the_matrix() -> None:
     assert (row.judged, row.broken, row.any, row.named) == (2, 0, 1.0, 1.0)
     assert row.gates["equation"] == 1.0
     assert row.gates["model"] == 0.0
+    assert row.no_scheme == 1.0
     assert row.published["Drake"] == 1.0
     assert row.published["MuJoCo"] is None
 
 
 def test_the_page_has_a_line_for_every_fault_and_says_how_it_was_made() -> None:
     row = detection(FAULTS["MassSlightlyOff"], "reference", Pool(3), 1)
-    matrix = EngineMatrix("reference", "1", ("rk4-quaternion",), 2, 0, ("Left",), (), (row,))
+    matrix = EngineMatrix("reference", "1", ("rk4-quaternion",), 2, 0, 0, ("Left",), (), (row,))
     page = markdown(Settings(("reference",), 1, 3), [matrix])
     command = "omegadot faults --engine reference --bodies 1 --seed 3 --format markdown"
     assert command in page.splitlines()[2:6][0] + page.splitlines()[3]
     line = next(text for text in page.splitlines() if text.startswith("| MassSlightlyOff | 100"))
-    assert line.count("|") == len(GATES) + len(PUBLISHED) + 4
+    assert line.count("|") == len(GATES) + len(PUBLISHED) + 5
     assert "1 faults, of which 1 were caught on every body" in page
     assert "Left" in page
     for check in PUBLISHED:
@@ -103,7 +104,7 @@ def test_the_command_prints_the_matrix(
         engine = json.loads(out)["engines"][0]
         assert [row["name"] for row in engine["faults"]] == ["MassSlightlyOff", "GyroscopicDropped"]
         assert engine["skipped"] == ["AttitudeOfOrderTwo"]
-        assert (engine["sound"], engine["accused"]) == (2, 0)
+        assert (engine["sound"], engine["accused"], engine["accused_nameless"]) == (2, 0, 0)
         assert engine["faults"][1]["gates"]["equation"] == 1.0
     else:
         assert "2 faults, of which 2 were caught on every body" in out

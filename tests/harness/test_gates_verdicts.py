@@ -9,12 +9,13 @@ from omegadot.harness.verdicts import (
     Evidence,
     Finding,
     ObservedOrder,
+    is_whole,
     judge,
     observed_order,
 )
 
 BOUND = np.array([1e-15, 1e-12, 1e-11])
-SLOW = ObservedOrder(0.2, True)
+SLOW = ObservedOrder(0.1, True)
 
 
 def evidence(error: object, left: object = None, floor: object = None, *orders: object) -> Evidence:
@@ -97,11 +98,21 @@ def by_order(*orders: ObservedOrder | None, declared: int | None = 2) -> Finding
 def test_the_tolerance_of_an_order() -> None:
     assert ORDER_TOLERANCE == 0.15
     assert by_order(ObservedOrder(2 - ORDER_TOLERANCE, True)).kind == "consistent"
-    assert by_order(ObservedOrder(1.849, True)).kind == "unexplained"
+    assert by_order(ObservedOrder(1.849, True)).kind == "unresolved"
     assert by_order(ObservedOrder(1.845, True, 0.01)).kind == "unresolved"
-    assert by_order(ObservedOrder(1.8, True, 0.04)).kind == "unexplained"
-    assert by_order(ObservedOrder(1.8, True, -0.06)).kind == "unexplained"
+    assert by_order(ObservedOrder(1.15, True, 0.69)).kind == "unexplained"
+    assert by_order(ObservedOrder(1.15, True, -0.71)).kind == "unexplained"
     assert by_order(VANISHED).kind == "consistent"
+
+
+@pytest.mark.parametrize(
+    ("order", "whole"), [(1.0, True), (1.15, True), (1.16, False), (0.5, False), (0.84, False)]
+)
+def test_only_a_whole_number_is_an_order(order: float, whole: bool) -> None:
+    """An energy that drifts with 3.41 is neither of order 3 nor of order 4: finer steps decide."""
+    assert is_whole(order) is whole
+    assert by_order(ObservedOrder(order, True)).kind == ("unexplained" if whole else "unresolved")
+    assert by_order(ObservedOrder(-order, True)).kind == ("unexplained" if whole else "unresolved")
 
 
 def test_the_lowest_order_counts() -> None:

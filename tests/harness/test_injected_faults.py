@@ -40,6 +40,7 @@ BROKEN = {
     "NamelessSignal": ("crashed", "ended by signal 35"),
     "ExitsWithZero": ("crashed", "ended with exit code 0"),
     "LeavesAChild": ("crashed", "ended with exit code 9"),
+    "LeavesADaemon": ("crashed", "ended with exit code 9"),
     "ClosesItsChannel": ("crashed", "ended with exit code"),
     "ClosesAndStays": ("crashed", "it closed the channel of its answers; the worker was ended"),
     "WritesIntoTheChannel": ("crashed", "its answer cannot be read"),
@@ -82,7 +83,10 @@ NOT_STARTING = {
     "AtImportDies": ("crashed", "ended with exit code 5"),
     "AtImportExits": ("raised", "SystemExit: 0"),
 }
-HANGING = ("Sleeps", "Spins", "IgnoresSignals", "StopsItself", "HoldsTheLock", "SleepsWithAChild")
+HANGING = (
+    *("Sleeps", "Spins", "IgnoresSignals", "StopsItself", "HoldsTheLock"),
+    *("SleepsWithAChild", "SleepsWithADaemon"),
+)
 LATE = "no answer within 4 s; the worker was ended"
 SOUND_TO_THE_GATES = ("Floods", "Twin", "Reads", "HangsAtExit")
 

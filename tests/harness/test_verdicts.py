@@ -57,7 +57,8 @@ def test_the_declared_scheme_explains_its_own_error() -> None:
 def test_an_error_of_the_declared_order_is_consistent() -> None:
     assert kind(LARGE, None, (RESOLVED,), 1) == "consistent"
     assert kind(LARGE, None, (ObservedOrder(3.0, True),), 2) == "consistent"
-    assert kind(LARGE, None, (ObservedOrder(1.8, True),), 2) == "unexplained"
+    assert kind(LARGE, None, (ObservedOrder(1.8, True),), 2) == "unresolved"
+    assert kind(LARGE, None, (ObservedOrder(1.1, True),), 2) == "unexplained"
 
 
 def test_what_is_left_of_a_fault_does_not_shrink() -> None:
@@ -101,4 +102,5 @@ def test_a_slope_that_is_still_rising_is_not_held_against_anyone() -> None:
     assert seen.resolved is False
     rising = ObservedOrder(0.83, True, 0.08)
     assert kind(LARGE, None, (rising,), 1) == "unresolved"
-    assert kind(LARGE, None, (ObservedOrder(0.83, True, -0.01),), 1) == "unexplained"
+    assert kind(LARGE, None, (ObservedOrder(0.83, True, -0.01),), 1) == "unresolved"
+    assert kind(LARGE, None, (ObservedOrder(0.1, True, -0.01),), 1) == "unexplained"

@@ -7,10 +7,12 @@ from synthetic_record import build, scenario_entry
 from omegadot.reports import draw_page
 
 HOSTILE = "<script>document.title='broken'</script><img src=x onerror=\"document.title='broken'\">"
-CHARTS = 12
+CHARTS = 14
 DRAWN = f"Number(document.documentElement.dataset.drawn || 0) >= {CHARTS}"
-# The lines of the fourth chart, the attitude error of the first scenario.
-LINES = """[...document.querySelectorAll(".chart")[3].data].map(
+# A chart of courses of the first scenario, by its place.
+COURSE = "((place) => document.querySelector(`[data-place='${place}']`))"
+# The runs in the attitude error of the first scenario, its fourth course.
+LINES = """[...document.querySelector("[data-place='3']").data].filter((t) => t.meta).map(
     (t) => ({name: t.name, end: t.y.at(-1), colour: t.line.color, dash: t.line.dash}))"""
 
 
@@ -49,8 +51,9 @@ def test_charts_are_drawn_and_nothing_is_complained_of(page, path):
     assert page.messages == []
     assert page.evaluate("document.querySelectorAll('.chart svg.main-svg').length") >= CHARTS
     assert page.evaluate("document.getElementById('no-charts').hidden")
-    # Five lines a chart; two guides and the rounding line stand beside those of convergence.
-    lines = 2 * (4 * 5 + 5 + 5 + 3)
+    # Five lines a chart; beside them two guides and rounding's for convergence, the Pareto front
+    # for cost, and the bounds in two of the four courses: equal for all runs, so one line.
+    lines = 2 * (4 * 5 + 5 + 3 + 5 + 1 + 2)
     assert (
         page.evaluate("document.querySelectorAll('.chart .scatterlayer .js-line').length") == lines
     )
@@ -79,7 +82,7 @@ def test_the_charts_hold_what_the_record_holds(page):
 
 
 def test_one_step_is_shown_at_a_time_and_axes_stay(page):
-    axis = "JSON.stringify(document.querySelectorAll('.chart')[3].layout.yaxis.range)"
+    axis = f"JSON.stringify({COURSE}(3).layout.yaxis.range)"
     before = page.evaluate(axis)
     assert page.evaluate("[...document.getElementById('step').options].map((o) => o.text)") == [
         *("finest (0.005 s)", "second finest (0.01 s)", "third finest (0.02 s)")
@@ -111,12 +114,13 @@ def test_a_switch_acts_on_all_charts_and_the_keyboard_reaches_it(page):
     page.press(" ", 32, " ")
     page.wait(DRAWN)
     counts = page.evaluate("[...document.querySelectorAll('.chart')].map((c) => c.data.length)")
-    assert counts == [3, 3, 3, 3, 6, 3] * 2
+    # Identical states hold a bound and two kinds of them; two of the courses hold a bound.
+    assert counts == [3, 3, 3, 4, 4, 6, 4] * 2
     assert page.evaluate(LINES)[0]["name"] == "mujoco Euler"
 
 
 SWEEP = """((kind) => [...document.querySelector(`[data-kind=${kind}]`).data].map(
-    (t) => ({name: t.name, x: [...t.x], y: [...t.y], dash: t.line.dash})))"""
+    (t) => ({name: t.name, x: [...t.x], y: [...t.y], dash: t.line.dash ?? null})))"""
 
 
 def test_convergence_is_drawn_over_the_step_with_its_slopes(page):
@@ -135,10 +139,10 @@ def test_convergence_is_drawn_over_the_step_with_its_slopes(page):
 
 def test_work_is_drawn_against_precision(page):
     drawn = {line["name"]: line for line in page.evaluate(f"{SWEEP}('cost')")}
-    assert len(drawn) == 5
+    assert len(drawn) == 5 + 1
     assert drawn["mujoco RK4"]["x"] == pytest.approx([4e-4, 2e-4, 1e-4])
     assert drawn["mujoco RK4"]["y"] == pytest.approx([1.2 * h**4 for h in (0.005, 0.01, 0.02)])
-    text = page.evaluate("document.querySelector('[data-kind=cost]').data[3].text[0]")
+    text = page.evaluate("document.querySelector('[data-kind=cost]').data[4].text[0]")
     assert text == "step 0.005 s: 7.50e-10 rad<br>4.00e-4 s per simulated second"
 
 
@@ -154,10 +158,10 @@ def test_sweeps_keep_colour_and_dash_and_leave_with_their_engine(page):
 
 
 def test_axes_are_logarithmic_and_zeros_lie_on_a_marked_floor(page):
-    layout = "document.querySelectorAll('.chart')[0].layout"
+    layout = "document.querySelector('[data-place=\"0\"]').layout"
     assert page.evaluate(f"{layout}.yaxis.type") == "log"
     # dart's omega-dot is exact in this record.
-    zeros = "document.querySelectorAll('.chart')[0].data.at(-1).y"
+    zeros = "document.querySelector('[data-place=\"0\"]').data.at(-1).y"
     assert set(page.evaluate(f"[...{zeros}].slice(1)")) == {1e-17}
     assert page.evaluate(f"{zeros}[0]") is None
     assert page.evaluate(f"{layout}.yaxis.range[0]") < -17

@@ -99,7 +99,7 @@ def test_all_head_cells_have_a_scope_and_no_heading_is_skipped(sound):
 def test_every_chart_has_a_text_alternative_and_a_table(sound):
     outline = Outline(sound)
     charts = [a for a in outline.named("div") if a.get("class") == "chart"]
-    assert len(charts) == 2 * (4 + 2)
+    assert len(charts) == 2 * (1 + 4 + 2)
     assert all(a["role"] == "img" and "table" in a["aria-label"] for a in charts)
     assert sound.count("The numbers behind these charts") == 2
 
@@ -114,7 +114,7 @@ def test_equations_errata_and_limitations_are_told(sound):
     assert "example.org/issue/1" in text
 
 
-def test_hostile_text_stays_text():
+def test_hostile_text_stays_text(sound):
     record = build((HOSTILE, '"><img src=x onerror=alert(2)>', "{{ 7*7 }}"))
     tasks = [dict(entry, why=HOSTILE) for entry in record.run["tasks"]]
     tasks[0].update(outcome="raised", reason=HOSTILE, gates={})
@@ -136,7 +136,7 @@ def test_hostile_text_stays_text():
     row = metric(HOSTILE, HOSTILE, HOSTILE, 0.1, "model", "model", HOSTILE, 1.0, verdict="fail")
     page = draw_page(with_metrics(record, {**row, "note": HOSTILE, "unit": HOSTILE}))
     outline = Outline(page)
-    assert len(outline.named("script")) == 4
+    assert len(outline.named("script")) == len(Outline(sound).named("script"))
     assert not outline.named("img")
     assert not [a for _, a in outline.tags if any(name.startswith("on") for name in a)]
     assert not [a for a in outline.named("a") if not a["href"].startswith("#")]

@@ -9,6 +9,7 @@ import atexit
 import ctypes
 import os
 import signal
+import subprocess
 import sys
 import time
 from dataclasses import replace
@@ -77,6 +78,19 @@ class LeavesAChild(Unwell):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         if os.fork() == 0:
             time.sleep(3600)
+        os._exit(9)
+
+
+class LeavesADaemon(Unwell):
+    """Dies, and a child that it forked has made itself a session of its own."""
+
+    def fail(self, trajectory: Trajectory) -> Trajectory:
+        if os.fork() == 0:
+            os.setsid()
+            if os.fork() == 0:
+                time.sleep(3600)
+            os._exit(0)
+        time.sleep(0.2)
         os._exit(9)
 
 
@@ -385,6 +399,14 @@ class SleepsWithAChild(Unwell):
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         os.spawnlp(os.P_WAIT, "sleep", "sleep", "3600")
+        return trajectory
+
+
+class SleepsWithADaemon(Unwell):
+    """It hangs, and a program that it started is in a session of its own."""
+
+    def fail(self, trajectory: Trajectory) -> Trajectory:
+        subprocess.Popen(["sleep", "3600"], start_new_session=True).wait()
         return trajectory
 
 

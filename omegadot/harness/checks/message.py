@@ -11,6 +11,9 @@ from omegadot.reports.numbers import listed, short
 # Their notes are the whole sentence, with the figures in it.
 SPOKEN_FOR = ("match", "observed_order", "sample_times")
 
+# Of these the note says it better than the figure, in parts of its bound, would.
+SPOKEN_IN_PARTS = ("begun_anew", "rate_at_no_step", "start", "precision")
+
 
 def _excess(row: Row) -> float:
     """How many times its bound a value is; infinite where it is not finite or nothing is due."""
@@ -27,7 +30,7 @@ def _unit(row: Row) -> str:
 
 def sentence(row: Row) -> str:
     """One failing row in words."""
-    if row.metric in SPOKEN_FOR and row.note:
+    if row.metric in (*SPOKEN_FOR, *SPOKEN_IN_PARTS) and row.note:
         return f"{row.channel}: {row.note}"
     said = f"{row.channel}: {row.metric} is {short(row.value, 3)}{_unit(row)}"
     if row.bound is not None:

@@ -6,10 +6,17 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.adapters.wire import acceleration_from
-from omegadot.harness.diagnosis.fits import constant_inertia, difference_quotient, scaled_terms
+from omegadot.harness.diagnosis.fits import (
+    constant_inertia,
+    difference_quotient,
+    other_pivot,
+    scaled_terms,
+)
 from omegadot.harness.diagnosis.misreadings import OF_ANY_STATE
+from omegadot.harness.diagnosis.only_where import only_where
 from omegadot.harness.diagnosis.tensors import mistaken_inertias
 from omegadot.harness.drive import CaseResult, Questions
 from omegadot.harness.gates.equation import BOUND, forward_rows, inverse_rows
@@ -42,6 +49,13 @@ class Match:
         scale: BodyScale = body_scale(self.system)
         angular = torque_size(self.system, self.states, acceleration) / scale.smallest
         return BOUND * angular, BOUND * linear_size(self.system, self.states, acceleration)
+
+    @property
+    def sound(self) -> NDArray[np.bool_]:
+        """(n,): the states at which the engine's acceleration is the true one."""
+        angular = norm(self.found.angular - self.true.angular) <= self.angular_bound
+        linear = norm(self.found.linear - self.true.linear) <= self.linear_bound
+        return np.asarray(angular & linear)
 
     def fits(self, candidate: Acceleration, slack: float = 1.0) -> bool:
         """Within `slack` times the bounds. A candidate's own terms may be larger: they count."""
@@ -85,11 +99,12 @@ def _forward(match: Match) -> list[str]:
     for said, candidate in (*_told(match), *_misread(match), *_other_systems(match)):
         if match.fits(candidate):
             return [said]
-    for fit in (constant_inertia, difference_quotient):
+    for fit in (other_pivot, constant_inertia, difference_quotient):
         said = fit(match)
         if said:
             return [said]
-    return []
+    where = only_where(match.states, match.sound)
+    return [f"the equation holds at some states, and is wrong only where {where}"] if where else []
 
 
 def _told(match: Match) -> Iterator[tuple[str, Acceleration]]:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 # A fitted number has rounding of its own, of about as many terms as there are components.
 SLACK = 4.0
+MOST_TRIES = 6
 
 
 def _term(match: Match, moment: Array, gravity: float) -> Acceleration:
@@ -70,12 +71,15 @@ def scaled_terms(match: Match) -> str:
         "gravity": (gravity_torque(system, states), 1.0),
         "the applied torque": (applied_torque(system, states), 0.0),
         "the damping": (damping_torque(system, states), 0.0),
+        "the torque of all loads": (torque(system, states), 0.0),
     }
     words = {0: "is missing", -1: "has the wrong sign", 2: "counts twice"}
     for what, (moment, gravity) in terms.items():
         k = _fit(match, _term(match, moment, gravity))
         if k is not None:
-            return _spoken(what, 1.0 + k, words)
+            over_mass = abs((1.0 + k) * float(system.body.mass) - 1.0) < 1e-9
+            said = _spoken(what, 1.0 + k, words)
+            return f"{said}: it is divided by the mass" if over_mass else said
     k = _fit(match, _term(match, -w, 0.0))
     if k is not None:
         return f"a damping of {k:.3g} N m s/rad acts that nobody asked for"
@@ -97,6 +101,32 @@ def _gravity_vector(match: Match) -> str:
     if not match.fits(forward_dynamics(other, states), SLACK):
         return ""
     return f"gravity is {_vector(asked + change)} m/s^2, where {_vector(asked)} was asked for"
+
+
+def other_pivot(match: Match) -> str:
+    """Another pivot than the one asked for, by Gauss-Newton."""
+    system, asked = match.system, match.system.load.pivot
+    if asked is None:
+        return ""
+
+    def there(pivot: Array) -> Acceleration:
+        load = replace(system.load, pivot=pivot)
+        return forward_dynamics(replace(system, load=load), match.states)
+
+    delta = 1e-6 * float(norm(system.body.center_of_mass - asked))
+    pivot = np.array(asked, dtype=float)
+    for _ in range(MOST_TRIES):
+        here = there(pivot)
+        if match.fits(here, SLACK):
+            off = _vector(pivot - asked)
+            return f"the pivot lies at {_vector(pivot)} m, {off} m from where it was asked for"
+        rest = _weighted(match, _difference(match.found, here))
+        lines = [
+            _weighted(match, _difference(there(pivot + delta * unit), here)) / delta
+            for unit in np.eye(3)
+        ]
+        pivot = pivot + np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
+    return ""
 
 
 def _difference(one: Acceleration, other: Acceleration) -> Acceleration:

@@ -8,6 +8,7 @@ import numpy as np
 
 from omegadot.adapters.wire import state_from
 from omegadot.harness.diagnosis.misreadings import OF_ANY_STATE, misreadings
+from omegadot.harness.diagnosis.samples_told import digits_told, half_step, not_unit
 from omegadot.harness.diagnosis.told_run import ToldRun, rows, told_run
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge_case import JudgedRun
@@ -26,7 +27,18 @@ def causes(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list
         return []
     if _begin_apart(told, result):
         return ["runs begin at other states than the one given: one is left over from a run before"]
-    for cause in (_samples, _clock, _not_finite, _misread, _late, _start, _rescaled):
+    tried = (
+        _samples,
+        _clock,
+        _not_finite,
+        digits_told,
+        _misread,
+        not_unit,
+        _late,
+        half_step,
+        _start,
+    )
+    for cause in (*tried, _rescaled):
         said = cause(told)
         if said:
             return [said]
@@ -70,7 +82,10 @@ def _clock(told: ToldRun) -> str:
         return f"every time is told {late[0]:.4g} s late, {steps:.3g} steps"
     ratio = told.time[-1] / told.sweep.times[-1]
     if np.all(np.abs(told.time - ratio * told.sweep.times) <= tolerance):
-        return f"every time is told {ratio:.6g} times what it is"
+        wrong = "fast" if ratio < 1.0 else "slow"
+        return (
+            f"the clock is told {abs(ratio - 1.0):.3g} too {wrong}: every time is off in proportion"
+        )
     return ""
 
 

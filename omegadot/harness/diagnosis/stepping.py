@@ -11,6 +11,7 @@ from omegadot.harness.diagnosis.told_run import ToldRun, told_run
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.faults.step_ends import (
     End,
+    clipped_at,
     held_below,
     left_multiplied,
     straight_quaternion,
@@ -45,7 +46,16 @@ def causes(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list
         return []
     if told.sweep.steps > MOST_STEPS:
         return []
-    for cause in (_precision, _asleep, _other_scheme, _other_end, _longer, _damped, _held):
+    for cause in (
+        _precision,
+        _asleep,
+        _other_scheme,
+        _other_end,
+        _longer,
+        _damped,
+        _clipped,
+        _held,
+    ):
         said = cause(told)
         if said:
             return [said]
@@ -53,15 +63,19 @@ def causes(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list
 
 
 def _precision(told: ToldRun) -> str:
-    """Attitude and omega of every sample after the start are numbers of single precision.
+    """Attitude or omega of every sample after the start are numbers of single precision.
 
     Places are not looked at: they may follow, in double, from what is kept.
     """
-    kept = (told.state.orientation[1:], told.state.angular_velocity[1:])
-    single = all(np.array_equal(f, f.astype(np.float32).astype(float)) for f in kept)
-    own = told.own.angular_velocity[1:]
-    chance = np.array_equal(own, own.astype(np.float32).astype(float))
-    return "the state is kept in single precision" if single and not chance else ""
+
+    def single(state: State, field: str) -> bool:
+        kept = getattr(state, field)[1:]
+        return np.array_equal(kept, kept.astype(np.float32).astype(float))
+
+    fields = {"orientation": "attitude", "angular_velocity": "omega"}
+    found = [s for f, s in fields.items() if single(told.state, f) and not single(told.own, f)]
+    what = "state" if len(found) == 2 else "".join(found)
+    return f"the {what} is kept in single precision" if found else ""
 
 
 def _asleep(told: ToldRun) -> str:
@@ -88,6 +102,22 @@ def _held(told: ToldRun) -> str:
 
     more = _search(told, stepped, 1e-6)
     return "" if more is None else f"omega is held below {greatest * (1.0 + more):.6g} rad/s"
+
+
+def _clipped(told: ToldRun) -> str:
+    """The greatest component of omega that is told is a limit to each of them."""
+    greatest = float(np.max(np.abs(told.state.angular_velocity[1:])))
+    if not 0.0 < greatest < float(np.max(np.abs(told.own.angular_velocity[1:]))):
+        return ""
+    declared = SCHEMES[told.integrator.scheme or ""]
+
+    def stepped(more: float) -> State:
+        return told.stepped(with_end(declared, clipped_at(greatest * (1.0 + more))))
+
+    more = _search(told, stepped, 1e-6)
+    if more is None:
+        return ""
+    return f"each component of omega is held within {greatest * (1.0 + more):.6g} rad/s"
 
 
 def _other_scheme(told: ToldRun) -> str:

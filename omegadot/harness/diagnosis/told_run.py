@@ -84,6 +84,14 @@ class ToldRun:
         how = (wanted, acceleration, scheme or declared, self.integrator.steps_origin)
         return step_anew(*how, initial or self.case.initial, plan)[1]
 
+    def stepped_on(self, states: State) -> State:
+        """Where the declared scheme leads from each of (m,) states to the next sample."""
+        plan = (self.sweep.timestep, self.sweep.every, self.sweep.every)
+        system, declared = self.case.system, SCHEMES[self.integrator.scheme or ""]
+        how = (system, acceleration_of(system), declared, self.integrator.steps_origin)
+        unit = replace(states, orientation=normalize(states.orientation))
+        return State(*(values[-1] for values in vars(step_anew(*how, unit, plan)[1]).values()))
+
 
 def told_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> ToldRun | None:
     """The run that was judged; None where it failed or no scheme is declared for it."""

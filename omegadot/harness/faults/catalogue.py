@@ -12,7 +12,10 @@ from omegadot.harness.faults import (  # noqa: F401  (importing them enters thei
     load_faults,
     logging_faults,
     model_faults,
+    passing_faults,
+    slight_faults,
     stepping_faults,
+    telling_faults,
 )
 from omegadot.harness.faults.fault import FAULTS, Spoiled
 

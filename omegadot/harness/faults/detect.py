@@ -12,6 +12,7 @@ from omegadot.harness.faults.in_process import driver_of
 from omegadot.harness.faults.prepared import Pool, Prepared
 from omegadot.harness.judge_case import JudgedRun, judge_case, shared_rows
 from omegadot.harness.rows import Row
+from omegadot.harness.unknown_schemes import ask_unknown_schemes
 from omegadot.harness.verdicts import UNDECIDED
 
 GATES = ("model", "equation", "scheme", "invariants", "trajectory")
@@ -62,6 +63,7 @@ def judge(
     result = driver.ask_equations(case, prepared.questions)
     pool.step_beside(prepared, result.integrators)
     result.runs.update(driver.run_all(case, lambda: None))
+    ask_unknown_schemes(driver, case, prepared.questions, result)
     with np.errstate(all="ignore"):  # a wrong engine may give any numbers
         shared = shared_rows(case, prepared.questions, result)
         runs = judge_case(prepared.truth, case, result, {})

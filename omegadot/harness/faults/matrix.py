@@ -10,13 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.adapters.protocol import Adapter
+from omegadot.adapters.protocol import Adapter, Integrator
 from omegadot.adapters.registry import BUILT_IN, build_adapter
 from omegadot.harness.diagnose import diagnose
 from omegadot.harness.faults.catalogue import ORDERED
 from omegadot.harness.faults.detect import GATES, Judgement, chosen_integrators, judge
 from omegadot.harness.faults.fault import Fault
 from omegadot.harness.faults.named import is_named
+from omegadot.harness.faults.nameless import Nameless, nameless_integrators
 from omegadot.harness.faults.prepared import Pool, Prepared
 from omegadot.harness.faults.published import Published
 from omegadot.harness.faults.published_checks import PUBLISHED
@@ -31,7 +32,8 @@ class Detection:
 
     judged: bodies that have what the fault needs.  broken: those that the engine refused, or
     failed to answer for, which is no detection.  gates: failed.  any: at least one of them failed.
-    named: the diagnosis named the cause.  published: by check, None where its scenarios or its
+    named: the diagnosis named the cause.  no_scheme: failed where the integrators declare their
+    orders and no scheme.  published: by check, None where its scenarios or its
     integrator do not have what the fault needs.
     """
 
@@ -41,12 +43,14 @@ class Detection:
     gates: dict[str, float]
     any: float
     named: float
+    no_scheme: float
     published: dict[str, float | None]
 
 
 @dataclass(frozen=True)
 class EngineMatrix:
-    """One engine's. accused: bodies of `sound` on which it failed a gate without any fault.
+    """One engine's. accused: bodies of `sound` on which it failed a gate without any fault;
+    accused_nameless: the same without a declared scheme.
 
     skipped: faults that need an integrator that it does not have.
     """
@@ -56,6 +60,7 @@ class EngineMatrix:
     integrators: tuple[str, ...]
     sound: int
     accused: int
+    accused_nameless: int
     skipped: tuple[str, ...]
     published_accuse: tuple[str, ...]
     rows: tuple[Detection, ...]
@@ -82,6 +87,8 @@ def engine_matrix(engine: str, pool: Pool, bodies: int) -> EngineMatrix:
     has = OF_ENGINE if any(i.orders["attitude"] == 4 for i in chosen) else frozenset()
     count = SOUND * bodies
     accused = sum(_fails(pool, pool.prepare(n), engine, sound) for n in range(count))
+    bare, without = Nameless(sound), nameless_integrators(sound)
+    accused_bare = sum(_fails(pool, pool.prepare(n), engine, bare, without) for n in range(count))
     usable = [check for check in PUBLISHED if check.integrator_of(sound)]
     accusing = tuple(c.name for c in usable if _score(c, sound, sound, pool.seed, bodies) > 0.0)
     missing = [one.name for one in ORDERED if not one.needs & OF_ENGINE <= has]
@@ -89,12 +96,18 @@ def engine_matrix(engine: str, pool: Pool, bodies: int) -> EngineMatrix:
     names = tuple(integrator.name for integrator in chosen)
     version = sound.description.version
     return EngineMatrix(
-        engine, version, names, count, accused, tuple(missing), accusing, tuple(rows)
+        engine, version, names, count, accused, accused_bare, tuple(missing), accusing, tuple(rows)
     )
 
 
-def _fails(pool: Pool, prepared: Prepared, engine: str, adapter: Adapter) -> bool:
-    found = judge(pool, prepared, engine, adapter)
+def _fails(
+    pool: Pool,
+    prepared: Prepared,
+    engine: str,
+    adapter: Adapter,
+    integrators: tuple[Integrator, ...] = (),
+) -> bool:
+    found = judge(pool, prepared, engine, adapter, integrators)
     return bool(found.failed) or bool(found.broken)
 
 
@@ -116,10 +129,21 @@ def detection(fault: Fault, engine: str, pool: Pool, bodies: int) -> Detection:
         gates={gate: sum(gate in one.failed for _, one in judged) / count for gate in GATES},
         any=sum(bool(one.failed) for _, one in judged) / count,
         named=sum(_named(fault, pool.prepare(n), one) for n, one in judged) / count,
+        no_scheme=_caught_nameless(fault, engine, pool, numbers),
         published={
             check.name: _published(check, fault, engine, pool, bodies) for check in PUBLISHED
         },
     )
+
+
+def _caught_nameless(fault: Fault, engine: str, pool: Pool, numbers: list[int]) -> float:
+    """The share of bodies on which the fault is caught without a declared scheme."""
+    sound = build_adapter(BUILT_IN[engine])
+    adapter, integrators = Nameless(fault.wrap(sound)), nameless_integrators(sound)
+    adapter.load(pool.prepare(numbers[-1] + 1).case.system)
+    found = [judge(pool, pool.prepare(n), engine, adapter, integrators) for n in numbers]
+    judged = [one for one in found if not one.broken]
+    return sum(bool(one.failed) for one in judged) / max(1, len(judged))
 
 
 def _named(fault: Fault, prepared: Prepared, judgement: Judgement) -> bool:

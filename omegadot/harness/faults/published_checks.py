@@ -173,7 +173,7 @@ PUBLISHED = (
         "Drake",
         "state and accelerations within 32 and 256 eps at the start; then rotation, position and "
         "velocity within (1 + 1024 t/T) 1e-3, omega twice, accelerations 8 times that, T = 10 s; a "
-        "cylinder, omega = (2, 4, 6), 16 steps a turn",
+        "cylinder of 0.04, 0.04 and 0.02 kg m^2, omega = (2, 4, 6), 16 steps a turn",
         "RobotLocomotion/drake multibody/benchmarks/free_body/test/multibody_plant_free_body_test"
         ".cc, testNumericalIntegration",
         frozenset({"free", "torque-free", "gravity", "fast", "order-4"}),

@@ -66,6 +66,15 @@ def asleep_below(rate: float) -> End:
     return end
 
 
+def clipped_at(rate: float) -> End:
+    """Each component of omega is held within a rate in rad/s."""
+
+    def end(before: State, after: State, dt: float | Array) -> State:
+        return replace(after, angular_velocity=np.clip(after.angular_velocity, -rate, rate))
+
+    return end
+
+
 def held_below(rate: float) -> End:
     """Omega is scaled down to a rate in rad/s."""
 

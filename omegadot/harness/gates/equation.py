@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from omegadot.reference_impl.motion import (
     inverse_dynamics,
 )
 from omegadot.reference_impl.precision import cast, extended, extended_state
+from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 GATE = "equation"
@@ -89,6 +91,25 @@ def forward_rows(system: System, states: State, found: Acceleration, metric: str
         _row("omega_dot", metric, angular, size, scale.largest / scale.smallest),
         _row("linear_momentum", metric, linear, linear_size(system, states, true)),
     ]
+
+
+def told_rows(system: System, states: State, omega_dot: Array) -> list[Row]:
+    """The omega-dot told along a run, against equation (8) at the very states that it tells.
+
+    States that are not finite, or whose squares overflow, have no omega-dot to be held against.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        rate = norm(states.angular_velocity) ** 2
+    kept = np.isfinite(rate) & np.isfinite(norm(states.orientation)) & np.isfinite(norm(omega_dot))
+    if not kept.any():
+        return []
+    sound = State(*(values[kept] for values in vars(states).values()))
+    unit = replace(sound, orientation=normalize(sound.orientation))
+    true = forward_dynamics(extended(system), extended_state(unit))
+    scale = body_scale(system)
+    size = torque_size(system, unit, true) / scale.largest
+    apart = norm(omega_dot[kept] - true.angular)
+    return [_row("omega_dot", "residual_in_run", apart, size, scale.largest / scale.smallest)]
 
 
 def inverse_rows(system: System, states: State, asked: Acceleration, torque: Array) -> list[Row]:

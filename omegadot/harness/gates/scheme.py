@@ -20,7 +20,7 @@ from omegadot.harness.gates.course import (
 from omegadot.harness.likeness import Likeness, like_schemes, likeness
 from omegadot.harness.rows import Row
 from omegadot.harness.truth import Truth
-from omegadot.harness.verdicts import ORDER_TOLERANCE
+from omegadot.harness.verdicts import ORDER_TOLERANCE, is_whole
 from omegadot.reference_impl.body_origin import is_offset
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
@@ -113,6 +113,8 @@ def _held_to(order: Seen, declared: int | None, explained: bool) -> tuple[str, s
         return "pass", ""
     if order.limit >= declared - ORDER_TOLERANCE:
         return "info", f"not settled: the slopes are heading for {order.limit:.2f}"
+    if not is_whole(order.value):
+        return "info", f"not settled: observed order {order.value:.2f}, declared {declared}"
     if explained:
         return "info", "below the declared order, as the scheme itself is on this motion"
     return "fail", f"observed order {order.value:.2f}, declared {declared}"

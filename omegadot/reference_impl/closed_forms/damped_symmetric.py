@@ -1,8 +1,15 @@
 """Angular velocity of a free symmetric body that viscous friction slows down.
 
-The attitude of such a body is no elementary function (its spinor obeys a confluent hypergeometric
-equation) and is left to the series; a spin about a principal axis and a sphere are in
-``fixed_axis.py``.
+The attitude of such a body is left to the series. With ``s = e^(-d t/I_c)`` and ``ρ = I_c/I_a`` its
+Cayley-Klein parameters, turned back by half the spin, obey
+
+    s² A'' + s (1 - ρ - iρσ s) A' + (w s^ρ)² A = 0,  σ = I_c ω_c(0)/d,  w = I_c |ω_⊥(0)|/2d,
+
+by elimination from ``2 q̇ = q ω``. The sphere, ρ = 1, makes that elementary, ρ = 1/2 Kummer's
+equation, and the flat disc, ρ = 2, a biconfluent Heun equation (DLMF 31.12.3), whose solutions are
+themselves known by their series only. In general the powers s and s^ρ at the irregular point at
+infinity do not go together and no standard function solves it. Spin about a principal axis and
+spheres are in ``fixed_axis.py``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Constants to eighty digits.
+"""Constants to eighty digits, and to thirty-two once nothing can cancel any more.
 
 A closed form has few constants and many times. The constants (moduli, periods, rates, phases) are
 worked out in decimal arithmetic from the inputs taken as exact, so that nothing in them cancels
@@ -18,9 +18,11 @@ from decimal import (
     DivisionByZero,
     InvalidOperation,
     Overflow,
+    getcontext,
     localcontext,
 )
 from functools import cache
+from math import isqrt
 from typing import TypeAlias
 
 import numpy as np
@@ -28,6 +30,7 @@ import numpy as np
 from omegadot.reference_impl.system import Array
 
 PRECISION = 80
+_FEWER = 32  # a phase that is good to a double's digits after 1e6 turns needs 23
 ZERO, ONE, TWO, HALF = Decimal(0), Decimal(1), Decimal(2), Decimal("0.5")
 EPSILON = Decimal(2) ** -52  # of double precision
 INFINITY = Decimal("Infinity")
@@ -49,6 +52,19 @@ def many_digits() -> Iterator[None]:
     """Decimal arithmetic in here has eighty digits and no practical limit of the exponent."""
     with localcontext(_CONTEXT):
         yield
+
+
+@contextmanager
+def fewer_digits() -> Iterator[None]:
+    """Thirty-two digits, for what follows without cancellation from amplitudes and moduli."""
+    with localcontext(_CONTEXT) as context:
+        context.prec = _FEWER
+        yield
+
+
+def least(share: int) -> Decimal:
+    """``10^(-digits/share)``: what is negligible when it enters with the power ``share``."""
+    return ONE.scaleb(-getcontext().prec // share)
 
 
 def exact(values: Array) -> Row:
@@ -101,7 +117,8 @@ def cos_sin(x: Decimal) -> tuple[Decimal, Decimal]:
     """``(cos x, sin x)`` by the power series of exp(ix/16), squared four times."""
     y = x / 16
     real, imaginary, term, n = ONE, ZERO, ONE, 0
-    while n < 4 or abs(term) > RESOLUTION / 10**5:
+    negligible = least(1)
+    while n < 4 or abs(term) > negligible:
         n += 1
         term = term * y / n
         sign = -1 if n % 4 in (2, 3) else 1
@@ -125,32 +142,46 @@ def multiples(x: Decimal, count: int) -> list[tuple[Decimal, Decimal]]:
 
 
 def agm(a: Decimal, b: Decimal) -> Decimal:
-    """Arithmetic-geometric mean of positive numbers, DLMF 19.8.1; zero where one of them is."""
+    """Arithmetic-geometric mean of positive numbers, DLMF 19.8.1; zero where one of them is.
+
+    The mean of a and b is off by ``(a - b)² / 16a`` at most.
+    """
     if a == 0 or b == 0:
         return ZERO
-    while abs(a - b) > RESOLUTION * a:
-        a, b = (a + b) / 2, (a * b).sqrt()
-    return (a + b) / 2
+    close = least(2)
+    while abs(a - b) > close * a:
+        a, b = (a + b) * HALF, (a * b).sqrt()
+    return (a + b) * HALF
 
 
 def carlson_rf(x: Decimal, y: Decimal, z: Decimal) -> Decimal:
     """``R_F(x, y, z)`` for non-negative x, y, z, at most one of them zero.
 
-    Duplication, DLMF 19.26.18, until the spread is below 1e-10, then the expansion DLMF 19.36.1
-    in the elementary symmetric functions, whose first omitted terms are of its eighth power.
+    Duplication, DLMF 19.26.18, until the spread is below an eighth of the digits, then the
+    expansion DLMF 19.36.1 in the elementary symmetric functions, whose first omitted terms are of
+    its eighth power.
     (Carlson, Numerical computation of real or complex elliptic integrals, Numer. Algorithms 10
-    (1995) 13-26, section 2.)
+    (1995) 13-26, section 2.) The duplication runs in whole numbers, of more than twice the digits
+    so that a small argument keeps its own, because their square roots are so much the faster.
     """
-    while True:
-        a = (x + y + z) / 3
-        dx, dy = ONE - x / a, ONE - y / a
-        if max(abs(dx), abs(dy), abs(dx + dy)) < Decimal("1e-10"):
-            break
+    digits = getcontext().prec
+    while sorted((x, y, z))[1] < least(2) * max(x, y, z):  # too small for whole numbers, for now
         sx, sy, sz = x.sqrt(), y.sqrt(), z.sqrt()
-        shift = sx * sy + sy * sz + sz * sx
-        x, y, z = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4
+        added = sx * sy + sy * sz + sz * sx
+        x, y, z = (x + added) / 4, (y + added) / 4, (z + added) / 4
+    top = max(x, y, z)
+    one, rest = 1 << 8 * digits, 10 ** -(-digits // 8)
+    a, b, c = (int(value / top * one) for value in (x, y, z))
+    while True:
+        mean = (a + b + c) // 3
+        if max(abs(a - mean), abs(b - mean), abs(c - mean)) * rest < mean:
+            break
+        sa, sb, sc = isqrt(a * one), isqrt(b * one), isqrt(c * one)
+        shift = (sa * sb + sb * sc + sc * sa) // one
+        a, b, c = (a + shift) >> 2, (b + shift) >> 2, (c + shift) >> 2
+    dx, dy = ONE - Decimal(a) / mean, ONE - Decimal(b) / mean
     dz = -(dx + dy)
     e2, e3 = dx * dy - dz * dz, dx * dy * dz
     series = ONE - e2 / 10 + e3 / 14 + e2 * e2 / 24 - 3 * e2 * e3 / 44
     series += -5 * e2**3 / 208 + 3 * e3**2 / 104 + e2**2 * e3 / 16
-    return series / a.sqrt()
+    return series / (top * mean / one).sqrt()

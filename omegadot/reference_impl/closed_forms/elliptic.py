@@ -11,6 +11,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import cached_property
+from math import exp
 
 import numpy as np
 
@@ -23,7 +25,8 @@ from omegadot.reference_impl.closed_forms.digits import (
     carlson_rf,
     pi,
 )
-from omegadot.reference_impl.closed_forms.phase import Phase, Times, unit_circle
+from omegadot.reference_impl.closed_forms.phase import Phase
+from omegadot.reference_impl.closed_forms.times import Times
 from omegadot.reference_impl.system import Array
 
 
@@ -40,8 +43,6 @@ class Modulus:
     m1: Decimal
     quarter: Decimal
     complementary: Decimal
-    nome: Decimal
-    complementary_nome: Decimal
 
     @classmethod
     def of(cls, m: Decimal, m1: Decimal) -> Modulus:
@@ -53,9 +54,17 @@ class Modulus:
             m1,
             half_pi / mean if mean else INFINITY,
             half_pi / complementary_mean if complementary_mean else INFINITY,
-            (-pi() * mean / complementary_mean).exp() if complementary_mean else ZERO,
-            (-pi() * complementary_mean / mean).exp() if mean else ZERO,
         )
+
+    @cached_property
+    def nome(self) -> Decimal:
+        """The nome q, zero where m is, one on the separatrix."""
+        return (-pi() * self.complementary / self.quarter).exp() if self.m else ZERO
+
+    @cached_property
+    def complementary_nome(self) -> Decimal:
+        """The complementary nome q1, zero on the separatrix, one where m is zero."""
+        return (-pi() * self.quarter / self.complementary).exp() if self.m1 else ZERO
 
     @property
     def hyperbolic(self) -> bool:
@@ -77,7 +86,16 @@ class CircularFrame:
     sine: Array
     cosine: Array
     square: Array
-    turn: float = 0.0
+
+    @property
+    def bases(self) -> tuple[Array, Array]:
+        """What the series are polynomials of."""
+        return self.square, self.square
+
+    @property
+    def odd_even(self) -> tuple[Array, Array, Array]:
+        """The factors that turn their sign with u, at the half period, and their product."""
+        return self.sine, self.cosine, self.sine * self.cosine
 
 
 @dataclass(frozen=True)
@@ -93,6 +111,16 @@ class HyperbolicFrame:
     side: Array
     sign: Array
     turn: Array
+
+    @property
+    def bases(self) -> tuple[Array, Array]:
+        """What the series are polynomials of."""
+        return self.far, self.near
+
+    @property
+    def odd_even(self) -> tuple[Array, Array, Array]:
+        """The factors that turn their sign with u, at the half period, and their product."""
+        return self.side * self.sign, self.sign, self.side
 
 
 @dataclass(frozen=True)
@@ -122,7 +150,7 @@ class Clock:
     def read(self, times: Times) -> CircularFrame | HyperbolicFrame:
         """The frame at the times."""
         if not self.hyperbolic:
-            circle = unit_circle(self.phase.modulo(times))
+            circle = self.phase.circle(times)
             sine = circle.imag.copy()
             return CircularFrame(sine, circle.real.copy(), sine * sine)
         if np.isinf(self.span):
@@ -132,8 +160,9 @@ class Clock:
             return HyperbolicFrame(near, nothing, np.copysign(1.0, u), nothing + 1.0, nothing)
         whole, turn = self.phase.reduced(times)
         distance = np.abs(turn)
-        near = np.exp(-self.span * distance)
-        far = np.exp(self.span * (distance - 0.5))
+        distance *= -self.span
+        near = np.exp(distance, out=distance)
+        far = exp(-0.5 * self.span) / near
         # n mod 2 by arithmetic: |n/2 - rint(n/2)| is 0 or 1/2
         whole *= 0.5
         whole -= np.rint(whole)

@@ -13,6 +13,7 @@ from omegadot.reference_impl.closed_forms.digits import (
     apply,
     cross,
     dot,
+    fewer_digits,
 )
 from omegadot.reference_impl.closed_forms.elliptic import Modulus
 from omegadot.reference_impl.closed_forms.principal_axes import principal_axes
@@ -88,25 +89,26 @@ def _in_frame(
     difference = high - low
     if difference <= RESOLUTION * high:
         difference = ZERO
-    parameter = ab * wide / (bc * tall)
-    modulus = Modulus.of(parameter, ac * difference / (bc * tall))
-    square = dot(moments, [i * x * x for i, x in zip(moments, w, strict=True)])
-    sine = (about[1] / wide).sqrt().copy_sign(w[1] * turn)
-    return Constants(
-        axes=frame,
-        inertia=moments,
-        amplitude=[
-            (wide / (i_a * ac)).sqrt(),
-            turn * (wide / (i_b * bc)).sqrt(),
-            (tall / (i_c * ac)).sqrt(),
-        ],
-        modulus=modulus,
-        rate=(bc * tall / (i_a * i_b * i_c)).sqrt(),
-        start=modulus.argument(sine, about[0] / wide, about[3] / tall),
-        momentum=square.sqrt(),
-        turn=turn,
-        complement=i_a * wide / (ac * square),
-    )
+    with fewer_digits():
+        parameter = ab * wide / (bc * tall)
+        modulus = Modulus.of(parameter, ac * difference / (bc * tall))
+        square = dot(moments, [i * x * x for i, x in zip(moments, w, strict=True)])
+        sine = (about[1] / wide).sqrt().copy_sign(w[1] * turn)
+        return Constants(
+            axes=frame,
+            inertia=moments,
+            amplitude=[
+                (wide / (i_a * ac)).sqrt(),
+                turn * (wide / (i_b * bc)).sqrt(),
+                (tall / (i_c * ac)).sqrt(),
+            ],
+            modulus=modulus,
+            rate=(bc * tall / (i_a * i_b * i_c)).sqrt(),
+            start=modulus.argument(sine, about[0] / wide, about[3] / tall),
+            momentum=square.sqrt(),
+            turn=turn,
+            complement=i_a * wide / (ac * square),
+        )
 
 
 def _cleared(w: Row) -> Row:

@@ -6,6 +6,7 @@ from math import factorial
 
 import numpy as np
 
+from omegadot.reference_impl.closed_forms.arcs import unit_circle
 from omegadot.reference_impl.closed_forms.digits import (
     RESOLUTION,
     ZERO,
@@ -18,7 +19,6 @@ from omegadot.reference_impl.closed_forms.digits import (
     exact_matrix,
     many_digits,
 )
-from omegadot.reference_impl.closed_forms.phase import Times, unit_circle
 from omegadot.reference_impl.closed_forms.problem import (
     IDENTITY,
     UPRIGHT,
@@ -30,6 +30,7 @@ from omegadot.reference_impl.closed_forms.problem import (
     place,
     product,
 )
+from omegadot.reference_impl.closed_forms.times import Times
 from omegadot.reference_impl.system import Array, State, System
 
 

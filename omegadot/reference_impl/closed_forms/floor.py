@@ -27,16 +27,17 @@ def floor_of(problem: Problem, times: Array) -> Floor:
 
     A double stands for all numbers that round to it. Each number of the problem is moved by one
     relative eps up and down, the closed form is evaluated anew, the greater of the two distances is
-    taken and the distances of all numbers are added; the rounding of the answer itself, half an eps
-    per component, is added once. Nothing is linearised: where one rounding of an input takes
+    taken and the distances of all numbers are added. The rounding of the answer itself is added once:
+    a component is an amplitude times a function of time, so that three values are rounded, each by
+    half an eps. Nothing is linearised: where one rounding of an input takes
     the body across the separatrix the floor is as large as the motion, as it should be. Zeros are
     exact.
     """
     exactly = problem.solve(problem.numbers)
     q, w = exactly(times)
-    half_eps = 0.5 * np.finfo(float).eps
-    angular_velocity = half_eps * np.linalg.norm(w, axis=-1)
-    attitude = np.full(times.shape, 2 * half_eps)
+    rounded = 3 * 0.5 * np.finfo(float).eps
+    angular_velocity = rounded * np.linalg.norm(w, axis=-1)
+    attitude = np.full(times.shape, 2 * rounded)
     for index, number in enumerate(problem.numbers):
         if number == 0:
             continue

@@ -14,12 +14,9 @@ derived from ``dψ/dt = (2T + L ω_c) / (L + I_c ω_c)``.
 
 from __future__ import annotations
 
-from decimal import Decimal
-
 import numpy as np
 
 from omegadot.reference_impl.closed_forms.digits import (
-    ONE,
     ZERO,
     Matrix,
     Row,
@@ -27,12 +24,13 @@ from omegadot.reference_impl.closed_forms.digits import (
     doubles,
     exact,
     exact_matrix,
+    fewer_digits,
     many_digits,
     pi,
 )
-from omegadot.reference_impl.closed_forms.elliptic import Clock
-from omegadot.reference_impl.closed_forms.euler_poinsot import Constants, constants_of
-from omegadot.reference_impl.closed_forms.phase import Phase, Times, unit_circle
+from omegadot.reference_impl.closed_forms.euler_poinsot import constants_of
+from omegadot.reference_impl.closed_forms.free_rotation_course import course_of
+from omegadot.reference_impl.closed_forms.phase import Phase
 from omegadot.reference_impl.closed_forms.problem import (
     IDENTITY,
     UPRIGHT,
@@ -44,11 +42,7 @@ from omegadot.reference_impl.closed_forms.problem import (
     place,
     quaternion_of,
 )
-from omegadot.reference_impl.closed_forms.shifted_theta import (
-    ShiftedTheta,
-    theta4_of_double_lattice,
-)
-from omegadot.reference_impl.closed_forms.theta import jacobi
+from omegadot.reference_impl.closed_forms.times import Times
 from omegadot.reference_impl.system import Array, State, System
 
 
@@ -78,9 +72,12 @@ def _solve(numbers: Row) -> Motion:
         constants = constants_of(*inertia_and_omega(numbers))
         if constants is None:
             return place(uniform(numbers[6:9]), IDENTITY, UPRIGHT, orientation)
-        scales = [constants.momentum / moment for moment in constants.inertia]
-        turning = [[s * x for x in row] for s, row in zip(scales, constants.axes, strict=True)]
-        return place(_course(constants), turning, quaternion_of(constants.axes), orientation)
+    with fewer_digits():
+        order = (2, 0, 1)  # c, a, b
+        axes = [constants.axes[i] for i in order]
+        scales = [constants.momentum / constants.inertia[i] for i in order]
+        turning = [[s * x for x in row] for s, row in zip(scales, axes, strict=True)]
+        return place(course_of(constants), turning, quaternion_of(axes), orientation)
 
 
 def inertia_and_omega(numbers: Row) -> tuple[Matrix, Row]:
@@ -97,69 +94,9 @@ def uniform(omega: Row) -> Course:
     w = doubles(omega)[:, None]
 
     def course(times: Times, vector: Array, q: Array) -> None:
-        circle = unit_circle(angle.modulo(times))
+        circle = angle.circle(times)
         q[0] = circle.real
         np.multiply(circle.imag, direction, out=q[1:])
         vector[:] = w
-
-    return course
-
-
-def mean_rate(c: Constants, theta: ShiftedTheta) -> Decimal:
-    """Mean rate, rad/s, of the angle ψ about the momentum.
-
-    ``dψ/dt = L / I_c ± rate G``, ``G = √((1-κ²)(1-m1 κ²)) / (κ (1 + κ dn u))``. G has the residues
-    ``±i`` of ``-2 d arg Θ / du`` at its poles ``dn u = -1/κ``, from which it differs by a constant.
-    """
-    kappa = c.inertia[2] * c.amplitude[2] / c.momentum
-    root = (c.complement * (c.complement + c.modulus.m * kappa**2)).sqrt()
-    constant = root / (kappa * (ONE + kappa)) + 2 * (theta.slope - theta.gain)
-    return c.momentum / c.inertia[2] + c.turn * c.rate * constant
-
-
-def encircling_theta(c: Constants) -> ShiftedTheta:
-    """The theta function of the attitude: its zeros are the points where ``dn u = -1/κ``.
-
-    With ``dn u = -1/κ`` at ``i (K' + d)``: ``sn(d, m1) = κ``, so ``d = κ R_F(1-κ², 1-m1 κ², 1)``.
-    """
-    kappa = c.inertia[2] * c.amplitude[2] / c.momentum
-    complementary = c.complement + c.modulus.m * kappa**2
-    return theta4_of_double_lattice(
-        c.modulus, c.modulus.argument(kappa, c.complement, complementary)
-    )
-
-
-def _course(c: Constants) -> Course:
-    """The direction of the momentum and the attitude, both in the frame of the constants."""
-    theta = encircling_theta(c)
-    clock = Clock.of(c.modulus, c.rate, c.start)
-    angle = Phase.of(mean_rate(c, theta) / (4 * pi()), ZERO)
-    functions = jacobi(c.modulus, *[c.inertia[i] * c.amplitude[i] / c.momentum for i in (1, 0, 2)])
-    skew, opposite = c.turn * theta.skew, c.turn < 0
-
-    def course(times: Times, h: Array, q: Array) -> None:
-        frame = clock.read(times)
-        h_b, h_a, h_c = functions(frame)
-        turns = angle.modulo(times)
-        if skew:
-            turns += skew * frame.turn
-        spin = unit_circle(turns)
-        value = theta.value(frame)
-        # exp(iψ/2) is exp(2πi turns) Θ*/|Θ| where c has the greatest inertia, else it has Θ
-        spin *= value if opposite else np.conjugate(value, out=value)
-        h[0], h[1], h[2] = h_a, h_b, h_c
-        h_c += 1.0
-        scale = value.real * value.real
-        scale += value.imag * value.imag
-        scale *= h_c
-        np.divide(0.5, scale, out=scale)
-        np.sqrt(scale, out=scale)
-        c0, c3 = scale * spin.real, scale * spin.imag
-        np.multiply(c0, h_c, out=q[0])
-        np.multiply(c3, h_c, out=q[3])
-        np.multiply(c0, h_b, out=q[1])
-        q[1] += c3 * h_a
-        np.multiply(c3, h_b, out=q[2])
-        q[2] -= c0 * h_a
 
     return course

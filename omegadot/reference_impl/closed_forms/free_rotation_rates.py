@@ -11,11 +11,10 @@ import numpy as np
 from omegadot.reference_impl.closed_forms.digits import many_digits
 from omegadot.reference_impl.closed_forms.euler_poinsot import Constants, constants_of
 from omegadot.reference_impl.closed_forms.free_rotation import (
-    encircling_theta,
     free_rotation_of,
     inertia_and_omega,
-    mean_rate,
 )
+from omegadot.reference_impl.closed_forms.free_rotation_course import encircling_theta, mean_rate
 from omegadot.reference_impl.system import Array, State, System
 
 

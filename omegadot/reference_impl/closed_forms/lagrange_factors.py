@@ -9,14 +9,16 @@ from decimal import Decimal
 import numpy as np
 
 from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, pi
+from omegadot.reference_impl.closed_forms.elliptic import HyperbolicFrame
 from omegadot.reference_impl.closed_forms.lagrange_constants import Nutation, Top
-from omegadot.reference_impl.closed_forms.phase import Phase, Times, unit_circle
+from omegadot.reference_impl.closed_forms.phase import Phase
 from omegadot.reference_impl.closed_forms.shifted_theta import ShiftedTheta
 from omegadot.reference_impl.closed_forms.shifted_theta_single import (
     theta1_quotient,
     theta2_quotient,
 )
 from omegadot.reference_impl.closed_forms.theta import Frame
+from omegadot.reference_impl.closed_forms.times import Times
 from omegadot.reference_impl.system import Array
 
 
@@ -41,10 +43,8 @@ class Factor:
         scale = float(self.scale)
 
         def value(times: Times, frame: Frame) -> Array:
-            turns = angle.modulo(times)
-            if skew:
-                turns += skew * frame.turn
-            spin = unit_circle(turns)
+            more = skew * frame.turn if isinstance(frame, HyperbolicFrame) else None
+            spin = angle.circle(times, more)
             theta = self.theta.value(frame)
             spin *= theta if self.opposite else np.conjugate(theta, out=theta)
             spin *= scale

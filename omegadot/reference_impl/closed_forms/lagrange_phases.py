@@ -10,8 +10,8 @@ import numpy as np
 from omegadot.reference_impl.closed_forms.digits import ONE
 from omegadot.reference_impl.closed_forms.elliptic import Clock
 from omegadot.reference_impl.closed_forms.lagrange_constants import Nutation, Top
-from omegadot.reference_impl.closed_forms.phase import Times
 from omegadot.reference_impl.closed_forms.theta import Frame
+from omegadot.reference_impl.closed_forms.times import Times
 from omegadot.reference_impl.system import Array
 
 
@@ -23,7 +23,7 @@ def phases_of(
     A factor that is nearly zero there has no phase to tell: then it follows from the other two by
     ``ω_1 + iω_2 = 2 β α* (i (b - a u) - u̇) / (1 - u²)``, taken where none of them vanishes.
     """
-    zero = Times.of(np.zeros(1))
+    zero = Times(np.zeros(1))
     known = [complex(*map(float, pair)) for pair in (top.alpha, top.beta, top.across)]
     found = [complex(c(zero, clock.read(zero))[0]) for c in courses]
     greatest = [1.0, 1.0, float((n.strength * (n.height - n.roots[0])).sqrt())]
@@ -33,7 +33,7 @@ def phases_of(
     if sizes[least] > 0.01:
         return phases
     argument, bracket = _midway(n)
-    away = Times.of(np.array([float((argument - n.start) / n.rate)]))
+    away = Times(np.array([float((argument - n.start) / n.rate)]))
     alpha, beta, across = (complex(c(away, clock.read(away))[0]) for c in courses)
     relation = across * (beta * alpha.conjugate() * bracket).conjugate()
     relation /= abs(relation)

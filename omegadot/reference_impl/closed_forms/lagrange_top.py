@@ -38,10 +38,8 @@ from omegadot.reference_impl.closed_forms.lagrange_constants import (
 )
 from omegadot.reference_impl.closed_forms.lagrange_factors import factors_of
 from omegadot.reference_impl.closed_forms.lagrange_phases import phases_of
-from omegadot.reference_impl.closed_forms.phase import Times
 from omegadot.reference_impl.closed_forms.problem import (
     IDENTITY,
-    UNITS,
     UPRIGHT,
     Course,
     Motion,
@@ -50,8 +48,9 @@ from omegadot.reference_impl.closed_forms.problem import (
     inertia_about,
     lever_of,
     place,
-    product,
+    placing_of,
 )
+from omegadot.reference_impl.closed_forms.times import Times
 from omegadot.reference_impl.system import Array, State, System
 
 
@@ -91,8 +90,8 @@ def _solve(numbers: Row) -> Motion:
         nutation = nutation_of(top)
         if nutation is None:
             return place(uniform(numbers[9:12]), IDENTITY, UPRIGHT, numbers[12:16])
-        rows = [product(product(top.world, unit), top.body) for unit in UNITS]
-        return Placed(_course(top, nutation), np.array(top.axes, float), np.array(rows, float))
+        placing = placing_of(top.world, top.body)
+        return Placed(_course(top, nutation), np.array(top.axes, float), placing)
 
 
 def _course(top: Top, n: Nutation) -> Course:

@@ -9,17 +9,20 @@ from typing import TypeAlias
 import numpy as np
 
 from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, Matrix, Row, dot, exact
-from omegadot.reference_impl.closed_forms.phase import Times
+from omegadot.reference_impl.closed_forms.times import COLUMNS, Times, chunks
 from omegadot.reference_impl.system import Array, Body, Load
 
 # Times (n,) s to the attitude (n, 4) and the angular velocity (n, 3) rad/s, body frame.
 Motion: TypeAlias = Callable[[Array], tuple[Array, Array]]
 
 # The same in a frame of its own, ready to be placed: a vector and a quaternion, written to the
-# given arrays (3, n) and (4, n).
+# given arrays (3, n) and (4, n). The second one's transpose is contiguous.
 Course: TypeAlias = Callable[[Times, Array, Array], None]
 
-_CHUNK = 8000  # times worked at once: intermediate arrays stay in the cache and below 128 KB
+_LARGE_PAGE = 2**21  # bytes, on Linux
+_CHUNK = (
+    15 * COLUMNS
+)  # times worked at once: intermediate arrays stay in the cache and below 128 KB
 
 
 @dataclass(frozen=True)
@@ -49,17 +52,29 @@ class Placed:
 
     def __call__(self, times: Array) -> tuple[Array, Array]:
         """Attitude (n, 4) and angular velocity (n, 3)."""
-        both = np.empty(7 * times.size)  # one block, so that large ones get large pages
+        both = _block(7 * times.size)
         orientation = both[: 4 * times.size].reshape(-1, 4)
         angular_velocity = both[4 * times.size :].reshape(-1, 3)
-        vectors, quaternions = np.empty((3, _CHUNK)), np.empty((4, _CHUNK))
-        for first in range(0, times.size, _CHUNK):
-            part = slice(first, min(first + _CHUNK, times.size))
-            w, q = vectors[:, : part.stop - first], quaternions[:, : part.stop - first]
-            self.course(Times.of(times[part]), w, q)
+        vectors, quaternions = np.empty((3, _CHUNK)), np.empty((_CHUNK, 4))
+        for part, moments in chunks(times, _CHUNK):
+            w, q = vectors[:, : moments.value.size], quaternions[: moments.value.size]
+            self.course(moments, w, q.T)
             np.matmul(w.T, self.turning, out=angular_velocity[part])
-            np.matmul(q.T, self.placing, out=orientation[part])
+            np.matmul(q, self.placing, out=orientation[part])
         return orientation, angular_velocity
+
+
+def _block(size: int) -> Array:
+    """An array of its own; a large one from the bounds of large pages on, for which NumPy asks.
+
+    In small pages its page faults would take longer than the samples do.
+    """
+    large = _LARGE_PAGE // 8
+    if size < 2 * large:
+        return np.empty(size)
+    room = np.empty(-(-size // large) * large + large)
+    first = -room.ctypes.data % _LARGE_PAGE // 8
+    return room[first : first + size]
 
 
 def place(course: Course, turning: Matrix, frame: Row, orientation: Row) -> Placed:
@@ -68,16 +83,21 @@ def place(course: Course, turning: Matrix, frame: Row, orientation: Row) -> Plac
     frame: the quaternion of frame-from-body.  Attitudes are ``W q(t) frame``, with the constant W
     such that the first one is ``orientation``.
     """
-    q = np.empty((4, 1))
-    course(Times.of(np.zeros(1)), np.empty((3, 1)), q)
+    q = np.empty((1, 4)).T
+    course(Times(np.zeros(1)), np.empty((3, 1)), q)
     body = product(exact(q), frame)
     start = [x / dot(orientation, orientation).sqrt() for x in orientation]
     world = product(start, [body[0], -body[1], -body[2], -body[3]])
-    rows = [product(product(world, unit), frame) for unit in UNITS]
-    return Placed(course, np.array(turning, float), np.array(rows, float))
+    return Placed(course, np.array(turning, float), placing_of(world, frame))
 
 
-UNITS: Matrix = [[ONE if i == j else ZERO for j in range(4)] for i in range(4)]
+def placing_of(world: Row, frame: Row) -> Array:
+    """The matrix of ``q -> world q frame``, (4, 4), by rows: the images of 1, i, j and k."""
+    a, b, c, d = world
+    units = [a, b, c, d], [-b, a, d, -c], [-c, -d, a, b], [-d, c, -b, a]
+    return np.array([product(unit, frame) for unit in units], float)
+
+
 IDENTITY: Matrix = [[ONE if i == j else ZERO for j in range(3)] for i in range(3)]
 UPRIGHT: Row = [ONE, ZERO, ZERO, ZERO]
 

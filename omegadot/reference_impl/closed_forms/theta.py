@@ -7,10 +7,12 @@ out with many digits and rounded once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
+from itertools import zip_longest
+from operator import mul
 from typing import TypeAlias
 
 import numpy as np
@@ -24,11 +26,10 @@ from omegadot.reference_impl.closed_forms.elliptic import (
 from omegadot.reference_impl.system import Array
 
 Frame: TypeAlias = CircularFrame | HyperbolicFrame
-Jacobi: TypeAlias = Callable[[Frame], tuple[Array, Array, Array]]
 
 TERMS = 9  # the ninth term of every series here is below 1e-20 of the first
 _NEGLIGIBLE = Decimal("1e-18")
-_UNFELT = Decimal("1e-30")  # of the largest term; the polynomials' own coefficients stay below 1e6
+_LEAST = Decimal("1e-24")
 
 
 @dataclass(frozen=True)
@@ -59,10 +60,11 @@ class Polynomial:
         return value
 
 
-def jacobi(modulus: Modulus, sn: Decimal, cn: Decimal, dn: Decimal) -> Jacobi:
-    """``(sn · sn u, cn · cn u, dn · dn u)``, the factors given, as a function of a clock's frame.
+def jacobi_rows(modulus: Modulus, sn: Decimal, cn: Decimal, dn: Decimal) -> list[tuple[Row, Row]]:
+    """Series of ``sn · sn u, cn · cn u, dn · dn u``, the factors given, and of what divides them.
 
-    DLMF 22.2.4-22.2.6 with the series 20.2.1-20.2.4; near the separatrix after Jacobi's imaginary
+    That is one at u = 0. The first lacks the frame's odd factor and the second its even one. DLMF
+    22.2.4-22.2.6 with the series 20.2.1-20.2.4; near the separatrix after Jacobi's imaginary
     transformation, DLMF 20.7.30-20.7.33.
     """
     return (
@@ -72,73 +74,74 @@ def jacobi(modulus: Modulus, sn: Decimal, cn: Decimal, dn: Decimal) -> Jacobi:
     )
 
 
-def _circular_jacobi(q: Decimal, sn: Decimal, cn: Decimal, dn: Decimal) -> Jacobi:
-    alternate = [(-1) ** n * ONE for n in range(TERMS)]
-    odd = [power(q, n * n + n) for n in range(TERMS)]
-    even = [ONE] + [2 * power(q, n * n) for n in range(1, TERMS)]
-    odd1 = [a * s for a, s in zip(odd, alternate, strict=True)]
-    even4 = [a * s for a, s in zip(even, alternate, strict=True)]
+def terms(q: Decimal) -> int:
+    """How many terms the series ``Σ q^(n²)`` has before they fall below 1e-24."""
+    return next(n for n in range(1, TERMS + 1) if power(q, n * n) < _LEAST)
+
+
+def _circular_jacobi(q: Decimal, sn: Decimal, cn: Decimal, dn: Decimal) -> list[tuple[Row, Row]]:
+    count = terms(q)
+    odd = [power(q, n * n + n) for n in range(count)]
+    even = [ONE] + [2 * power(q, n * n) for n in range(1, count)]
+    odd1, even4 = _alternating(odd), _alternating(even)
     theta2, theta3, theta4 = sum(odd, ZERO), sum(even, ZERO), sum(even4, ZERO)
-    denominator = _scaled(cosines(even4), 1 / theta4)
-    poly_sn = _scaled(odd_sines(odd1), sn * theta3 / (theta2 * theta4))
-    poly_cn = _scaled(odd_cosines(odd), cn / theta2)
-    poly_dn = _scaled(cosines(even), dn / theta3)
-
-    def evaluate(frame: Frame) -> tuple[Array, Array, Array]:
-        assert isinstance(frame, CircularFrame)
-        y = frame.square
-        divisor = denominator(y)
-        values = poly_sn(y), poly_cn(y), poly_dn(y)
-        for value in values:
-            value /= divisor
-        np.multiply(values[0], frame.sine, out=values[0])
-        np.multiply(values[1], frame.cosine, out=values[1])
-        return values
-
-    return evaluate
+    rows = [
+        (odd_sines(odd1), sn * theta3 / (theta2 * theta4)),
+        (odd_cosines(odd), cn / theta2),
+        (cosines(even), dn / theta3),
+        (cosines(even4), 1 / theta4),
+    ]
+    return [(_times(row, factor), [ZERO]) for row, factor in rows]
 
 
-def _hyperbolic_jacobi(q: Decimal, sn: Decimal, cn: Decimal, dn: Decimal) -> Jacobi:
-    """With a = near², g = far²: every power of q is shared out so that no exponential grows."""
-    square = [power(q, n * n) for n in range(TERMS)]
-    oblong = [power(q, n * n + n) for n in range(TERMS)]
-    shorter = [ZERO] + [power(q, n * n - n) for n in range(1, TERMS)]
-    sign = [(-1) ** n * ONE for n in range(TERMS)]
+def _hyperbolic_jacobi(q: Decimal, sn: Decimal, cn: Decimal, dn: Decimal) -> list[tuple[Row, Row]]:
+    """In powers of far and near: those of q are shared out so that no exponential grows.
+
+    ``near far = √q``, which takes the factor near of the last two into their powers.
+    """
+    count, root = terms(q) + 1, q.sqrt()  # one more: the shorter powers are n² - n
+    square = [power(q, n * n) for n in range(count)]
+    oblong = [power(q, n * n + n) for n in range(count)]
+    shorter = [ZERO] + [power(q, n * n - n) for n in range(1, count)]
     theta2 = sum(oblong, ZERO)
     theta3 = ONE + 2 * sum(square[1:], ZERO)
-    theta4 = ONE + 2 * sum((s * a for s, a in zip(sign[1:], square[1:], strict=True)), ZERO)
-    sn, cn, dn = sn * theta3 / theta4, 2 * cn * theta2 / theta4, 2 * dn * theta2 / theta3
-
-    def pair(far: Row, near: Row, factor: Decimal) -> tuple[Polynomial, Polynomial]:
-        return _scaled(far, factor), _scaled(near, factor)
-
-    signed = [[s * x for s, x in zip(sign, row, strict=True)] for row in (square, oblong, shorter)]
-    far0, near0 = pair(square, [ZERO, *oblong], ONE)
-    far1, near1 = pair(signed[0], [ZERO, *[-x for x in signed[1]]], sn)
-    far2, near2 = pair(signed[2], [ONE, *signed[0][1:]], cn)
-    far3, near3 = pair(shorter, square, dn)
-
-    def evaluate(frame: Frame) -> tuple[Array, Array, Array]:
-        assert isinstance(frame, HyperbolicFrame)
-        a, g = frame.near * frame.near, frame.far * frame.far
-        divisor = far0(g)
-        divisor += near0(a)
-        values = far1(g), far2(g), far3(g)
-        for value, near in zip(values, (near1(a), near2(a), near3(a)), strict=True):
-            value += near
-            value /= divisor
-        sides = frame.side * frame.sign
-        small = frame.near * frame.sign
-        np.multiply(values[0], sides, out=values[0])
-        np.multiply(values[1], small, out=values[1])
-        np.multiply(values[2], frame.near, out=values[2])
-        return values
-
-    return evaluate
+    theta4 = ONE + 2 * sum(_alternating(square)[1:], ZERO)
+    sn, cn, dn, one = (
+        sn * theta3 / (2 * theta2 * theta4),
+        cn / theta4,
+        dn / theta3,
+        1 / (2 * theta2),
+    )
+    crossed = [-x for x in _alternating(oblong)]
+    lower = _alternating(shorter)
+    return [
+        (_spread(_times(_alternating(square), sn), 0), _spread(_times(crossed, sn), 2)),
+        (_spread(_times(lower, cn * root), -1), _spread(_times(_alternating(square), cn), 1)),
+        (_spread(_times(shorter, dn * root), -1), _spread(_times(square, dn), 1)),
+        (_spread(_times(square, one), 0), _spread(_times(oblong, one), 2)),
+    ]
 
 
-def _scaled(coefficients: Sequence[Decimal], factor: Decimal) -> Polynomial:
-    return Polynomial.of([factor * c for c in coefficients])
+def _alternating(row: Row) -> Row:
+    return [-x if n % 2 else x for n, x in enumerate(row)]
+
+
+def scaled(rows: tuple[Row, Row], factor: Decimal) -> tuple[Row, Row]:
+    """Both parts of a series times a factor."""
+    return _times(rows[0], factor), _times(rows[1], factor)
+
+
+def _times(row: Row, factor: Decimal) -> Row:
+    return [factor * x for x in row]
+
+
+def _spread(row: Row, lowest: int) -> Row:
+    """Coefficients of ``x^(2n + lowest)`` as those of all powers of x."""
+    spread = [ZERO] * (2 * len(row) + max(lowest, 0))
+    for n, x in enumerate(row):
+        if x:
+            spread[2 * n + lowest] = x
+    return spread
 
 
 def cosines(a: Sequence[Decimal]) -> Row:
@@ -148,56 +151,55 @@ def cosines(a: Sequence[Decimal]) -> Row:
 
 def sines(a: Sequence[Decimal]) -> Row:
     """``Σ a_n sin 2nz / (sin z cos z)`` as a polynomial in y; a_0 does not matter."""
-    u = _second_kind(len(a))
-    return [2 * c for c in _combine(a[1:], u)] if len(a) > 1 else [ZERO]
+    return [2 * c for c in _combine(a[1:], _second_kind(len(a) - 1))] if len(a) > 1 else [ZERO]
 
 
 def odd_sines(a: Sequence[Decimal]) -> Row:
     """``Σ a_n sin (2n+1)z / sin z`` as a polynomial in y."""
-    return _combine(a, _neighbours(len(a), ONE))
+    return _combine(a, _neighbours(len(a), 1))
 
 
 def odd_cosines(a: Sequence[Decimal]) -> Row:
     """``Σ a_n cos (2n+1)z / cos z`` as a polynomial in y."""
-    return _combine(a, _neighbours(len(a), -ONE))
+    return _combine(a, _neighbours(len(a), -1))
 
 
-# Whole numbers that only depend on how many are wanted: formed once.
+# Whole numbers that only depend on how many are wanted: formed once, column by column. Those of
+# the polynomials of degree n are the n-th ones of each column.
 @cache
 def _first_kind(count: int) -> list[Row]:
-    return _chebyshev(count, first=(ONE, [ONE, Decimal(-2)]))
-
-
-@cache
-def _neighbours(count: int, sign: Decimal) -> list[Row]:
-    u = _second_kind(count)
-    return [u[0]] + [_add(u[n], u[n - 1], sign) for n in range(1, count)]
+    return _columns(_chebyshev(count, [1, -2]))
 
 
 @cache
 def _second_kind(count: int) -> list[Row]:
-    return _chebyshev(count, first=(ONE, [Decimal(2), Decimal(-4)]))
+    return _columns(_chebyshev(count, [2, -4]))
 
 
-def _chebyshev(count: int, first: tuple[Decimal, Row]) -> list[Row]:
+@cache
+def _neighbours(count: int, sign: int) -> list[Row]:
+    u = _chebyshev(count, [2, -4])
+    return _columns([u[0]] + [_sum(u[n], u[n - 1], sign) for n in range(1, count)])
+
+
+def _chebyshev(count: int, first: list[int]) -> list[list[int]]:
     """Chebyshev polynomials of ``cos 2z = 1 - 2y``, as polynomials in y."""
-    polynomials = [[first[0]], first[1]]
+    polynomials = [[1], first]
     while len(polynomials) < count:
         last = polynomials[-1]
-        doubled = _add([2 * c for c in last], [ZERO] + [-4 * c for c in last], ONE)
-        polynomials.append(_add(doubled, polynomials[-2], -ONE))
+        doubled = _sum([2 * c for c in last], [0] + [-4 * c for c in last], 1)
+        polynomials.append(_sum(doubled, polynomials[-2], -1))
     return polynomials[:count]
 
 
-def _add(p: Row, q: Row, factor: Decimal) -> Row:
-    size = max(len(p), len(q))
-    p, q = p + [ZERO] * (size - len(p)), q + [ZERO] * (size - len(q))
-    return [a + factor * b for a, b in zip(p, q, strict=True)]
+def _sum(p: list[int], q: list[int], factor: int) -> list[int]:
+    return [a + factor * b for a, b in zip_longest(p, q, fillvalue=0)]
 
 
-def _combine(a: Sequence[Decimal], polynomials: Sequence[Row]) -> Row:
-    total, least = [ZERO], _UNFELT * max(map(abs, a), default=ZERO)
-    for factor, polynomial in zip(a, polynomials, strict=False):
-        if abs(factor) > least:
-            total = _add(total, polynomial, factor)
-    return total
+def _columns(polynomials: list[list[int]]) -> list[Row]:
+    """The coefficients of ``y^k`` from the k-th polynomial, of degree k, onwards."""
+    return [[Decimal(p[k]) for p in polynomials[k:]] for k in range(len(polynomials))]
+
+
+def _combine(a: Sequence[Decimal], columns: list[Row]) -> Row:
+    return [sum(map(mul, a[k:], column), ZERO) for k, column in enumerate(columns)]

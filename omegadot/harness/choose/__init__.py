@@ -1,0 +1,1 @@
+"""Engine choice: requirements in, evidence out. Nothing is extrapolated into a verdict."""

@@ -1,0 +1,82 @@
+"""Causes in the samples of a sound run: rounded to digits, or of half a step before."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.harness.diagnosis.told_run import ToldRun
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.gates.equation import BOUND
+from omegadot.harness.scales import angular_size, norm
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import turn_in_body
+from omegadot.reference_impl.system import Array
+
+MOST_DIGITS = 15  # seventeen tell every double, and sixteen most
+
+
+def not_unit(told: ToldRun) -> str:
+    """The turning is sound but for the quaternion's length, which may move the places, too."""
+    length = norm(told.state.orientation)[:, None]
+    off = float(np.max(np.abs(length - 1.0)))
+    places = {"position": told.own.position, "linear_velocity": told.own.linear_velocity}
+    unit = replace(told.state, orientation=told.state.orientation / length, **places)
+    if told.agrees(replace(told.state, **places), told.own) or not told.agrees(unit, told.own):
+        return ""
+    return f"the quaternion is not of unit length in the run: it is off by up to {off:.1e}"
+
+
+def digits_told(told: ToldRun) -> str:
+    """Every number of the run is one of a few decimal digits."""
+    numbers = np.concatenate([np.ravel(values) for values in vars(told.state).values()])
+    if not np.all(np.isfinite(numbers)):
+        return ""
+    told_by = _digits(numbers)
+    own = np.concatenate([np.ravel(values) for values in vars(told.own).values()])
+    if told_by > MOST_DIGITS or _digits(own) <= told_by:
+        return ""
+    return f"the numbers of the run have {told_by} digits: they went through text"
+
+
+def _digits(numbers: Array) -> int:
+    """How many significant digits tell all of these numbers."""
+    needed = 1
+    for number in numbers.tolist():
+        while needed < MOST_DIGITS + 2 and float(f"{number:.{needed}g}") != number:
+            needed += 1
+    return needed
+
+
+def half_step(told: ToldRun) -> str:
+    """Attitude or omega, but for the start, are those of half a step before or after."""
+    h = told.sweep.timestep
+    q, w = told.own.orientation, told.own.angular_velocity
+    w_dot = forward_dynamics(told.case.system, told.own).angular
+    for sign, when in ((-0.5, "before"), (0.5, "after")):
+        turned = _but_for_the_start(q, turn_in_body(q, w, sign * h))
+        if told.agrees(told.state, replace(told.own, orientation=turned)):
+            return f"the attitude told is that of half a step {when}"
+        moved = _but_for_the_start(w, w + sign * h * w_dot)
+        if told.agrees(told.state, replace(told.own, angular_velocity=moved)):
+            return f"omega is told as of half a step {when}"
+    return ""
+
+
+def _but_for_the_start(right: Array, wrong: Array) -> Array:
+    return np.concatenate([right[:1], wrong[1:]])
+
+
+def omega_dot_late(told: ToldRun, result: CaseResult) -> str:
+    """omega-dot along the run is that of the sample before or after; the ends have none."""
+    answer = result.runs[told.integrator.name, told.sweep.timestep]
+    omega_dot = answer.result["omega_dot"][: len(told.time)]
+    system, inner = told.case.system, slice(1, -1)
+    true = forward_dynamics(system, told.state)
+    bound = BOUND * angular_size(system, told.state, true)
+    for shift, when in ((1, "before"), (-1, "after")):
+        apart = norm(np.roll(true.angular, shift, axis=0) - omega_dot)
+        if np.all(apart[inner] <= np.maximum(bound, np.roll(bound, shift))[inner]):
+            return f"the omega-dot told along the run is that of the sample {when}"
+    return ""

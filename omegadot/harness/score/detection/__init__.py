@@ -1,0 +1,1 @@
+"""Finding out which convention a trace comes in."""

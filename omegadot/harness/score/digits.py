@@ -1,0 +1,74 @@
+"""What the digits that a number is printed in leave open: half a unit of the last one.
+
+Two ways of printing are common: so many decimals, or so many significant digits. A column is
+taken for the coarser of what its most decimals and its most significant digits would leave, which
+is right for both: with fixed decimals the largest numbers have the most digits, with fixed digits
+the smallest have the most decimals. Trailing zeros that were dropped do not disturb it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from math import gcd
+
+import numpy as np
+
+from omegadot.reference_impl.system import Array
+
+EPS = float(np.finfo(float).eps)
+# Enough to have met the longest number of a column, few enough to look at one by one.
+MOST_LOOKED_AT = 4000
+# A double has this many digits that tell it from every other: it was printed whole.
+ALL_DIGITS = 16
+_NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eEdD]([+-]?\d+))?$")
+
+
+def digits_of(text: str) -> tuple[int, int]:
+    """(decimals, significant digits) of a printed number; (0, 0) of none."""
+    found = _NUMBER.match(text.strip())
+    if not found:
+        return 0, 0
+    whole, part, exponent = found.group(1), found.group(2), int(found.group(3) or 0)
+    return len(part) - exponent, len((whole + part).lstrip("0"))
+
+
+def _longest(cells: Sequence[str]) -> tuple[int, int]:
+    step = max(1, len(cells) // MOST_LOOKED_AT)
+    known = [digits_of(text) for text in {*cells[::step], cells[-1]}]
+    return max(d for d, _ in known), max(s for _, s in known)
+
+
+def open_of(cells: Sequence[str], values: Array) -> Array:
+    """(n,): half a unit of the last digit, a double's own rounding at least.
+
+    A column that never changes is taken at its word, and so is zero in one printed whole.
+    """
+    own: Array = 0.5 * EPS * np.abs(values)
+    if np.all(values == values[0]):
+        return own
+    decimals, significant = _longest(cells)
+    with np.errstate(divide="ignore"):
+        place = np.floor(np.log10(np.abs(values)))
+    place = np.where(np.isfinite(place), place, -np.inf)
+    last = 10.0 ** (place - significant + 1)
+    if significant < ALL_DIGITS:
+        last = np.maximum(last, 10.0 ** float(-min(decimals, 300)))
+        return np.asarray(np.maximum(own, 0.5 * last))
+    return own
+
+
+def open_time(cells: Sequence[str], values: Array) -> Array:
+    """(n,): the same for time stamps, which are often whole multiples of a coarser unit.
+
+    Stamps that all lie on a grid coarser than their last digit were not rounded to that digit.
+    """
+    decimals, significant = _longest(cells)
+    if significant < ALL_DIGITS and len(values) > 1 and 0 <= decimals < 18:
+        ticks = np.round(values * 10.0**decimals)
+        if np.max(np.abs(ticks)) < 2.0**53:
+            gaps = np.diff(ticks).astype(np.int64)
+            whole = [int(gap) for gap in np.unique(gaps)]
+            if len(whole) == 1 or gcd(*whole) > 1:
+                return np.asarray(0.5 * EPS * np.abs(values))
+    return open_of(cells, values)

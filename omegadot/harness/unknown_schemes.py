@@ -1,0 +1,73 @@
+"""What an integrator is asked beside its runs where no scheme is known that they should equal."""
+
+from __future__ import annotations
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.adapters.wire import state_from
+from omegadot.harness.drive import CaseResult, Driver, Questions
+from omegadot.harness.gates import restart, vanishing_step
+from omegadot.harness.plan import Case, Sweep
+from omegadot.harness.rows import Row
+from omegadot.harness.truth import Truth
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import State, System
+
+
+def is_unknown(integrator: Integrator) -> bool:
+    """Whether the reference has no run to hold an integrator's steps against."""
+    return integrator.scheme not in SCHEMES and integrator.knob == "timestep"
+
+
+def ask_unknown_schemes(
+    driver: Driver, case: Case, questions: Questions, result: CaseResult
+) -> None:
+    """Have unknown schemes take first steps, and begin their runs anew, into `result`."""
+    for integrator in filter(is_unknown, result.integrators):
+        runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
+        if not any(run is not None and run.ok for run in runs.values()):
+            continue
+        probe = vanishing_step.probe_of(case.system, questions)
+        fields = {"states": probe.states, "timesteps": probe.timesteps}
+        asked = driver.request(case, "first_steps", integrator=integrator.name, **fields)
+        result.first_steps[integrator.name] = (probe, asked)
+        for sweep, run in runs.items():
+            if run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
+                state = state_from(run.result["state"])
+                _begin_anew(driver, case, integrator, sweep, state, result)
+
+
+def _begin_anew(
+    driver: Driver,
+    case: Case,
+    integrator: Integrator,
+    sweep: Sweep,
+    state: State,
+    result: CaseResult,
+) -> None:
+    found = restart.restart_of(sweep)
+    if found is not None:
+        sample, left = found
+        start = State(*(values[sample] for values in vars(state).values()))
+        answer = driver.run(case, integrator.name, left, start)
+        result.restarts[integrator.name, sweep.timestep] = (sample, answer)
+
+
+def rows_of_unknown(
+    truth: Truth, system: System, integrator: Integrator, sweep: Sweep, result: CaseResult
+) -> list[Row]:
+    """What these answers tell of one run; nothing where they were not asked for, or failed."""
+    found = []
+    probe, steps = result.first_steps.get(integrator.name, (None, None))
+    if probe is not None and steps is not None and steps.ok:
+        found += vanishing_step.rows(system, probe, state_from(steps.result))
+    sample, anew = result.restarts.get((integrator.name, sweep.timestep), (0, None))
+    if anew is not None and anew.ok:
+        state = state_from(result.runs[integrator.name, sweep.timestep].result["state"])
+        rest = state_from(anew.result["state"])
+        if len(rest.angular_velocity) == len(sweep.times) - sample:
+            found.append(restart.row(truth, integrator, sweep, state, sample, rest))
+        else:
+            found.append(restart.refused("it has another number of samples"))
+    elif anew is not None and anew.outcome == "raised":
+        found.append(restart.refused(anew.reason))
+    return found

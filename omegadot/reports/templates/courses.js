@@ -1,0 +1,56 @@
+// The error along the run: one line a run, and how far rounding may take it.
+const step = element("step");
+// The rank shown of a scenario: a scenario with fewer steps shows its coarsest.
+const rankIn = (scenario) => Math.min(Number(step?.value ?? 0), scenario.steps.length - 1);
+const coursesShown = (scenario) => scenario.courses
+  .filter((c) => c[1] === rankIn(scenario) && !hidden.has(c[0])).sort((a, b) => a[0] - b[0]);
+
+function courseTraces({ data, codes }, scenario, place) {
+  const axis = scenario.charts[place];
+  return coursesShown(scenario).map(([line, , clock, start, count, , source]) => {
+    const look = data.lines[line], from = start + place * count, own = ownColour(look.colour);
+    const course = codes.subarray(from, from + count);
+    return {
+      type: "scatter", mode: count > 1 ? "lines" : "markers", name: look.name, meta: { line, source },
+      x: data.times[clock], y: Array.from(course, (code) => value(code, data)),
+      text: Array.from(course, (code) => code === 0
+        ? `at or below 1e${data.floor}` : value(code, data)?.toExponential(2) + unitText(axis.unit)),
+      hovertemplate: "%{fullData.name}<br>%{x} s: %{text}<extra></extra>",
+      line: { color: own, width: look.width, dash: dashOf(look) },
+      marker: { color: own },
+    };
+  });
+}
+
+// The bounds of the runs shown, from the smallest to the largest: a staircase, each stair up to the
+// part of the run that it holds for.
+function boundTraces({ data }, scenario, place) {
+  const known = coursesShown(scenario).filter((c) => c[5][place].length);
+  if (!known.length) return [];
+  const end = Math.max(...known.map((c) => data.times[c[2]].at(-1)));
+  const bounds = known.map((c) => c[5][place]);
+  const parts = [...new Set(bounds.flatMap((own) => own.filter((_, k) => k % 2 === 0)))].sort((a, b) => a - b);
+  const at = (own, part) => own[own.findIndex((p, k) => k % 2 === 0 && p >= part) + 1];
+  const stairs = (pick) => parts.flatMap((part) => {
+    const level = pick(...bounds.map((own) => at(own, part)).filter((b) => b !== undefined && Number.isFinite(b)));
+    return [level, level];
+  });
+  const x = parts.flatMap((part, k) => [k ? parts[k - 1] * end : 0, part * end]);
+  const common = {
+    type: "scatter", mode: "lines", hoverinfo: "skip", x, line: { color: colour("--soft"), width: 1, dash: "dash" },
+  };
+  const low = stairs(Math.min), high = stairs(Math.max);
+  const lines = [{ ...common, name: "rounding bound", y: high }];
+  if (low.some((level, k) => level < 0.98 * high[k])) {
+    lines.unshift({ ...common, name: "rounding bound, smallest", y: low });
+    Object.assign(lines[1], { fill: "tonexty", fillcolor: colour("--veil") });
+  }
+  return lines;
+}
+
+function courseLayout(scenario, place, data, bounds) {
+  const found = layout(scenario.charts[place], data);
+  found.xaxis.range = [0, Math.max(...scenario.courses.map((c) => data.times[c[2]].at(-1)))];
+  if (bounds.length) found.annotations.push(levelName(bounds.at(-1).y[0], "rounding bound", "left", "bottom"));
+  return found;
+}

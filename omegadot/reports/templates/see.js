@@ -1,0 +1,134 @@
+// The controls of "See it".
+// Of each engine one integrator to begin with: the first's least exact, the second's most exact...
+function beginnings(scenario) {
+  const { lines } = loaded.data, engines = new Map();
+  for (const [line, rank, , , , , , largest] of scenario.runs) {
+    if (!engines.has(lines[line].engine)) engines.set(lines[line].engine, []);
+    engines.get(lines[line].engine).push({ line, rank, largest });
+  }
+  const own = [...engines.keys()], others = own.filter((name) => name !== "reference");
+  return (others.length ? others : own).slice(0, 3).map((name, k) => {
+    const coarsest = Math.max(...engines.get(name).map((run) => run.rank));
+    const runs = engines.get(name).filter((run) => run.rank === coarsest);
+    return runs.sort((a, b) => (k % 2 ? 1 : -1) * (a.largest - b.largest) || a.line - b.line)[0].line;
+  });
+}
+
+function choose() {
+  const number = Number(element("see-scenario").value), scenario = loaded.data.scenarios[number];
+  const fresh = scenario !== show.scenario;
+  if (fresh) {
+    scenario.body = scenario.grown ??= grown(scenario.body);
+    exact = exactCourse(loaded, scenario);
+    // It opens at the end, where the runs are farthest apart; playing begins at the start.
+    Object.assign(show, { scenario, time: exact.end, playing: false });
+    element("see-play").textContent = "Play";
+    element("see-time").max = exact.end;
+    element("see-time").step = exact.end / 1000;
+    offer(scenario);
+  }
+  const rank = Number(element("see-step").value || 0);
+  const picked = [...document.querySelectorAll(".see-engine")].map((select) => Number(select.value)).filter((line) => line >= 0);
+  const courses = [...new Set(picked)].map((line) => {
+    const own = scenario.runs.filter((entry) => entry[0] === line), most = Math.max(...own.map((entry) => entry[1]));
+    return runCourse(loaded, scenario, exact, own.find((entry) => entry[1] === Math.min(rank, most)) ?? own[0]);
+  });
+  show.shown = [exact, ...courses].map((course) => ({ course, ...listed(course) }));
+  element("see-runs").replaceChildren(...show.shown.map((one) => one.item));
+  element("see-told").textContent = `${scenario.title}: ${scenario.told}, ${scenario.pivot ? "held at its pivot" : "its centre of mass kept in the middle"}; the world's z axis is up.`
+    + (scenario.coarse ? " It turns by more than a right angle between stored samples: what is shown between them is a guess." : "");
+  element("see-there").href = `#${scenario.anchor}`;
+  tabulate(scenario);
+  settle();
+  say(fresh ? `${scenario.title}.` : "");
+}
+
+function listed(course) {
+  const swatch = made("i", { ariaHidden: "true" }), number = made("span");
+  const item = made("li", {}, swatch, made("b", { textContent: fullName(course) }), " ", number);
+  const words = { textContent: course.line < 0 ? "" : partingOf(course) };
+  const there = () => { if (show.playing) play(false); goTo(course.parts); say(`${course.name} ${partingOf(course)}.`); };
+  item.append(" ", course.parts === null ? made("span", words) : made("button", { ...words, type: "button", onclick: there }));
+  return { item, swatch, number };
+}
+
+function offer(scenario) {
+  const { lines } = loaded.data, there = [...new Set(scenario.runs.map((entry) => entry[0]))], first = beginnings(scenario);
+  document.querySelectorAll(".see-engine").forEach((select, k) => {
+    const kept = select.options.length && (there.includes(Number(select.value)) || select.value === "-1") ? Number(select.value) : first[k] ?? -1;
+    const option = (text, value) => new Option(text, value, false, value === kept);
+    select.replaceChildren(option("none", -1), ...there.map((line) => option(lines[line].name, line)));
+  });
+}
+
+function tabulate(scenario) {
+  const rows = scenario.runs.map(([line, , knob, , , , parts, largest, end]) => {
+    const cells = [knob, parts === null ? "does not" : seconds(parts), exactly(largest), seconds(end)];
+    const head = made("th", { scope: "row", textContent: loaded.data.lines[line].name });
+    return made("tr", {}, head, ...cells.map((text) => made("td", { textContent: text })));
+  });
+  element("see-table").tBodies[0].replaceChildren(...rows);
+}
+
+function settle() {
+  const checked = (id) => element(id).checked;
+  show.options = { overlaid: checked("see-overlaid"), polhode: checked("see-polhode"), trace: checked("see-trace"), vectors: vectorsOf(show.scenario) };
+  show.scenario.tip = show.scenario.reached ??= times(show.scenario.tip, GRAIN);
+  render();
+}
+
+async function begin() {
+  const [data, codes] = await Promise.all([unpack("see-data").then((r) => r.json()), unpack("see-codes").then((r) => r.arrayBuffer())]);
+  loaded = { data, codes: new Int16Array(undifference(new Uint8Array(codes)).buffer) };
+  choose();
+  measure();
+  connect();
+  box.dataset.ready = "1";
+}
+
+function connect() {
+  const page = element("step"), own = element("see-step");
+  element("see-scenario").addEventListener("change", choose);
+  document.querySelectorAll(".see-engine").forEach((select) => select.addEventListener("change", choose));
+  // One step for the whole page: a change here is a change there.
+  own.addEventListener("change", () => {
+    if (page && page.value !== own.value) { page.value = own.value; page.dispatchEvent(new Event("change", { bubbles: true })); } else choose();
+  });
+  page?.addEventListener("change", () => { own.value = page.value; choose(); });
+  document.querySelectorAll(".see-option").forEach((input) => input.addEventListener("change", settle));
+  element("see-play").addEventListener("click", () => play(!show.playing));
+  element("see-time").addEventListener("input", (event) => { if (show.playing) play(false); goTo(Number(event.target.value)); });
+  element("see-time").addEventListener("change", () => say(""));
+  element("see-turn").addEventListener("input", (event) => { show.azimuth = Number(event.target.value); render(); });
+  night.addEventListener("change", measure);
+  new ResizeObserver(measure).observe(box);
+  drag(element("see-stage"));
+}
+
+function drag(stage) {
+  let from = null;
+  stage.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY, show.azimuth, show.tilt]; stage.setPointerCapture(event.pointerId); });
+  stage.addEventListener("pointerup", () => { from = null; });
+  stage.addEventListener("pointercancel", () => { from = null; });
+  stage.addEventListener("pointermove", (event) => {
+    if (!from) return;
+    const turned = from[2] - (event.clientX - from[0]) * 0.5;
+    show.azimuth = ((((turned + 180) % 360) + 360) % 360) - 180;
+    show.tilt = Math.max(-85, Math.min(85, from[3] + (event.clientY - from[1]) * 0.5));
+    element("see-turn").value = show.azimuth;
+    render();
+  });
+}
+
+if (box) {
+  box.hidden = false;
+  let begun = false;
+  new IntersectionObserver((entries) => {
+    show.visible = entries.at(-1).isIntersecting;
+    if (show.visible && !begun) {
+      begun = true;
+      begin().catch((error) => { console.error(error); element("see-told").textContent = `The bodies cannot be drawn in this browser (${error.message}).`; });
+    }
+    run();
+  }, { rootMargin: "100px 0px" }).observe(box);
+}

@@ -1,0 +1,145 @@
+"""One thing that is not as it was, and what it is that it was."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from omegadot.reports.numbers import knob, plain, short
+from omegadot.reports.tables import CHANNEL_NAMES
+from omegadot.reports.two_runs.sides import RunKey
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A value of both records, and how far apart rounding alone may take the two."""
+
+    was: float
+    now: float
+    band: float
+    unit: str
+
+    @property
+    def factor(self) -> float:
+        """How many times as large it is now; NaN where it was, or is, not finite."""
+        if not math.isfinite(self.was) or not math.isfinite(self.now):
+            return math.nan
+        return abs(self.now / self.was) if self.was else math.inf
+
+    @property
+    def weight(self) -> float:
+        """For ordering: how large the change is, whichever way."""
+        factor = self.factor
+        return abs(math.log(factor)) if 0.0 < factor < math.inf else math.inf
+
+
+@dataclass(frozen=True)
+class Change:
+    """One run, or one engine on one scenario (integrator ""), that got worse or better.
+
+    gate, channel, metric: "" where the change is of the whole run, or of a whole gate.
+    was, now: its outcomes or its verdicts.  measure: of a metric that both records measured.
+    moved: whether the measure left its band; a verdict may change without.
+    """
+
+    key: RunKey
+    worse: bool
+    gate: str
+    channel: str
+    metric: str
+    was: str
+    now: str
+    measure: Measure | None = None
+    moved: bool = False
+    why: str = ""
+
+    @property
+    def weight(self) -> tuple[int, float]:
+        """For ordering: outcomes first, then verdicts, then the largest change of a figure."""
+        kind = 0 if self.was == self.now else 2 if not self.gate else 1
+        return kind, self.measure.weight if self.measure else 0.0
+
+    @property
+    def what(self) -> str:
+        """The gate and the figure: trajectory: attitude error_max."""
+        name = " ".join(filter(None, (CHANNEL_NAMES.get(self.channel), self.metric)))
+        if self.channel == "model" or self.channel == self.metric:
+            name = self.metric
+        return ": ".join(filter(None, (self.gate, name))) or "outcome"
+
+
+def of_factor(measure: Measure) -> str:
+    """The change in words: 3.1 times, 24100 times less."""
+    factor = measure.factor
+    if math.isnan(factor):
+        return "finite no more" if not math.isfinite(measure.now) else "finite again"
+    if math.isinf(factor):
+        return "was zero"
+    if factor == 0.0:
+        return "vanished"
+    return f"{_times(factor)} times" if factor >= 1.0 else f"{_times(1.0 / factor)} times less"
+
+
+def _times(factor: float) -> str:
+    """1.05, 24100, 3.1e9: three digits, and written out where that is short."""
+    return plain(float(f"{factor:.3g}")) if factor < 1e6 else short(factor, 3)
+
+
+def from_to(change: Change) -> str:
+    """What it was and is: verdicts or outcomes where they differ, and the figures."""
+    said = f"{change.was} → {change.now}" if change.was != change.now else ""
+    measure = change.measure
+    if measure is None:
+        return said
+    unit = "" if measure.unit == "1" else f" {measure.unit}"
+    was, now = (short(value, 3) for value in (measure.was, measure.now))
+    figures = f"{was} → {now}{unit}"
+    if change.moved:
+        figures += f" ({of_factor(measure)}; rounding allows {short(measure.band)}{unit})"
+    return f"{said}: {figures}" if said else figures
+
+
+def place(change: Change) -> str:
+    """Scenario and step."""
+    return ", ".join(
+        filter(None, (change.key.scenario, knob(change.key.timestep, change.key.accuracy)))
+    )
+
+
+def name_of(key: RunKey) -> str:
+    """Engine, its version where there are several, its setup where it is not the usual one."""
+    setup = "" if key.setup == "physics" else key.setup
+    return " ".join(filter(None, (key.engine, key.version, setup)))
+
+
+@dataclass(frozen=True)
+class Group:
+    """Changes of one engine and integrator in one gate and channel. worst: the largest of them."""
+
+    engine: str
+    integrator: str
+    worst: Change
+    count: int
+    scenarios: tuple[str, ...]
+
+
+def grouped(changes: Iterable[Change]) -> list[Group]:
+    """Outcomes and verdicts first, then by how large the largest change is."""
+    groups: dict[tuple[object, ...], list[Change]] = {}
+    for change in changes:
+        key = change.key
+        kind = change.weight[0]
+        name = (key.engine, key.version, key.setup, key.integrator, change.gate, change.channel)
+        groups.setdefault((*name, kind, change.was, change.now), []).append(change)
+    found = [
+        Group(
+            name_of(own[0].key),
+            own[0].key.integrator,
+            max(own, key=lambda c: c.weight),
+            len(own),
+            tuple(dict.fromkeys(c.key.scenario for c in own)),
+        )
+        for own in groups.values()
+    ]
+    return sorted(found, key=lambda group: group.worst.weight, reverse=True)

@@ -1,0 +1,114 @@
+"""Two records held against each other."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import polars as pl
+
+from omegadot.reports.numbers import listed, times
+from omegadot.reports.record import Record
+from omegadot.reports.two_runs.change import Change, name_of
+from omegadot.reports.two_runs.cost import Cost, costs
+from omegadot.reports.two_runs.figures import changed_figures, paired
+from omegadot.reports.two_runs.runs import changed_runs, pair_runs, without_repetition
+from omegadot.reports.two_runs.settings import Difference, differences
+from omegadot.reports.two_runs.sides import Side, Task, redefined, several_versions, tasks_of
+
+_NAMED = 4
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What changed from the first record to the second.
+
+    worse, better: the largest change first.  appeared, vanished: runs that one record alone has.
+    runs, figures: how many of each both records have, and so were compared.
+    """
+
+    was: Side
+    now: Side
+    worse: tuple[Change, ...]
+    better: tuple[Change, ...]
+    appeared: tuple[Task, ...]
+    vanished: tuple[Task, ...]
+    settings: tuple[Difference, ...]
+    costs: tuple[Cost, ...]
+    runs: int
+    figures: int
+    redefined: frozenset[str]
+
+    @property
+    def regressed(self) -> bool:
+        """Whether anything that both records have got worse."""
+        return bool(self.worse)
+
+    @property
+    def headline(self) -> str:
+        """What got worse, better, vanished and appeared, and how much was compared."""
+        if not self.runs:
+            return "Nothing to compare: the two records have no run in common."
+        said = [
+            f"{word}: {_who(changes)}."
+            for changes, word in ((self.worse, "Worse"), (self.better, "Better"))
+            if changes
+        ]
+        for tasks, word in ((self.vanished, "vanished"), (self.appeared, "appeared")):
+            if tasks:
+                said.append(f"{times(len(tasks), 'run')} {word}.")
+        if not self.worse and not self.better:
+            said.insert(0, "No change.")
+        compared = f"{times(self.runs, 'run')} and {times(self.figures, 'figure')} compared."
+        return " ".join([*said, compared])
+
+
+def _who(changes: Iterable[Change]) -> str:
+    """The engines and integrators of some changes and how many, the largest change first."""
+    found: dict[str, Counter[str]] = {}
+    for change in changes:
+        name = " ".join(filter(None, (name_of(change.key), change.key.integrator)))
+        found.setdefault(name, Counter())["figure" if change.metric else "run"] += 1
+    shown = [
+        f"{name} ({listed([times(count, noun) for noun, count in counts.items()])})"
+        for name, counts in list(found.items())[:_NAMED]
+    ]
+    more = len(found) - len(shown)
+    return listed([*shown, f"{more} more"] if more else shown)
+
+
+def compare_records(was: Record, now: Record, labels: tuple[str, str] = ("A", "B")) -> Comparison:
+    """Hold the second record against the first.
+
+    Runs are the same where scenario, engine, setup, integrator and step are; the engine's version
+    may differ. A figure that has a bound of rounding got worse, or better, where it moved by more
+    than the bounds of both records together; a scenario that is another one under its old name
+    compares by outcome and verdict alone.
+    """
+    one, other = Side(labels[0], was), Side(labels[1], now)
+    versioned = several_versions((one, other))
+    runs = pair_runs(tasks_of(one, versioned), tasks_of(other, versioned))
+    others = redefined(one, other)
+    pairs = paired(one, other, versioned)
+    same_seed = was.run.get("seed") == now.run.get("seed")
+    figures = changed_figures(pairs, same_seed, others)
+    changes = without_repetition(changed_runs(runs.pairs), figures)
+    changes.sort(key=lambda change: change.weight, reverse=True)
+    return Comparison(
+        one,
+        other,
+        tuple(change for change in changes if change.worse),
+        tuple(change for change in changes if not change.worse),
+        runs.appeared,
+        runs.vanished,
+        tuple(differences(one, other)),
+        tuple(costs(one, other, versioned)),
+        len(runs.pairs),
+        _with_bounds(pairs),
+        frozenset(others),
+    )
+
+
+def _with_bounds(pairs: pl.DataFrame) -> int:
+    return len(pairs.filter(pl.col("bound").is_not_null() & pl.col("bound_now").is_not_null()))

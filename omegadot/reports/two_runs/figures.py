@@ -1,0 +1,109 @@
+"""Figures that both records measured: which left their bands, and whose verdict changed.
+
+A band is rounding and nothing else. Each of two runs of one scheme lies within its round-off bound
+of one and the same exact course, so that no distance from the truth differs by more than the sum
+of the two bounds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import polars as pl
+
+from omegadot.reports.two_runs.change import Change, Measure
+from omegadot.reports.two_runs.sides import RunKey, Side
+
+_KEY = list(RunKey._fields)
+_NAME = ["gate", "channel", "metric", "nth"]
+# The bound of an order is the declared one; that of everything else that has one is rounding.
+_NOT_ROUNDING = "observed_order"
+# Measured at states drawn by the seed.
+_DRAWN = ("residual", "state")
+# From the worst to the best; what is not judged is no pass.
+VERDICT_RANK = {"fail": 0, "declared": 1, "info": 2, "pass": 3}
+
+
+def figures_by_run(side: Side, versioned: set[str]) -> pl.DataFrame:
+    """The metrics without the costs, under the keys of `tasks_of`; nth: of equal names."""
+    engine = pl.col("engine")
+    version = pl.when(engine.is_in(sorted(versioned))).then(pl.col("engine_version"))
+    integrator = pl.when(engine != "exact").then(pl.col("integrator"))
+    frame = side.record.metrics.filter(pl.col("gate") != "cost").with_columns(
+        version=version.otherwise(pl.lit("")).fill_null(""),
+        integrator=integrator.otherwise(pl.lit("")).fill_null(""),
+    )
+    nth = pl.int_range(pl.len()).over(*_KEY, "gate", "channel", "metric")
+    kept = ("unit", "value", "bound", "verdict", "note")
+    return frame.with_columns(nth=nth).select(*_KEY, *_NAME, *kept)
+
+
+def paired(was: Side, now: Side, versioned: set[str]) -> pl.DataFrame:
+    """Every figure that both records hold, the second one's with the suffix ``_now``."""
+    one, other = (figures_by_run(side, versioned) for side in (was, now))
+    return one.join(other, on=_KEY + _NAME, how="inner", nulls_equal=True, suffix="_now")
+
+
+def _held(same_seed: bool, redefined: set[str]) -> pl.Expr:
+    """Whether a figure has a band: its bounds are finite, and both are of the same motion."""
+    drawn = pl.col("gate").is_in(["model", "equation"]) & pl.col("metric").is_in(_DRAWN)
+    bounds = pl.col("bound").is_finite() & pl.col("bound_now").is_finite()
+    return (
+        bounds.fill_null(value=False)
+        & (pl.col("metric") != _NOT_ROUNDING)
+        & (pl.col("unit") == pl.col("unit_now"))
+        & ~pl.col("scenario").is_in(sorted(redefined))
+        & (pl.lit(same_seed) | ~drawn)
+    )
+
+
+def changed_figures(pairs: pl.DataFrame, same_seed: bool, redefined: set[str]) -> Iterator[Change]:
+    """The figures that left their bands, and those whose verdict changed.
+
+    pairs: of `paired`.  redefined: scenarios that are others now, of which only verdicts compare.
+    An order that a sweep resolves and another does not is no change of verdict.
+    """
+    finite = pl.col("value").is_finite() & pl.col("value_now").is_finite()
+    apart = (pl.col("value_now") - pl.col("value")).abs() > pl.col("band")
+    ordinary = pl.col("metric") != _NOT_ROUNDING
+    judged = ~pl.col("verdict").is_in(["pass", "info"])
+    judged_now = ~pl.col("verdict_now").is_in(["pass", "info"])
+    found = (
+        pairs.with_columns(pl.col("value", "value_now").fill_null(float("nan")))
+        .with_columns(band=pl.col("bound") + pl.col("bound_now"))
+        .with_columns(
+            moved=_held(same_seed, redefined)
+            & pl.when(finite).then(apart).otherwise(pl.col("value").ne(pl.col("value_now"))),
+            turned=(pl.col("verdict") != pl.col("verdict_now")) & (ordinary | judged | judged_now),
+        )
+        .filter(pl.col("moved") | pl.col("turned"))
+    )
+    for row in found.iter_rows(named=True):
+        yield _change(row)
+
+
+def _change(row: dict[str, Any]) -> Change:
+    measure = Measure(row["value"], row["value_now"], row["band"], row["unit"])
+    was, now = row["verdict"], row["verdict_now"]
+    grew = _size(measure.now) >= _size(measure.was)
+    # A verdict says more than a size: an error that may stand now is no worse for being larger.
+    worse = grew if was == now else VERDICT_RANK[now] < VERDICT_RANK[was]
+    return Change(
+        RunKey(*(row[name] for name in _KEY)),
+        worse,
+        row["gate"],
+        row["channel"],
+        row["metric"],
+        was,
+        now,
+        measure,
+        row["moved"],
+        row["note_now"] or "",
+    )
+
+
+def _size(value: float) -> float:
+    """How far off; what is not a number is farther off than any number."""
+    return math.inf if math.isnan(value) else abs(value)

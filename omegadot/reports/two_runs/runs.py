@@ -1,0 +1,117 @@
+"""Runs of both records: which are the same one, and whose outcome or verdict changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from omegadot.reports.summary import STATUSES
+from omegadot.reports.two_runs.change import Change
+from omegadot.reports.two_runs.figures import VERDICT_RANK
+from omegadot.reports.two_runs.sides import RunKey, Task
+
+# Nothing was known of such a run before, so that whatever it comes to now is new.
+_UNKNOWN_BEFORE = ("not-installed", "interrupted")
+
+
+@dataclass(frozen=True)
+class Runs:
+    """pairs: what both records say of one run.  vanished, appeared: what one of them alone has."""
+
+    pairs: tuple[tuple[Task, Task], ...]
+    vanished: tuple[Task, ...]
+    appeared: tuple[Task, ...]
+
+
+def _stand_ins(tasks: Iterable[Task]) -> dict[tuple[str, str, str], list[Task]]:
+    """The tasks of engines that never got to a step, by scenario, engine and setup."""
+    found: dict[tuple[str, str, str], list[Task]] = {}
+    for task in tasks:
+        if task.stands_for_all:
+            key = task.key
+            found.setdefault((key.scenario, key.engine, key.setup), []).append(task)
+    return found
+
+
+def _stand_in(key: RunKey, tasks: Mapping[tuple[str, str, str], list[Task]]) -> Task | None:
+    """Whoever stands for this run: an engine that did not start stands for all its runs."""
+    for task in tasks.get((key.scenario, key.engine, key.setup), ()):
+        if task.key.integrator in ("", key.integrator):
+            return task
+    return None
+
+
+def pair_runs(was: Mapping[RunKey, Task], now: Mapping[RunKey, Task]) -> Runs:
+    """Each run with what the other record says of it; one that did not start counts for it."""
+    pairs, vanished, appeared = [], [], []
+    absent_now, absent_then = _stand_ins(now.values()), _stand_ins(was.values())
+    stood_in: set[RunKey] = set()
+    for key, task in was.items():
+        other = now.get(key) or _stand_in(key, absent_now)
+        if other is None:
+            vanished.append(task)
+            continue
+        stood_in.add(other.key)
+        pairs.append((task, other))
+    for key, task in now.items():
+        if key in was or key in stood_in:
+            continue
+        other = _stand_in(key, absent_then)
+        if other is None:
+            appeared.append(task)
+            continue
+        stood_in.add(other.key)
+        pairs.append((other, task))
+    unknown = [pair for pair in pairs if _unknown_before(*pair)]
+    known = [pair for pair in pairs if not _unknown_before(*pair)]
+    appeared += [task for _, task in unknown]
+    vanished = [task for task in vanished if task.key not in stood_in]
+    return Runs(tuple(known), tuple(vanished), tuple(appeared))
+
+
+def _unknown_before(was: Task, now: Task) -> bool:
+    return was.outcome in _UNKNOWN_BEFORE and was.outcome != now.outcome
+
+
+def _outcome_rank(outcome: str) -> int:
+    """Higher is better; a run that came to its end is best."""
+    return len(STATUSES) if outcome == "ok" else STATUSES.index(outcome)
+
+
+def changed_runs(pairs: Iterable[tuple[Task, Task]]) -> Iterator[Change]:
+    """The runs with another outcome; where it is the same, the gates with another verdict."""
+    for was, now in pairs:
+        key = now.key if was.stands_for_all else was.key
+        if was.outcome != now.outcome:
+            worse = _outcome_rank(now.outcome) < _outcome_rank(was.outcome)
+            yield Change(key, worse, "", "", "", was.outcome, now.outcome, why=now.why)
+            continue
+        for gate, verdict in was.gates.items():
+            # A gate that was reached and is no longer has no verdict any more.
+            verdict_now = now.gates.get(gate, "info")
+            if verdict != verdict_now:
+                worse = VERDICT_RANK[verdict_now] < VERDICT_RANK[verdict]
+                yield Change(key, worse, gate, "", "", verdict, verdict_now, why=now.why)
+
+
+def without_repetition(gates: Iterable[Change], figures: Iterable[Change]) -> list[Change]:
+    """Both, without the gates whose change is that of a figure in them.
+
+    A figure of model or equation is one of the engine, and speaks for all its runs.
+    """
+    told = list(figures)
+    spoken = {
+        (change.key, change.gate, change.worse) for change in told if change.was != change.now
+    }
+    whole = [
+        change
+        for change in gates
+        if not {(k, change.gate, change.worse) for k in (change.key, engine_key(change.key))}
+        & spoken
+    ]
+    return whole + told
+
+
+def engine_key(key: RunKey) -> RunKey:
+    """The key of what belongs to engine and scenario, whatever the integrator and step."""
+    return key._replace(integrator="", timestep=None, accuracy=None)

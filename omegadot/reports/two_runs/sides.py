@@ -1,0 +1,123 @@
+"""One of the two records: its runs by what makes them the same run in the other one."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from omegadot.reports.record import Record
+from omegadot.reports.summary import task_status, worst
+
+# Scenario keys that change no number: what is told of it, and which steps it is run with.
+TOLD_OR_STEPS = {"schema", "name", "title", "shows", "source"}
+
+
+class RunKey(NamedTuple):
+    """What names a run in both records. version: "" unless a record has several of an engine."""
+
+    scenario: str
+    engine: str
+    version: str
+    setup: str
+    integrator: str
+    timestep: float | None
+    accuracy: float | None
+
+
+@dataclass(frozen=True)
+class Task:
+    """What one record says of a run. status: of STATUSES.  why: the reason, in words."""
+
+    key: RunKey
+    status: str
+    outcome: str
+    gates: Mapping[str, str]
+    why: str
+
+    @property
+    def stands_for_all(self) -> bool:
+        """Whether the engine never got to a step: it then stands for all its runs there."""
+        return self.key.timestep is None and self.key.accuracy is None and self.outcome != "ok"
+
+
+@dataclass(frozen=True)
+class Side:
+    """A record with the name that the reader gave it."""
+
+    label: str
+    record: Record
+
+    @property
+    def run(self) -> Mapping[str, Any]:
+        """What its ``run.json`` holds."""
+        return self.record.run
+
+    @property
+    def command(self) -> str:
+        """The command that made it, as one would type it."""
+        return shlex.join(str(word) for word in self.run.get("command") or ())
+
+    @property
+    def complete(self) -> bool:
+        """False where the run was cut short."""
+        return bool(self.run.get("complete", True))
+
+
+def several_versions(sides: Iterable[Side]) -> set[str]:
+    """The engines of which a record holds more than one version: they are paired by version."""
+    found = set()
+    for side in sides:
+        versions: dict[tuple[str, str], set[str]] = {}
+        for task in side.run["tasks"]:
+            version = task.get("engine_version") or ""
+            own = versions.setdefault((task["engine"], task.get("setup") or "physics"), set())
+            own.update({version} - {""})
+        found |= {engine for (engine, _), own in versions.items() if len(own) > 1}
+    return found
+
+
+def integrator_of(engine: str, integrator: str | None) -> str:
+    """The exact solution is one engine, whichever way it is come by."""
+    return "" if engine == "exact" else integrator or ""
+
+
+def tasks_of(side: Side, versioned: set[str]) -> dict[RunKey, Task]:
+    """Every run of a record; where one key stands several times, the worst of them."""
+    found: dict[RunKey, Task] = {}
+    for entry in side.run["tasks"]:
+        engine = entry["engine"]
+        key = RunKey(
+            entry["scenario"],
+            engine,
+            (entry.get("engine_version") or "") if engine in versioned else "",
+            entry.get("setup") or "physics",
+            integrator_of(engine, entry.get("integrator")),
+            entry.get("timestep"),
+            entry.get("accuracy"),
+        )
+        why = entry.get("reason") or entry.get("why") or ""
+        task = Task(key, task_status(entry), entry["outcome"], entry.get("gates") or {}, why)
+        if key not in found or worst((task.status, found[key].status)) == task.status:
+            found[key] = task
+    return found
+
+
+def definition_of(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """What of a scenario decides its numbers: all but its words and its set of steps."""
+    whole = entry.get("definition") or {}
+    found = {key: value for key, value in whole.items() if key not in TOLD_OR_STEPS}
+    if isinstance(found.get("run"), Mapping):
+        found["run"] = {k: v for k, v in found["run"].items() if k != "timesteps"}
+    return found
+
+
+def redefined(was: Side, now: Side) -> set[str]:
+    """The scenarios that are others in the two records though they bear one name."""
+    then = {entry["name"]: definition_of(entry) for entry in was.run["scenarios"]}
+    return {
+        entry["name"]
+        for entry in now.run["scenarios"]
+        if entry["name"] in then and definition_of(entry) != then[entry["name"]]
+    }

@@ -1,0 +1,240 @@
+"""Integrators that declare no scheme: whatever is sound passes, and what is not is caught.
+
+What these tests catch: a check of consistency that takes a scheme's own error for a fault, or a
+fault for a scheme's error; one that accuses methods that conserve, branch, or keep earlier steps in
+mind; a fault that only a known scheme would have shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from omegadot.adapters.protocol import Adapter, Description, Integrator, Trajectory
+from omegadot.adapters.reference import FEATURES, ReferenceAdapter
+from omegadot.harness.faults.catalogue import FAULTS
+from omegadot.harness.faults.detect import Judgement, judge
+from omegadot.harness.faults.nameless import Nameless, without_scheme
+from omegadot.harness.faults.prepared import Pool
+from omegadot.harness.gates.restart import restart_of
+from omegadot.harness.plan import Sweep
+from omegadot.reference_impl.energy import rotational_kinetic_energy
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.rotations import turn_in_body
+from omegadot.reference_impl.schemes import SCHEMES, AccelerationOf, Scheme
+from omegadot.reference_impl.schemes.scheme import every_channel
+from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+SEED = 31
+EULER = without_scheme(Integrator("semi-implicit-euler", None, every_channel(1)))
+# Beside what a first-order error hides: what no order, and no conservation, would show.
+HIDDEN = (
+    *("SecretDamping", "StepSlightlyLong", "QuaternionDrifts", "SinglePrecision", "OmegaJitters"),
+    *("EnergyCorrected", "MomentumCorrected", "LogsOneStepLate", "LastStepMissing", "StaleState"),
+    *("DampingAfterAWhile", "GravityOffInFirstStep", "TorqueOneStepLate", "VelocityIsDamped"),
+    *(
+        "AttitudeAtHalfStep",
+        "OmegaAtHalfStep",
+        "AttitudeInSinglePrecision",
+        "NormInSinglePrecision",
+    ),
+    *("OneSampleTwice", "StartInSinglePrecision", "FirstSampleMissing", "ClockDrifts"),
+    *("OmegaDotOfTheSampleBefore", "NineDigits", "FallsAsleep", "OmegaClampedByComponent"),
+)
+
+
+@pytest.fixture(scope="module")
+def pool() -> Pool:
+    return Pool(SEED)
+
+
+def failures(found: Judgement) -> list[object]:
+    unsettled = ("one step size", "the sweep does not resolve")
+    return [r for r in found.rows if r.verdict == "fail" and not r.note.startswith(unsettled)]
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_every_scheme_of_the_reference_passes_unnamed(scheme: str, pool: Pool) -> None:
+    adapter = Nameless(ReferenceAdapter())
+    own = tuple(i for i in adapter.description.integrators if i.name == scheme)
+    assert [i.scheme for i in own] == [None]
+    for number in range(4):  # one of each flavour
+        found = judge(pool, pool.prepare(number), "unnamed", adapter, own)
+        assert (failures(found), found.broken) == ([], ""), number
+
+
+@pytest.mark.parametrize("name", HIDDEN)
+def test_what_a_first_order_error_would_hide_is_caught(name: str, pool: Pool) -> None:
+    fault = FAULTS[name]
+    adapter = Nameless(fault.wrap(ReferenceAdapter()))
+    number = pool.having(fault.needs, 1)[0]
+    adapter.load(pool.prepare(number + 1).case.system)
+    found = judge(pool, pool.prepare(number), "unnamed", adapter, (EULER,))
+    assert found.broken == ""
+    assert failures(found) != []
+
+
+class OwnScheme(ReferenceAdapter):
+    """A sound engine with a method of its own."""
+
+    one_step = True
+    order = 1
+
+    @property
+    def description(self) -> Description:
+        integrator = Integrator("own", None, every_channel(self.order), one_step=self.one_step)
+        return Description("own", "1.0", (integrator,), features=FEATURES)
+
+    def scheme(self) -> Callable[[AccelerationOf, State, float | Array], State]:
+        raise NotImplementedError
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        own = Scheme("own", "", self.scheme(), every_channel(self.order))
+        how = (own, self.system, acceleration_of(self.system))
+        return Trajectory(*step_through(*how, initial, timestep, steps, every))
+
+
+class Projected(OwnScheme):
+    """Euler's method that scales omega back to the energy of the step's start: it conserves."""
+
+    def scheme(self) -> Callable[[AccelerationOf, State, float | Array], State]:
+        system = self.system
+
+        def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
+            end = SCHEMES["semi-implicit-euler"].step(acceleration, state, dt)
+            before = rotational_kinetic_energy(system, state)
+            part = np.sqrt(before / rotational_kinetic_energy(system, end))
+            return replace(end, angular_velocity=end.angular_velocity * part[..., None])
+
+        return step
+
+
+class TwoStep(OwnScheme):
+    """Adams and Bashforth's method of order 2, begun by a step of order 2."""
+
+    one_step, order = False, 2
+
+    def scheme(self) -> Callable[[AccelerationOf, State, float | Array], State]:
+        last: list[tuple[State, Acceleration]] = []
+
+        def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
+            here = (state, acceleration(state))
+            before = last.pop() if last else None
+            last.append(here)
+            if before is None:
+                return SCHEMES["lie-rk4"].step(acceleration, state, dt)
+
+            def mean(now: Array, then: Array) -> Array:
+                return np.asarray(1.5 * now - 0.5 * then)
+
+            h, (old, pull) = dt, before
+            spin = mean(state.angular_velocity, old.angular_velocity)
+            way = mean(state.linear_velocity, old.linear_velocity)
+            return State(
+                turn_in_body(state.orientation, spin, h),
+                state.angular_velocity + h * mean(here[1].angular, pull.angular),
+                state.position + h * way,
+                state.linear_velocity + h * mean(here[1].linear, pull.linear),
+            )
+
+        return step
+
+
+class TwoStepUntold(TwoStep):
+    """The same, and it says that a step depends on the state alone."""
+
+    one_step = True
+
+
+def judged(pool: Pool, adapter: Adapter, needs: set[str]) -> Judgement:
+    number = pool.having(needs, 1)[0]
+    own = adapter.description.integrators
+    return judge(pool, pool.prepare(number), "own", adapter, own)
+
+
+def test_a_conserving_method_of_its_own_is_not_accused(pool: Pool) -> None:
+    found = judged(pool, Projected(), {"torque-free", "asymmetric"})
+    assert failures(found) == []
+    energy = [r for r in found.rows if (r.channel, r.metric) == ("energy", "drift_full")]
+    assert {row.note for row in energy} == {"within round-off"}
+
+
+def test_a_method_that_keeps_earlier_steps_in_mind_says_so(pool: Pool) -> None:
+    assert failures(judged(pool, TwoStep(), {"torque-free", "asymmetric"})) == []
+    told = judged(pool, TwoStepUntold(), {"torque-free", "asymmetric"})
+    assert {(row.gate, row.metric) for row in failures(told)} == {("scheme", "begun_anew")}  # type: ignore[attr-defined]
+
+
+def rows_of(found: Judgement, metric: str) -> list[str]:
+    return [row.note for run in found.runs for row in run.rows if row.metric == metric]
+
+
+def test_the_rate_at_no_step_says_how_long_the_steps_are(pool: Pool) -> None:
+    adapter = Nameless(FAULTS["StepSlightlyLong"].wrap(ReferenceAdapter()))
+    found = judge(pool, pool.prepare(0), "unnamed", adapter, (EULER,))
+    assert set(rows_of(found, "rate_at_no_step")) - {""} == {"steps are 0.1 % too long"}
+    adapter = Nameless(FAULTS["LastStepMissing"].wrap(ReferenceAdapter()))
+    found = judge(pool, pool.prepare(0), "unnamed", adapter, (EULER,))
+    assert set(rows_of(found, "rate_at_no_step")) - {""} == {"a run of one step does not move"}
+
+
+def test_a_known_scheme_is_asked_nothing_more(pool: Pool) -> None:
+    named = ReferenceAdapter()
+    own = tuple(i for i in named.description.integrators if i.name == "lie-rk4")
+    found = judge(pool, pool.prepare(0), "named", named, own)
+    assert (found.result.first_steps, found.result.restarts) == ({}, {})
+
+
+def test_a_run_is_begun_anew_at_its_middle() -> None:
+    assert restart_of(Sweep(0.1, 10, 3)) == (2, Sweep(0.1, 4, 3))  # samples 0 3 6 9 10
+    assert restart_of(Sweep(0.1, 3, 2)) == (1, Sweep(0.1, 1, 2))
+    assert restart_of(Sweep(0.1, 2, 5)) is None
+
+
+def test_a_run_that_cannot_be_begun_anew_fails(pool: Pool) -> None:
+    class OnlyFromTheStart(Nameless):
+        start: Array | None = None
+
+        def run(
+            self, initial: State, integrator: str, timestep: float, steps: int, every: int
+        ) -> Trajectory:
+            if steps > 1 and self.start is None:
+                self.start = initial.angular_velocity
+            if steps > 1 and not np.array_equal(self.start, initial.angular_velocity):  # type: ignore[arg-type]
+                raise ValueError("not from here")
+            return super().run(initial, integrator, timestep, steps, every)
+
+    prepared = pool.prepare(pool.having({"asymmetric"}, 1)[0])
+    found = judge(pool, prepared, "own", OnlyFromTheStart(ReferenceAdapter()), (EULER,))
+    said = "a run cannot be begun anew at its own sample: ValueError: not from here"
+    assert set(rows_of(found, "begun_anew")) == {said}
+
+
+def test_loads_are_no_time(pool: Pool) -> None:
+    """A body that is driven, damped and hung is autonomous too: begun anew, it goes on alike."""
+    for needs in ({"torque", "damping"}, {"pivot", "gravity"}):
+        found = judged(pool, TwoStepUntold(), needs)
+        assert rows_of(found, "begun_anew")
+        single = Nameless(ReferenceAdapter())
+        prepared = pool.prepare(pool.having(needs, 1)[0])
+        sound = judge(pool, prepared, "unnamed", single, (EULER,))
+        assert {row.value for row in sound.rows if row.metric == "begun_anew"} == {0.0}
+
+
+def test_the_system_is_that_of_the_case(pool: Pool) -> None:
+    """The probe is stepped by the equation's rate; another gravity shows in it."""
+
+    class Floating(Nameless):
+        def load(self, system: System) -> None:
+            super().load(replace(system, load=replace(system.load, gravity=np.zeros(3))))
+
+    prepared = pool.prepare(pool.having({"gravity", "free"}, 1)[0])
+    found = judge(pool, prepared, "unnamed", Floating(ReferenceAdapter()), (EULER,))
+    wrong = {r.channel for r in found.rows if r.metric == "rate_at_no_step" and r.value > 1.0}
+    assert wrong == {"linear_momentum"}

@@ -1,0 +1,313 @@
+""" "See it" in a real browser: the bodies turn, the clock obeys, keyboard and ear are served."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from chromium import Chromium
+from synthetic_record import build, scenario_entry
+from test_see_bodies import APART, painted, rays
+
+from omegadot.reference_impl.rotations import (
+    attitude_angle,
+    exp_quaternion,
+    normalize,
+    quaternion_product,
+    rotate,
+    rotation_between,
+)
+from omegadot.reports import draw_page
+from omegadot.reports.depth_order import depth_order
+from omegadot.reports.see import Codes
+from omegadot.reports.see_shapes import tree_of
+from omegadot.reports.templating import asset
+
+HOSTILE = "<img src=x onerror=\"document.title='broken'\">"
+READY = "document.getElementById('see-box').dataset.ready === '1'"
+PICTURE = "document.getElementById('see-stage').toDataURL()"
+TIME = "Number(document.getElementById('see-time').value)"
+SAID = "document.getElementById('see-said').textContent"
+PLAY = "document.getElementById('see-play')"
+HANDLE = [
+    {"shape": "cylinder", "radius": 0.01, "length": 0.1, "density": 1.0,
+     "orientation": [0.5**0.5, 0.0, 0.5**0.5, 0.0]},
+    {"shape": "cylinder", "radius": 0.01, "length": 0.05, "density": 1.0,
+     "position": [0.0, 0.0, 0.035]},
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
+        yield chromium
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    record = build()
+    handle = scenario_entry("spun-again", "A handle, spun")
+    handle["definition"]["body"] = {"part": HANDLE}
+    # No principal axis is that of the spin: the tip goes around.
+    handle["system"]["inertia"] = [[0.4, 0.0, 0.1], [0.0, 0.3, 0.0], [0.1, 0.0, 0.2]]
+    record.run.update(scenarios=[scenario_entry("sphere", HOSTILE), handle])
+    file = tmp_path_factory.mktemp("page") / "report.html"
+    file.write_text(draw_page(record), encoding="utf-8")
+    return file
+
+
+def opened(browser, path, **size):
+    browser.messages.clear()
+    browser.requests.clear()
+    browser.open(path, **{"height": 900, **size})
+    browser.evaluate("document.getElementById('see').scrollIntoView()")
+    browser.wait(READY)
+    return browser
+
+
+@pytest.fixture
+def page(browser, path):
+    return opened(browser, path)
+
+
+def choose(page, name, value):
+    page.evaluate(
+        f"(() => {{ const s = document.getElementById('{name}'); s.value = {json.dumps(value)};"
+        " s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change')); })()"
+    )
+
+
+def listed(page):
+    return page.evaluate("[...document.querySelectorAll('#see-runs li')].map((l) => l.innerText)")
+
+
+def test_it_opens_at_the_end_standing_still(page, path):
+    assert page.evaluate(TIME) == 4.0
+    assert page.evaluate(f"{PLAY}.textContent") == "Play"
+    assert page.messages == []
+    assert [url for url in page.requests if not url.startswith("data:")] == [path.as_uri()]
+    first, *others = listed(page)
+    assert first.startswith("exact, closed-form")
+    # The first engine's least exact integrator and the second's; the reference steps back.
+    assert [text.split(" at step")[0] for text in others] == ["mujoco Euler", "dart semi-implicit"]
+
+
+def test_nothing_is_unpacked_before_it_comes_near(browser, path):
+    browser.open(path, height=300)
+    assert not browser.evaluate(READY)
+    browser.evaluate("document.getElementById('see').scrollIntoView()")
+    browser.wait(READY)
+
+
+def test_playing_turns_the_body_from_the_start_and_pause_holds_it(page):
+    before = page.evaluate(PICTURE)
+    choose(page, "see-speed", "0.25")
+    page.evaluate(f"{PLAY}.click()")
+    page.wait(f"{TIME} > 0.02 && {TIME} < 4")
+    assert page.evaluate(f"{PLAY}.textContent") == "Pause"
+    page.evaluate(f"{PLAY}.click()")
+    held = page.evaluate(f"[{TIME}, {PICTURE}]")
+    assert held[0] < 4.0
+    assert held[1] != before
+    two_frames = "new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))"
+    assert page.evaluate(f"{two_frames}.then(() => [{TIME}, {PICTURE}])") == held
+    assert page.evaluate(SAID).startswith("Paused.")
+
+
+def test_playing_ends_at_the_end_and_tells_of_a_parting(page):
+    choose(page, "see-scenario", "1")
+    choose(page, "see-step", "2")
+    # Late by 2 * 0.3 * 0.02 t: beyond a degree at 1.5 s.
+    choose(page, "see-time", "1.45")
+    page.evaluate(
+        "{ window.heard = []; new MutationObserver(() => heard.push("
+        f"{SAID})).observe(document.getElementById('see-said'), {{ childList: true }}); }}"
+    )
+    choose(page, "see-speed", "10")
+    page.evaluate(f"{PLAY}.click()")
+    page.wait(f"{PLAY}.textContent === 'Play' && {TIME} === 4")
+    words = "dart semi-implicit parts from the exact solution at 1.50 s."
+    assert any(text.startswith(words) for text in page.evaluate("heard"))
+
+
+def test_scrubbing_sets_the_clock_and_the_numbers(page):
+    choose(page, "see-scenario", "1")
+    choose(page, "see-step", "2")
+    choose(page, "see-time", "2")
+    assert page.evaluate("document.getElementById('see-now').textContent") == "2.00 s"
+    spoken = "document.getElementById('see-time').getAttribute('aria-valuetext')"
+    assert page.evaluate(spoken) == "2.00 s of 4.00 s"
+    # Late by 2 * 0.3 * 0.02 * 2 rad, which is 1.375 degrees.
+    (text,) = [text for text in listed(page) if text.startswith("dart")]
+    assert "1.4° off" in text
+    assert "dart semi-implicit 1.4° off" in page.evaluate(SAID)
+
+
+def test_the_moment_of_parting_is_one_press_away(page):
+    choose(page, "see-scenario", "1")
+    choose(page, "see-step", "2")
+    button = "document.querySelector('#see-runs button')"
+    assert page.evaluate(f"{button}.textContent") == "parts from the exact solution at 1.50 s"
+    page.evaluate(f"{button}.click()")
+    assert page.evaluate(TIME) == pytest.approx(1.5, abs=4e-3)
+    assert page.evaluate("document.querySelectorAll('#see-runs .parted').length") == 2
+    choose(page, "see-time", "1.4")
+    assert page.evaluate("document.querySelectorAll('#see-runs .parted').length") == 0
+
+
+def test_the_keyboard_plays_and_scrubs(page):
+    choose(page, "see-time", "1")
+    page.evaluate(f"{PLAY}.focus()")
+    page.press(" ", 32, " ")
+    page.wait(f"{PLAY}.textContent === 'Pause' && {TIME} > 1")
+    page.press(" ", 32, " ")
+    page.press("Tab", 9)
+    assert page.evaluate("document.activeElement.id") == "see-time"
+    before = page.evaluate(TIME)
+    page.press("ArrowRight", 39)
+    assert page.evaluate(TIME) == pytest.approx(before + 0.004, abs=1e-9)
+
+
+def test_another_scenario_has_another_body(page):
+    ball = page.evaluate(PICTURE)
+    told = "document.getElementById('see-told').textContent"
+    assert "homogeneous ball" in page.evaluate(told)
+    choose(page, "see-scenario", "1")
+    assert page.evaluate(told).startswith("A handle, spun: drawn from its parts")
+    assert page.evaluate(PICTURE) != ball
+    assert page.evaluate("document.getElementById('see-there').hash") == "#scenario-spun-again"
+
+
+def test_every_option_changes_the_picture(page):
+    choose(page, "see-scenario", "1")
+    seen = [page.evaluate(PICTURE)]
+    for name in ("momentum", "omega", "polhode", "trace", "overlaid"):
+        page.evaluate(f"document.getElementById('see-{name}').click()")
+        seen.append(page.evaluate(PICTURE))
+    choose(page, "see-turn", "-60")
+    seen.append(page.evaluate(PICTURE))
+    assert len(set(seen)) == len(seen)
+    assert page.messages == []
+
+
+def test_the_step_is_that_of_the_whole_page(page):
+    choose(page, "see-step", "2")
+    assert page.evaluate("document.getElementById('step').value") == "2"
+    assert "at step 0.02 s" in listed(page)[1]
+    page.evaluate(
+        "{ const s = document.getElementById('step'); s.value = '1';"
+        " s.dispatchEvent(new Event('change')); }"
+    )
+    assert page.evaluate("document.getElementById('see-step').value") == "1"
+    assert "at step 0.01 s" in listed(page)[1]
+
+
+def test_runs_can_be_chosen_and_left_out(page):
+    options = page.evaluate(
+        "[...document.querySelector('.see-engine').options].map((o) => [o.text, o.value])"
+    )
+    assert [text for text, _ in options] == [
+        *("none", "reference semi-implicit-euler", "reference lie-rk4"),
+        *("mujoco Euler", "mujoco RK4", "dart semi-implicit"),
+    ]
+    page.evaluate(
+        "document.querySelectorAll('.see-engine').forEach((s) => {"
+        " s.value = '-1'; s.dispatchEvent(new Event('change')); })"
+    )
+    assert len(listed(page)) == 1
+    assert page.evaluate(SAID).endswith("the exact solution alone.")
+
+
+def test_the_table_behind_it_holds_every_run(page):
+    choose(page, "see-scenario", "1")
+    rows = page.evaluate(
+        "[...document.querySelectorAll('#see-table tbody tr')]"
+        ".map((r) => [...r.cells].map((c) => c.textContent))"
+    )
+    assert len(rows) == 15
+    assert ["dart semi-implicit", "step 0.02 s", "1.50 s", "2.8°", "4.00 s"] in rows
+    assert ["mujoco RK4", "step 0.005 s", "does not", "8.6e-8°", "4.00 s"] in rows
+
+
+def test_a_hostile_title_stays_text(page):
+    told = "document.getElementById('see-told').textContent"
+    assert page.evaluate(told).startswith(HOSTILE)
+    assert page.evaluate("document.images.length") == 0
+    assert page.evaluate("document.title").startswith("omegadot report")
+
+
+@pytest.mark.parametrize("width", [360, 1280])
+def test_no_width_scrolls_sideways(browser, path, width):
+    page = opened(browser, path, width=width, dark=True)
+    root = "document.documentElement"
+    assert page.evaluate(f"{root}.scrollWidth - {root}.clientWidth") == 0
+
+
+def test_the_dark_has_a_picture_of_its_own(browser, path):
+    pictures = {opened(browser, path, dark=dark).evaluate(PICTURE) for dark in (False, True)}
+    assert len(pictures) == 2
+
+
+def test_the_script_turns_as_the_reference_does(page):
+    random = np.random.default_rng(3)
+    vectors, points = random.normal(size=(2, 20, 3))
+    script = (
+        f"(() => {{ {asset('see_turns.js')}; const v = {vectors.tolist()}, p = {points.tolist()};"
+        " const still = [1, 0, 0, 0]; return v.map((r, k) => ["
+        "...rotate(turnBy(r), p[k]), ...rotate(slerp(still, turnBy(r), 0.25), p[k]),"
+        " angleBetween(turnBy(times(r, 0.3)), turnBy(r))]); })()"
+    )
+    found = np.array(page.evaluate(script))
+    turned = np.linalg.norm(vectors, axis=1, keepdims=True)
+    short = np.where(turned > np.pi, vectors * (1 - 2 * np.pi / turned), vectors)
+    assert found[:, :3] == pytest.approx(rotate(exp_quaternion(vectors), points), abs=1e-14)
+    assert found[:, 3:6] == pytest.approx(rotate(exp_quaternion(0.25 * short), points), abs=1e-14)
+    between = 0.7 * turned[:, 0]
+    assert found[:, 6] == pytest.approx(np.minimum(between, 2 * np.pi - between), abs=1e-14)
+
+
+def test_the_script_reads_attitudes_as_they_were_packed(page):
+    random = np.random.default_rng(4)
+    q, w = normalize(random.normal(size=(6, 4))), random.uniform(-3.0, 3.0, (6, 3))
+    error, spin = random.uniform(-1.0, 1.0, (2, 3, 3))
+    codes = Codes()
+    for rows, largest in ((q, 1.0), (w, 3.0), (error, np.pi), (spin, 24.0)):
+        codes.add(rows, largest)
+    scenario = {"times": [0, 1, 2, 3, 4, 5], "start": 0, "fastest": 3.0, "frames": [[0, 2, 5]]}
+    entry = [0, 0, "step 1 s", 0, 42, 3, None, 1.0, 5.0]
+    packed = codes.all().view(np.int16).tolist()
+    script = (
+        f"(() => {{ {asset('see_turns.js')}; const scenario = {json.dumps(scenario)};"
+        f" const loaded = {{ codes: {packed}, data: {{ lines: [{{}}], spins: 8 }} }};"
+        " const exact = exactCourse(loaded, scenario);"
+        f" const run = runCourse(loaded, scenario, exact, {json.dumps(entry)});"
+        " return [...run.q.map((q, k) => [...q, ...run.w[k]]),"
+        " [...poseAt(run, 3).q, ...poseAt(run, 3).w]]; })()"
+    )
+    found = np.array(page.evaluate(script))
+    frames = [0, 2, 5]
+    truth = quaternion_product(q[frames], exp_quaternion(error))
+    half = 0.5 / 32767
+    assert attitude_angle(found[:3, :4], truth).max() <= (math.sqrt(3) * np.pi + 4) * half
+    assert np.abs(found[:3, 4:] - w[frames] - spin).max() <= 1.01 * (3.0 + 24.0) * half
+    # A third of the way from the sample at 2 s to that at 5 s, the short way round.
+    third = quaternion_product(
+        found[1, :4], exp_quaternion(rotation_between(found[1, :4], found[2, :4]) / 3)
+    )
+    assert attitude_angle(found[3, :4], third) <= 1e-14
+    assert found[3, 4:] == pytest.approx((2 * found[1, 4:] + found[2, 4:]) / 3, abs=1e-14)
+
+
+def test_the_script_paints_in_the_order_that_the_tree_gives(page):
+    tree = depth_order(APART)
+    eyes = [eye for eye, _ in rays(8)]
+    script = (
+        f"(() => {{ {asset('see_turns.js')}; {asset('see_draw.js')};"
+        f" const tree = grown({json.dumps(tree_of(tree, 1e-4))});"
+        f" return {np.array(eyes).tolist()}.map((eye) => {{ const seen = [];"
+        " walk(tree, eye, (piece) => seen.push(piece.middle)); return seen; }); })()"
+    )
+    for eye, middles in zip(eyes, page.evaluate(script), strict=True):
+        truth = [piece.corners.mean(axis=0) for piece in painted(tree, eye)]
+        # Each corner lies half a grain off at most.
+        assert np.abs(np.array(middles) - truth).max() <= 0.51e-4

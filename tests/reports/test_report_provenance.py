@@ -1,0 +1,113 @@
+"""Who gave a number, and what must stand in the command that gives it again."""
+
+from synthetic_record import build
+
+from omegadot.reports import matrix
+from omegadot.reports.glance import glances
+from omegadot.reports.matrix_cards import cards
+from omegadot.reports.provenance import (
+    Sources,
+    asked_as,
+    command_of,
+    kept_options,
+    provenance_payload,
+    sources_for,
+    steps_given,
+)
+from omegadot.reports.summary import summarise
+from omegadot.reports.tables import course_table, engine_table, run_table
+
+
+def run(*words, names=("sphere", "spun")):
+    return {"command": ["omegadot", "run", *words], "scenarios": [{"name": n} for n in names]}
+
+
+def test_a_scenario_of_a_file_is_asked_for_by_its_path():
+    given = run("--engine", "mujoco", "a folder/sphere.toml", "--timestep=0.1", "spun")
+    assert asked_as(given) == {"sphere": "a folder/sphere.toml", "spun": "spun"}
+
+
+def test_where_nothing_or_something_else_was_asked_for_the_name_stands():
+    assert asked_as(run()) == {"sphere": "sphere", "spun": "spun"}
+    assert asked_as(run("one")) == {"sphere": "sphere", "spun": "spun"}
+    assert asked_as({"scenarios": [{"name": "x"}]}) == {"x": "x"}
+
+
+def test_options_that_change_what_is_computed_are_kept():
+    given = run("--adapter", "mine.py:Mine", "--out", "x", "--timestep", "0.1", "--timestep=0.2")
+    assert kept_options(given) == ["--adapter", "mine.py:Mine"]
+    assert steps_given(given) == ["0.1", "0.2"]
+    assert command_of(given).startswith("omegadot run --adapter mine.py:Mine --out x")
+
+
+def test_a_source_has_one_number_and_the_engine_s_version():
+    sources = sources_for([{"name": "mujoco", "version": "4.0.0"}])
+    row = {"engine": "mujoco", "integrator": "RK4", "timestep": 0.01, "gate": "cost"}
+    assert sources.number(row) == sources.number(row) == 0
+    assert sources.number({**row, "engine_version": "3.0"}) == 1
+    found = provenance_payload(run("sphere", "spun"), sources, {"sphere": "a", "spun": "b"})
+    assert found["sources"][0] == ["mujoco", "4.0.0", "physics", "RK4", 0.01, None]
+    assert found["scenarios"] == {"a": ["sphere", "sphere"], "b": ["spun", "spun"]}
+    assert found["asked"] == ["sphere", "spun"]
+
+
+def test_rows_of_all_tables_name_one_and_the_same_run(record):
+    sources = sources_for(record.run["engines"])
+    own = record.metrics.filter(record.metrics["scenario"] == "sphere")
+    tasks = [task for task in record.run["tasks"] if task["scenario"] == "sphere"]
+    from omegadot.reports.courses import chart_courses
+
+    runs = run_table(own, tasks, sources).rows
+    courses = course_table(chart_courses(record)["sphere"], sources).rows
+    assert {row.heads: row.source for row in runs} == {row.heads: row.source for row in courses}
+    assert len({row.source for row in runs}) == len(runs)
+    listed = list(sources.numbers)
+    for row in engine_table(own, sources).rows:
+        if row.source < len(listed):
+            assert listed[row.source].integrator is None
+
+
+def test_cards_follow_the_matrix_and_name_the_runs_of_its_numbers(record):
+    summary, sources = summarise(record), Sources()
+    cells = [shown for _, row in matrix.matrix(summary) for shown in row]
+    found = cards(summary, sources, {"sphere": "one", "spun-again": "two"})
+    assert [cell.card for cell in cells] == list(range(len(found)))
+    place = next(k for k, c in enumerate(summary.columns) if c.engine == "mujoco")
+    anchor, status, part, numbers, own = found[place]
+    listed = list(sources.numbers)
+    assert (anchor, status, part, listed[own].integrator) == ("one", "pass", "", None)
+    drift = {what: listed[source] for what, _, source in numbers if "drift" in what}
+    assert [(s.integrator, s.timestep) for s in drift.values()] == [
+        ("RK4", 0.005),
+        ("Euler", 0.005),
+    ]
+
+
+def test_each_engine_in_one_row(record):
+    found = {g.engine: g for g in glances(summarise(record), record.metrics, Sources())}
+    assert list(found) == ["mujoco 1.0", "dart 1.0"]
+    mujoco = found["mujoco 1.0"]
+    assert (mujoco.status, mujoco.runs) == ("pass", "12 of 12 runs pass")
+    assert mujoco.residual == ("6.2e-15", "on spun-again; bound 1.0e-13")
+    # Of the two scenarios the errors are 1.2 h^4 and twice that.
+    assert mujoco.best[0] == f"{1.5 * 1.2 * 0.005**4:.1e}".replace("e-0", "e-") + " rad"
+    assert "RK4, step 0.005 s on spun-again" in mujoco.best[1]
+    assert mujoco.why == ("its schemes' errors", "all 12 runs equal the declared scheme")
+    assert mujoco.cost[0] == "2 … 2 µs"
+
+
+def test_an_engine_that_does_not_step_its_scheme_is_not_excused():
+    record = build(("sphere",), steps=(0.02, 0.01))
+    import polars as pl
+
+    wrong = (pl.col("engine") == "dart") & (pl.col("metric") == "match")
+    metrics = record.metrics.with_columns(
+        verdict=pl.when(wrong & (pl.col("timestep") == 0.01))
+        .then(pl.lit("fail"))
+        .otherwise("verdict")
+    )
+    found = {g.engine: g for g in glances(summarise(record), metrics, Sources())}
+    assert found["dart 1.0"].why == (
+        "not its schemes alone",
+        "1 of 2 runs equal the declared one",
+    )
