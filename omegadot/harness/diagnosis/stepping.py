@@ -70,7 +70,8 @@ def _precision(told: ToldRun) -> str:
 
     def single(state: State, field: str) -> bool:
         kept = getattr(state, field)[1:]
-        return np.array_equal(kept, kept.astype(np.float32).astype(float))
+        moves = bool(np.ptp(kept, axis=0).any())  # a body put to sleep has zeros
+        return moves and np.array_equal(kept, kept.astype(np.float32).astype(float))
 
     fields = {"orientation": "attitude", "angular_velocity": "omega"}
     found = [s for f, s in fields.items() if single(told.state, f) and not single(told.own, f)]

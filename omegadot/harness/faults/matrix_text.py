@@ -129,8 +129,9 @@ damped and hung. A number is the share of these bodies, in per cent, on which a 
 *any gate* is what decides. What a finer step could still decide is not counted. *Cause named* is
 the share on which `omegadot` says in words what is wrong, and is right. *No scheme* is *any gate*
 again, of the same engine with integrators that declare their orders only, so that there is no run
-of the reference to hold them against. Each engine runs with one integrator of order 1 and, where it
-has one, one of order 4.
+of the reference to hold them against; a fault that makes another scheme of the same order is none
+then (`PositionByFirstVelocity` of an engine of order 1). Each engine runs with one integrator of
+order 1 and, where it has one, one of order 4.
 
 **The published checks** beside them are tests that engines ship with, put to the same faulty
 engines as they stand: the same body, rates, step, length and bounds, from {bodies} random
