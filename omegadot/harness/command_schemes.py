@@ -100,25 +100,14 @@ def exit_code(record: Record, choices: Sequence[EngineChoice]) -> int:
 
 def _print_text(record: Record) -> None:
     from rich.console import Console
-    from rich.table import Table
     from rich.text import Text
+
+    from omegadot.reports.text_grid import text_grid
 
     console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
     tables = [table for table in tables_of(record) if table.rows]
     for table in tables:
-        grid = Table(
-            title=table.title,
-            title_justify="left",
-            title_style="bold",
-            box=None,
-            padding=(0, 2, 0, 0),
-            header_style="bold",
-        )
-        for head in table.heads:
-            grid.add_column(head, overflow="fold")
-        for row in table.rows:
-            grid.add_row(*map(Text, row))
-        console.print(grid)
+        console.print(text_grid(table.title, table.heads, table.rows))
         console.print()
     for line in remarks_of(record):
         console.print(Text(line, style="yellow"))

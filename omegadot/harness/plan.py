@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Description, Integrator
+from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Array, State, System
 from omegadot.scenarios import Scenario
 
@@ -34,8 +35,7 @@ class Sweep:
     @property
     def sample_steps(self) -> NDArray[Any]:
         """The step numbers that are kept: the start, every `every`-th, the end."""
-        kept = np.arange(0, self.steps + 1, self.every)
-        return kept if kept[-1] == self.steps else np.append(kept, self.steps)
+        return np.array(kept_steps(self.steps, self.every))
 
     @property
     def times(self) -> Array:

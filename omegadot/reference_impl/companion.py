@@ -18,7 +18,7 @@ from omegadot.reference_impl.body_origin import from_origin, origin_acceleration
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
-from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.stepping import kept_steps, step_through
 from omegadot.reference_impl.system import Array, State, System
 
 # Lanes share their samples; beyond this many rows it is cheaper to run each step by itself.
@@ -36,8 +36,7 @@ class Steps:
     @property
     def kept(self) -> NDArray[Any]:
         """The numbers of the steps that are kept."""
-        kept = np.arange(0, self.steps + 1, self.every)
-        return kept if kept[-1] == self.steps else np.append(kept, self.steps)
+        return np.array(kept_steps(self.steps, self.every))
 
 
 @dataclass(frozen=True)

@@ -7,29 +7,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from omegadot.reports import choice as words
 from omegadot.reports import choice_tables as tables
+from omegadot.reports.text_grid import text_grid
 
 _WIDTH_WHEN_PIPED = 240
-
-
-def _grid(grid: tables.Grid) -> Table:
-    table = Table(
-        title=grid.title,
-        title_justify="left",
-        title_style="bold",
-        box=None,
-        padding=(0, 2, 0, 0),
-        header_style="bold",
-    )
-    for head in grid.heads:
-        table.add_column(head, overflow="fold")
-    for row in grid.rows:
-        table.add_row(*map(Text, row))
-    return table
 
 
 def print_choice(choice: Mapping[str, Any], console: Console | None = None) -> None:
@@ -41,14 +25,14 @@ def print_choice(choice: Mapping[str, Any], console: Console | None = None) -> N
         console.print()
         for grid in (tables.ranking(choice, case), tables.refusals(case)):
             if grid.rows:
-                console.print(_grid(grid))
+                console.print(text_grid(grid.title, grid.heads, grid.rows))
                 console.print()
         for line in words.variant_lines(case):
             console.print(Text(line))
     overall = tables.everywhere(choice)
     if overall is not None and overall.rows:
         console.print()
-        console.print(_grid(overall))
+        console.print(text_grid(overall.title, overall.heads, overall.rows))
     console.print()
     for line in words.notes(choice):
         console.print(Text(line, style="yellow"))

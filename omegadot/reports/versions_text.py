@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from omegadot.reports.versions_sheet import Part, Sheet, Table
+from omegadot.reports.versions_sheet import Part, Sheet
 
 WIDTH_WHEN_PIPED = 160
 
@@ -39,6 +39,8 @@ def print_sheet(sheet: Sheet) -> None:
     from rich.console import Console
     from rich.text import Text
 
+    from omegadot.reports.text_grid import text_grid
+
     console = Console(
         width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False, emoji=False
     )
@@ -55,7 +57,7 @@ def print_sheet(sheet: Sheet) -> None:
         console.print(_grid(part.lines))
     for table in sheet.tables:
         console.print()
-        console.print(_table(table))
+        console.print(text_grid(table.title, table.heads, table.rows))
 
 
 def _grid(lines: list[tuple[str, str]]) -> object:
@@ -67,23 +69,4 @@ def _grid(lines: list[tuple[str, str]]) -> object:
     grid.add_column(overflow="fold")
     for what, text in lines:
         grid.add_row(Text(f"  {what}"), Text(text))
-    return grid
-
-
-def _table(table: Table) -> object:
-    from rich.table import Table as Grid
-    from rich.text import Text
-
-    grid = Grid(
-        title=table.title,
-        title_justify="left",
-        title_style="bold",
-        box=None,
-        padding=(0, 2, 0, 0),
-        header_style="bold",
-    )
-    for head in table.heads:
-        grid.add_column(head, overflow="fold")
-    for row in table.rows:
-        grid.add_row(*map(Text, row))
     return grid
