@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 import polars as pl
@@ -39,6 +40,12 @@ def draw_page(record: Record) -> str:
 
     Charts need JavaScript; the verdicts and every table do not.
     """
+    with ThreadPoolExecutor(1, "packing") as aside:
+        # Packing the chart library takes a core a third of a second, and leaves the others free.
+        return _drawn(record, aside.submit(plotly))
+
+
+def _drawn(record: Record, library: Future[str]) -> str:
     summary = summarise(record)
     sources = sources_for(record.run["engines"])
     charts = {name: chart for name, chart in chart_courses(record).items() if chart.units}
@@ -79,7 +86,7 @@ def draw_page(record: Record) -> str:
         css=asset("report.css") + asset("see.css"),
         see=see_part(record, charts, lines, anchors),
         js=script(),
-        plotly=plotly() if charts else "",
+        plotly=library.result() if charts else "",
         payload=pack_json(description),
         codes=pack_codes(codes),
         provenance=pack_json(origins),
