@@ -26,6 +26,7 @@ _FLAGS = {
 
 _SEMI_IMPLICIT = "semi-implicit-euler"
 _LINEARLY_IMPLICIT = "linearly-implicit-euler"
+_MIDPOINT_NOTE = "I (ω₁ - ω₀) = dt (τ₀ - ω_m × I ω_m), ω_m = (ω₀ + ω₁)/2, q₁ = q₀ exp(dt ω_m)"
 
 
 @dataclass(frozen=True)
@@ -79,8 +80,8 @@ def _midpoint(name: str, case: Case) -> Integrator:
     orders = _orders(order, 1)
     if case.offset or case.falls:
         orders["energy"] = 1
-    note = "I (ω₁ - ω₀) = dt (τ₀ - ω_m × I ω_m), ω_m = (ω₀ + ω₁)/2, q₁ = q₀ exp(dt ω_m)"
-    return Integrator(name, None, orders, note=note)
+    scheme = "body-axes-midpoint" if case.offset else "frozen-torque-midpoint"
+    return Integrator(name, scheme, orders, note=_MIDPOINT_NOTE)
 
 
 def _euler(case: Case) -> Integrator:

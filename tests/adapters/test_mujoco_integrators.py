@@ -24,6 +24,7 @@ NEW = SimpleNamespace(mjtIntegrator=SimpleNamespace(**vars(OLD.mjtIntegrator), m
 
 EXPLICIT, DAMPED = "semi-implicit-euler", "implicit-damping-euler"
 IMPLICIT = "linearly-implicit-euler"
+MIDPOINT, OFF_ORIGIN = "frozen-torque-midpoint", "body-axes-midpoint"
 
 
 def declared(case: Case, engine: SimpleNamespace = NEW) -> dict[str, Integrator]:
@@ -47,20 +48,21 @@ def test_integrators_are_taken_by_name() -> None:
     ("version", "implicit", "fast"),
     [
         ((3, 6, 0), IMPLICIT, EXPLICIT),
-        ((3, 7, 0), None, None),
-        ((3, 8, 0), None, None),
-        ((3, 8, 1), IMPLICIT, None),
-        ((3, 10, 0), IMPLICIT, None),
+        ((3, 7, 0), MIDPOINT, MIDPOINT),
+        ((3, 8, 0), MIDPOINT, MIDPOINT),
+        ((3, 8, 1), IMPLICIT, MIDPOINT),
+        ((3, 10, 0), IMPLICIT, MIDPOINT),
         ((3, 11, 0), IMPLICIT, IMPLICIT),
         ((4, 0, 0), IMPLICIT, IMPLICIT),
     ],
 )
-def test_free_bodies_by_version(
-    version: tuple[int, ...], implicit: str | None, fast: str | None
-) -> None:
+def test_free_bodies_by_version(version: tuple[int, ...], implicit: str, fast: str) -> None:
     found = declared(Case(version))
     assert (found["implicit"].scheme, found["implicitfast"].scheme) == (implicit, fast)
-    if fast is None:
+    off = declared(Case(version, offset=True))
+    for name, scheme in (("implicit", implicit), ("implicitfast", fast)):
+        assert off[name].scheme == (OFF_ORIGIN if scheme == MIDPOINT else scheme)
+    if fast == MIDPOINT:
         assert found["implicitfast"].orders["omega"] == 2
         assert declared(Case(version, damped=True))["implicitfast"].orders["omega"] == 1
         assert declared(Case(version, turns_torque=True))["implicitfast"].orders["attitude"] == 1

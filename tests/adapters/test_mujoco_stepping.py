@@ -79,13 +79,26 @@ def stepped(of: System, scheme: str, initial: State, dt: float, steps: int) -> t
     return State(*(value[:, 0] for value in parts(lanes))), float(max(apart)) / distance
 
 
-def assert_equal_to_rounding(found: State, expected: State, growth: float) -> None:
-    """Each step rounds by a few eps, and later steps enlarge what earlier ones rounded."""
+def left_by_newton(of: System, scheme: str) -> float:
+    """What MuJoCo 3.7 to 3.10 leave of the midpoint equation a step, relative to ω.
+
+    Newton's method was seen to stop at residuals below 3e-13 of the momentum.
+    """
+    return 3e-13 * float(np.linalg.cond(of.body.inertia)) if "midpoint" in scheme else 0.0
+
+
+def assert_equal_to_rounding(
+    found: State, expected: State, growth: float, left: float = 0.0
+) -> None:
+    """Each step rounds by a few eps, and later steps enlarge what earlier ones rounded.
+
+    left: what a step leaves besides, of an equation it solves.
+    """
     steps = len(found.orientation)
     turned = State(normalize(expected.orientation), *parts(expected)[1:])
     for here, there in zip(parts(found), parts(turned), strict=True):
         size = max(1.0, float(np.abs(there).max()))
-        assert np.abs(here - there).max() <= 16 * EPS * steps * size * max(1.0, growth)
+        assert np.abs(here - there).max() <= (16 * EPS + left) * steps * size * max(1.0, growth)
 
 
 # -- schemes
@@ -102,12 +115,11 @@ def test_steps_equal_the_declared_scheme(setup: Setup, name: str, load: str) -> 
     of = system("full", load)
     adapter = loaded(of, setup)
     scheme = declared(adapter, name)
-    if scheme is None:  # the midpoint rule of MuJoCo 3.7 to 3.10
-        assert (3, 7) <= VERSION < (3, 11)
-        return
+    assert scheme is not None
     initial = place_on_pivot(of, at(states(1, 11, 2.0, 2.0), 0))
     found = adapter.run(initial, name, 0.05, 40, 1).state
-    assert_equal_to_rounding(found, *stepped(of, scheme, initial, 0.05, 40))
+    expected, growth = stepped(of, scheme, initial, 0.05, 40)
+    assert_equal_to_rounding(found, expected, growth, left_by_newton(of, scheme))
 
 
 def test_the_declared_schemes_differ_on_these_runs() -> None:
@@ -291,11 +303,9 @@ def test_flip_equals_the_declared_scheme_over_20_000_steps(name: str) -> None:
     of, initial = flip()
     adapter = loaded(of)
     scheme = declared(adapter, name)
-    if scheme is None:
-        assert (3, 7) <= VERSION < (3, 11)
-        return
+    assert scheme is not None
     found = adapter.run(initial, name, 0.001, 20_000, 1).state
-    assert_equal_to_rounding(found, *flip_by(scheme))
+    assert_equal_to_rounding(found, *flip_by(scheme), left_by_newton(of, scheme))
 
 
 def energy_ratio(name: str) -> float:

@@ -99,6 +99,10 @@ def assert_alike(page: str, made: str) -> None:
             assert ends[0] == pytest.approx(ends[1], rel=0.05), again
 
 
+# A torque held for the step errs in omega, which reaches the attitude in the steps after it alone.
+OWN_DEFECT = {"frozen-torque-midpoint": 3, "body-axes-midpoint": 3}
+
+
 def test_each_reference_scheme_identifies_itself_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     # Following what is left says nothing here: it is the same computation.
     monkeypatch.setattr(fingerprint, "FOLLOWING", ((0.02, 60, 20),))
@@ -128,7 +132,8 @@ def test_each_reference_scheme_identifies_itself_alone(monkeypatch: pytest.Monke
                 if defect.order is not None and shown.observed.order is not None:
                     assert defect.order > shown.observed.order + 0.85, (name, kind, channel)
             attitude = found.defects["attitude"].observed.order
-            assert attitude == pytest.approx(SCHEMES[name].orders["attitude"] + 1, abs=0.15)
+            own = OWN_DEFECT.get(name, SCHEMES[name].orders["attitude"] + 1)
+            assert attitude == pytest.approx(own, abs=0.15)
 
 
 def test_a_wrong_declaration_is_found_out(tmp_path: Path) -> None:

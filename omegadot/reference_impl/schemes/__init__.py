@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from omegadot.reference_impl.schemes import (
+    body_axes_midpoint,
+    frozen_torque_midpoint,
     implicit_damping_euler,
     implicit_midpoint,
     lie_rk4,
@@ -27,6 +29,8 @@ SCHEMES: dict[str, Scheme] = {
         munthe_kaas_rk4,
         lie_rk4_naive,
         implicit_midpoint,
+        frozen_torque_midpoint,
+        body_axes_midpoint,
     )
 }
 

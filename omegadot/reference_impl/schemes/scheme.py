@@ -33,6 +33,7 @@ class Scheme:
     orders: order of the accumulated error per channel, whatever loads act; smooth motion.
     special: where a simpler system does better, per kind of system (see `kinds_of`); None stands
     for a channel without truncation error, in which only rounding is left.
+    solved_to: relative residual at which engines stop solving the step's equation; 0 at rounding.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Scheme:
     orders: dict[str, int]
     special: Mapping[str, Mapping[str, int | None]] = field(default_factory=dict)
     source: str = ""
+    solved_to: float = 0.0
 
     def order(self, channel: str, system: System) -> int | None:
         """The declared order of a channel for this system; None where only rounding is left."""
