@@ -53,7 +53,8 @@ def torque_of(system: System) -> Callable[[State], Array]:
         acting.append(gravity_torque)
 
     def torque(state: State) -> Array:
-        total = np.zeros_like(state.angular_velocity)
+        w = state.angular_velocity
+        total = np.zeros(w.shape, w.dtype)
         for part in acting:
             total = total + part(system, state)
         return total

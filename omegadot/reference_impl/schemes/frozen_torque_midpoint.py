@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from omegadot.reference_impl.rotations import turn_in_body
@@ -25,8 +23,9 @@ def mean_velocity(
 ) -> tuple[Array, Acceleration]:
     """``ω_m = ω₀ + h/2 ω̇*`` and the accelerations ``a*`` by which the step changes velocities.
 
-    ``a* = a(q₀, ω_m) - D (ω_m - ω₀)`` with ``D = ∂a/∂ω`` at ω = 0: of what depends on ω, the part
-    that is quadratic is taken at ω_m and the part that is linear, damping, stays at ω₀. So
+    Of what depends on ω, the part that is quadratic, and so even, is taken at ω_m; the part that
+    is linear, and so odd, damping, stays at ω₀:
+    ``a* = (a(q₀, ω_m) + a(q₀, -ω_m))/2 + (a(q₀, ω₀) - a(q₀, -ω₀))/2``. Hence
     ``I (ω₁ - ω₀) = h (τ₀ - ω_m × I ω_m)`` with ``ω_m = (ω₀ + ω₁)/2``.
 
     Newton's method, the Jacobian in ω being that of the step's start, until it stands still to
@@ -34,24 +33,37 @@ def mean_velocity(
     """
     w0, half = state.angular_velocity, 0.5 * h
     turn = half if isinstance(half, float) else half[..., None]
-    found, angular, _ = acceleration_and_jacobian(acceleration, state)
-    size = _natural_rate(w0, found.angular)
-    rest = replace(state, angular_velocity=np.zeros_like(w0))
-    _, angular_rest, linear_rest = acceleration_and_jacobian(acceleration, rest, size)
-    inverse = inverse_of_one_minus(turn * (angular - angular_rest))
+    even, odd = _even_and_odd(acceleration, state)
+    rate = _natural_rate(w0, even.angular + odd.angular)
+
+    def starred(at: State) -> Acceleration:
+        even, _ = _even_and_odd(acceleration, at)
+        return Acceleration(even.angular + odd.angular, even.linear + odd.linear)
+
+    found, jacobian, _ = acceleration_and_jacobian(starred, state, rate)
+    inverse = inverse_of_one_minus(turn * jacobian)
     w = w0 + apply(inverse, half * found.angular)
     eps, last = np.finfo(w.dtype).eps, np.inf
     for _ in range(MOST_ITERATIONS):
-        found = acceleration(replace(state, angular_velocity=w))
-        rate = found.angular - apply(angular_rest, w - w0)
-        change = apply(inverse, w0 + half * rate - w)
+        found = starred(_with_velocity(state, w))
+        change = apply(inverse, w0 + half * found.angular - w)
         w = w + change
         size = np.sqrt(np.add.reduce(change * change, -1) / np.add.reduce(w * w, -1).clip(1e-300))
         if np.all((size <= eps) | ~(size < 0.5 * last)):
             break
         last = size
     w = np.where((size <= np.sqrt(eps))[..., None], w, np.nan)
-    return w, Acceleration(2 / h * (w - w0), found.linear - apply(linear_rest, w - w0))
+    return w, Acceleration(2 / h * (w - w0), found.linear)
+
+
+def _even_and_odd(acceleration: AccelerationOf, state: State) -> tuple[Acceleration, Acceleration]:
+    """``(a(ω) + a(-ω))/2`` and ``(a(ω) - a(-ω))/2`` at one attitude, in one call."""
+    w = state.angular_velocity
+    q, x, v = state.orientation, state.position, state.linear_velocity
+    found = acceleration(State(*(np.array(pair) for pair in ([q, q], [w, -w], [x, x], [v, v]))))
+    (w_dot, w_dot_back), (pull, pull_back) = found.angular, found.linear
+    even = Acceleration(0.5 * (w_dot + w_dot_back), 0.5 * (pull + pull_back))
+    return even, Acceleration(0.5 * (w_dot - w_dot_back), 0.5 * (pull - pull_back))
 
 
 def _natural_rate(w: Array, omega_dot: Array) -> Array:
@@ -59,6 +71,10 @@ def _natural_rate(w: Array, omega_dot: Array) -> Array:
     spin, pull = np.add.reduce(w * w, -1), np.add.reduce(omega_dot * omega_dot, -1)
     rate: Array = np.sqrt(spin + np.sqrt(pull))[..., None]
     return rate
+
+
+def _with_velocity(state: State, w: Array) -> State:
+    return State(state.orientation, w, state.position, state.linear_velocity)
 
 
 def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
