@@ -87,7 +87,7 @@ def _sentence(error: Exception) -> str | None:
         text = " ".join(str(error.format_message()).split())
         return text if text.endswith(".") else f"{text}."
     from omegadot.adapters.registry import AdapterError
-    from omegadot.harness.usage import UsageError
+    from omegadot.harness.usage_error import UsageError
     from omegadot.reports.schema import RecordError
     from omegadot.scenarios import ScenarioError
 

@@ -17,7 +17,8 @@ from omegadot.harness.checks.select import Selection, Words, select, target_of
 from omegadot.harness.checks.store import store
 from omegadot.harness.checks.suite import Suite
 from omegadot.harness.checks.tally import Tally, coverage
-from omegadot.harness.usage import UsageError, adapters_named, nearest
+from omegadot.harness.usage import adapters_named, nearest
+from omegadot.harness.usage_error import UsageError
 
 Results = dict[Check, Result]
 

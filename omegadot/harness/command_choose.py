@@ -23,7 +23,8 @@ from omegadot.harness.choose.requirements_file import read_requirements
 from omegadot.harness.machine import describe_machine, package_versions
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import EngineChoice
-from omegadot.harness.usage import UsageError, engine_choices
+from omegadot.harness.usage import engine_choices
+from omegadot.harness.usage_error import UsageError
 from omegadot.reports.choice_files import check_choice_folder, write_choice
 from omegadot.reports.choice_text import print_choice
 from omegadot.reports.run_json import dump_json

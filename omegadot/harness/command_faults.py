@@ -20,7 +20,8 @@ from omegadot.harness.faults.matrix_text import (
     summary_of,
 )
 from omegadot.harness.faults.prepared import Pool
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 
 ENGINES = tuple(name for name in BUILT_IN if name != "exact")  # the truth cannot be wrong
 WIDTH_WHEN_PIPED = 200

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import secrets
 from pathlib import Path
 
-from omegadot.harness.usage import UsageError
-from omegadot.reports.record import PAGE, read_record
-from omegadot.reports.schema import RecordError
+from omegadot.harness.usage_error import UsageError
+from omegadot.reports.chart_library import packed_library
 
 TWO_RUNS = Path("two-runs.html")
 
@@ -21,26 +21,39 @@ def report_of(folders: list[Path], out: Path | None, figures: Path | None, markd
         raise UsageError("--markdown prints and writes no file; leave out --out and --figures.")
     if len(folders) == 2:
         return _of_two(folders[0], folders[1], out, figures, markdown)
+    if not markdown and figures is None:
+        return str(redraw(folders[0], out))
+    from omegadot.reports.record import read_record
+
     if markdown:
         from omegadot.reports.markdown import markdown_of
 
         return markdown_of(read_record(folders[0])).rstrip("\n")
-    if figures is None:
-        return str(redraw(folders[0], out))
     from omegadot.reports.static import write_figures
 
+    assert figures is not None
     written = [redraw(folders[0], out)] if out is not None else []
     return "\n".join(map(str, [*written, *write_figures(read_record(folders[0]), figures)]))
 
 
 def redraw(folder: Path, out: Path | None = None) -> Path:
     """Draw the page anew, into the run's folder or where `out` says. Raises RecordError."""
-    from omegadot.reports.page import draw_page
+    if folder.is_dir():
+        packed_library()  # begun before anything else is imported or read: it has a core to itself
+    collecting = gc.isenabled()
+    gc.disable()  # nothing that is made here is garbage before the page is whole
+    try:
+        from omegadot.reports.page import draw_page
+        from omegadot.reports.record import PAGE, read_record
 
-    return _write(draw_page(read_record(folder)), out or folder / PAGE)
+        return _write(draw_page(read_record(folder)), out or folder / PAGE)
+    finally:
+        if collecting:
+            gc.enable()
 
 
 def _of_two(was: Path, now: Path, out: Path | None, figures: Path | None, markdown: bool) -> str:
+    from omegadot.reports.record import read_record
     from omegadot.reports.two_runs import compare_records
     from omegadot.reports.two_runs.page import draw_two_runs
     from omegadot.reports.two_runs.text import as_markdown
@@ -56,6 +69,8 @@ def _of_two(was: Path, now: Path, out: Path | None, figures: Path | None, markdo
 
 def _write(page: str, target: Path) -> Path:
     """Write a page, whole or not at all."""
+    from omegadot.reports.schema import RecordError
+
     if target.is_dir():
         raise RecordError(f"{target}: is a folder; name a file.")
     fresh = target.with_name(f".{target.name}.{secrets.token_hex(6)}")

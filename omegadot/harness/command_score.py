@@ -27,7 +27,8 @@ from omegadot.harness.score.require import requirements_of
 from omegadot.harness.score.rows import rows_of
 from omegadot.harness.score.table import Table, read_table
 from omegadot.harness.score.tell import WIDTH_WHEN_PIPED, machine_words, print_score
-from omegadot.harness.usage import UsageError, case_of, engine_choices, scenarios_of
+from omegadot.harness.usage import case_of, engine_choices, scenarios_of
+from omegadot.harness.usage_error import UsageError
 from omegadot.reports.page import draw_page
 from omegadot.reports.record import PAGE, Record, check_folder, write_record
 from omegadot.reports.run_json import dump_json

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import typer
 
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 from omegadot.harness.versions.aims import Aims, aims_of, check_integrators
 from omegadot.harness.versions.bisected import bisect_metric
 from omegadot.harness.versions.environments import Environments, default_cache

@@ -9,12 +9,9 @@ from collections.abc import Iterable, Sequence
 from omegadot.adapters.protocol import Description
 from omegadot.adapters.registry import registered
 from omegadot.harness.plan import Case, EngineChoice, sweep_of
+from omegadot.harness.usage_error import UsageError
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.scenarios import Scenario, builtin_names, find_scenario
-
-
-class UsageError(ValueError):
-    """The command line asks for what cannot be; the message is one sentence."""
 
 
 def nearest(word: str, known: Iterable[str]) -> str:

@@ -1,13 +1,18 @@
 """What is shown: the record's format, the summary, the terminal's table, the HTML page.
 
-This room reads records alone, so that a page can be drawn again from a stored run.
+This room reads records alone, so that a page can be drawn again from a stored run. What is named
+here is imported when it is first asked for.
 """
 
-from omegadot.reports.page import draw_page
-from omegadot.reports.record import Record, check_folder, read_record, write_record
-from omegadot.reports.schema import SCHEMA, RecordError
-from omegadot.reports.summary import Summary, summarise
-from omegadot.reports.terminal import print_summary
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from omegadot.reports.page import draw_page
+    from omegadot.reports.record import Record, check_folder, read_record, write_record
+    from omegadot.reports.schema import SCHEMA, RecordError
+    from omegadot.reports.summary import Summary, summarise
+    from omegadot.reports.terminal import print_summary
 
 __all__ = [
     "SCHEMA",
@@ -21,3 +26,17 @@ __all__ = [
     "summarise",
     "write_record",
 ]
+_PLACES = {
+    "page": ("draw_page",),
+    "record": ("Record", "check_folder", "read_record", "write_record"),
+    "schema": ("SCHEMA", "RecordError"),
+    "summary": ("Summary", "summarise"),
+    "terminal": ("print_summary",),
+}
+
+
+def __getattr__(name: str) -> Any:
+    for module, names in _PLACES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{module}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -70,7 +70,7 @@ def _placed(found: State, exact: State) -> State:
 def divergence(system: System, samples: pl.DataFrame) -> tuple[Array, dict[str, str]]:
     """(n, channels) errors of samples of one system, and the unit of each channel that says much.
 
-    samples: the columns STATE, and again with the suffix ``_exact``; NaN comes of what is null.
+    samples: the columns time and STATE, and STATE again with the suffix ``_exact``; NaN comes of what is null.
     omega_dot: ``|omega_dot - exact|``, rad/s².  attitude: the angle between the two, rad.
     energy: ``|E - E_exact|`` over the exact course's greatest kinetic energy; of the rotation where
     a trace gives no position and velocity.  Momenta:
@@ -78,24 +78,25 @@ def divergence(system: System, samples: pl.DataFrame) -> tuple[Array, dict[str, 
     absolute where that is zero.
     """
     (found, found_rate), (exact, exact_rate) = _states(samples, ""), _states(samples, "_exact")
+    # Samples at the same time stand beside the same exact one: what it has is worked out once.
+    _, first, at = np.unique(samples["time"], return_index=True, return_inverse=True)
+    once = State(*(values[first] for values in vars(exact).values()))
     errors, units = np.full((len(samples), len(CHANNELS)), np.nan), {}
     # A diverged run may hold anything; its overflow is drawn at the top, not warned about.
     with np.errstate(all="ignore"):
+        energy = total_energy(system, _placed(found, exact))
+        exact_energy = total_energy(system, once)
         absolute = {
             "omega_dot": (_norm(found_rate - exact_rate), None, "rad/s²"),
-            "energy": (
-                np.abs(total_energy(system, _placed(found, exact)) - total_energy(system, exact)),
-                kinetic_energy(system, exact),
-                "J",
-            ),
+            "energy": (np.abs(energy - exact_energy[at]), kinetic_energy(system, once), "J"),
             "attitude": (attitude_angle(found.orientation, exact.orientation), None, "rad"),
         }
         for channel, momentum, unit in (
             ("angular_momentum", angular_momentum, "kg m²/s"),
             ("linear_momentum", linear_momentum, "kg m/s"),
         ):
-            truth = momentum(system, exact)
-            absolute[channel] = (_norm(momentum(system, found) - truth), _norm(truth), unit)
+            truth = momentum(system, once)
+            absolute[channel] = (_norm(momentum(system, found) - truth[at]), _norm(truth), unit)
         for k, channel in enumerate(CHANNELS):
             error, size, unit = absolute[channel]
             relative = False

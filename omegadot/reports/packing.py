@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import base64
-import gzip
 import json
 
 import numpy as np
 
 from omegadot.reference_impl.system import Array
+from omegadot.reports.chart_library import pack
 
 # What a logarithmic axis cannot show, zero among it, is drawn at the floor and said to be there.
 FLOOR_DECADE, CEILING_DECADE = -17, 20
 FLOOR = 10.0**FLOOR_DECADE
 _MISSING = 0xFFFF
 _LARGEST_CODE = _MISSING - 1
-
-
-def pack(data: bytes) -> str:
-    """Gzip and base64, the same text for the same bytes."""
-    return base64.b64encode(gzip.compress(data, compresslevel=6, mtime=0)).decode("ascii")
 
 
 def pack_json(value: object) -> str:

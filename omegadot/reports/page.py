@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 import polars as pl
 
 from omegadot.reports import matrix
+from omegadot.reports.chart_library import packed_library
 from omegadot.reports.copies import copies_of, sentence, where
 from omegadot.reports.courses import POINTS, chart_courses
 from omegadot.reports.glance import glances
@@ -21,7 +21,7 @@ from omegadot.reports.record import Record
 from omegadot.reports.sections import drawings, measured_in, sections_of
 from omegadot.reports.see import see_part
 from omegadot.reports.summary import STATUSES, summarise
-from omegadot.reports.templating import asset, environment, plotly, script
+from omegadot.reports.templating import asset, environment, script
 from omegadot.reports.why import order_table, scheme_table
 
 _JUDGED_SHOWN = 50
@@ -40,12 +40,7 @@ def draw_page(record: Record) -> str:
 
     Charts need JavaScript; the verdicts and every table do not.
     """
-    with ThreadPoolExecutor(1, "packing") as aside:
-        # Packing the chart library takes a core a third of a second, and leaves the others free.
-        return _drawn(record, aside.submit(plotly))
-
-
-def _drawn(record: Record, library: Future[str]) -> str:
+    library = packed_library()
     summary = summarise(record)
     sources = sources_for(record.run["engines"])
     charts = {name: chart for name, chart in chart_courses(record).items() if chart.units}

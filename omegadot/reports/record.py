@@ -11,8 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import polars as pl
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from omegadot.reports import schema
 from omegadot.reports.run_json import check_run, dump_json, read_run
@@ -104,6 +102,8 @@ def _take_the_place_of(folder: Path, fresh: Path) -> None:
 
 
 def _write_parquet(frame: pl.DataFrame, fields: Mapping[str, Field], path: Path) -> None:
+    import pyarrow.parquet as pq  # only who writes waits for it
+
     table = frame.to_arrow(compat_level=pl.CompatLevel.oldest()).cast(schema.arrow_schema(fields))
     # Words and steps repeat and pack well; measured numbers do not, and trying costs time.
     repeating = [n for n, f in fields.items() if f.dtype is pl.String or n in _REPEATING]
@@ -127,10 +127,10 @@ def read_record(folder: Path) -> Record:
 
 def _read_parquet(path: Path, fields: Mapping[str, Field]) -> pl.DataFrame:
     try:
-        # Opened here, so that the file is not taken for a dataset and closes with its reader.
+        # Opened here, so that the name is not taken for a pattern of many files.
         with path.open("rb") as file:
-            frame = pl.DataFrame(pl.from_arrow(pq.read_table(file)))
-    except (OSError, pa.ArrowException, pl.exceptions.PolarsError) as error:
+            frame = pl.read_parquet(file)
+    except (OSError, pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
         raise RecordError(
             f"{path}: not a readable Parquet file (truncated or damaged); run again."
         ) from error

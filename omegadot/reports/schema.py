@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import polars as pl
-import pyarrow as pa
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 SCHEMA = 1
 
@@ -96,6 +99,8 @@ TRAJECTORIES: Mapping[str, Field] = {
 
 def arrow_schema(fields: Mapping[str, Field]) -> pa.Schema:
     """The same columns for Arrow, each with its unit in the field's metadata."""
+    import pyarrow as pa  # only who writes waits for it
+
     kinds = {pl.String: pa.large_string(), pl.Float64: pa.float64()}
     return pa.schema(
         [

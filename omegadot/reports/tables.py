@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import polars as pl
 
@@ -34,8 +34,7 @@ _ENGINE = ["engine", "engine_version", "setup"]
 _RUN = [*_ENGINE, "integrator", "timestep", "accuracy"]
 
 
-@dataclass(frozen=True)
-class Value:
+class Value(NamedTuple):
     """One cell: its text, and "fail" or "declared" where it must stand out."""
 
     text: str
@@ -141,25 +140,33 @@ def run_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
 def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any, sources: Sources) -> Table:
     """One row a key, one column a (gate, channel, metric, unit), each cell its worst row."""
     keys = ["gate", "channel", "metric", "unit"]
-    found = metrics.select(*heads, *keys, "value", "bound", "verdict").rows()
-    width = len(heads)
-    named = dict.fromkeys(row[width : width + 4] for row in found)
-    columns = sorted(named, key=lambda column: GATES.index(column[0]))
-    places = {column: place for place, column in enumerate(columns)}
+    # Runs and measures by number: comparing their names row by row would take most of the time.
+    measures = metrics.select(keys).unique(maintain_order=True)
+    order = sorted(range(len(measures)), key=lambda k: GATES.index(measures["gate"][k]))
+    measures = measures[order].with_row_index("place")
+    columns = measures.select(keys).rows()
+    found = metrics.with_columns(run=pl.struct(heads).rle_id()).join(
+        measures, on=keys, how="left", nulls_equal=True, maintain_order="left"
+    )
     rows: dict[tuple[str, ...], list[Value]] = {}
     numbers: dict[tuple[str, ...], int] = {}
-    sizes: dict[tuple[tuple[str, ...], int], tuple[bool, float]] = {}
-    for row in found:
-        names = name(row[:width])
+    weights: dict[tuple[str, ...], list[tuple[bool, float]]] = {}
+    keyed = []
+    for key in found.unique("run", keep="first", maintain_order=True).select(heads).rows():
+        names = name(key)
+        keyed.append(names)
         if names not in numbers:
-            numbers[names] = sources.number(dict(zip(heads, row[:width], strict=True)))
-        place = places[row[width : width + 4]]
-        value, bound, verdict = row[-3:]
+            numbers[names] = sources.number(dict(zip(heads, key, strict=True)))
+            rows[names] = [EMPTY] * len(columns)
+            weights[names] = [(False, float("-inf"))] * len(columns)
+    for at, place, value, bound, verdict in found.select(
+        "run", "place", "value", "bound", "verdict"
+    ).rows():
+        names = keyed[at]
         weight = (verdict == "fail", float("inf") if value is None or value != value else value)
-        if sizes.get((names, place), (False, float("-inf"))) <= weight:
-            sizes[names, place] = weight
-            line = rows.setdefault(names, [EMPTY] * len(columns))
-            line[place] = _value(value, bound, verdict)
+        if weights[names][place] <= weight:
+            weights[names][place] = weight
+            rows[names][place] = _value(value, bound, verdict)
     titles = [": ".join(filter(None, (g, CHANNEL_NAMES.get(c)))) for g, c, _, _ in columns]
     groups: list[tuple[str, int]] = []
     for title in titles:

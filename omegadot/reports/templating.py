@@ -1,4 +1,4 @@
-"""Templates, style and script of the page, and the chart library that goes into it."""
+"""Templates, style and script of the page."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from jinja2 import Environment, PackageLoader
 from markupsafe import Markup, escape
 
 from omegadot.reports.numbers import knob, short
-from omegadot.reports.packing import pack
 from omegadot.reports.tables import Table, unit_text
 
 # One idea a file; what comes first is spoken of by what comes after.
@@ -83,9 +82,3 @@ def script(names: Iterable[str] = SCRIPTS) -> Markup:
     """The page's own script: its files in their order, in one scope that nothing else sees."""
     parts = (asset(f"{name}.js") for name in names)
     return Markup('"use strict";\n(() => {{\n{}}})();\n').format(Markup("").join(parts))
-
-
-@cache
-def plotly() -> str:
-    """Plotly's own script, out of the installed package, packed."""
-    return pack(files("plotly").joinpath("package_data", "plotly.min.js").read_bytes())

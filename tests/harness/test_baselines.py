@@ -23,7 +23,7 @@ from omegadot.harness.checks.check import Check
 from omegadot.harness.checks.compare import compare
 from omegadot.harness.checks.generate import Subject
 from omegadot.harness.checks.meaning import meaning
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 
 RUN = RunKey("RK4", 0.01)
 STORED = ScenarioFigures(

@@ -15,7 +15,8 @@ from omegadot.harness.checks.select import Words, select
 from omegadot.harness.checks.tally import Tally, coverage
 from omegadot.harness.command_check import words_of
 from omegadot.harness.rows import Row
-from omegadot.harness.usage import UsageError, case_of
+from omegadot.harness.usage import case_of
+from omegadot.harness.usage_error import UsageError
 from omegadot.scenarios import load_builtin
 
 MUJOCO = Subject("mujoco", "4.0.0", ("RK4",), ("Euler", "RK4"))

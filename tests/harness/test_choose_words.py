@@ -13,7 +13,7 @@ from omegadot.harness.choose.motion import Motion, cases_of
 from omegadot.harness.choose.requirements import Requirements, merged
 from omegadot.harness.choose.requirements_file import read_requirements
 from omegadot.harness.choose.units import quantity
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 from omegadot.scenarios import ScenarioError
 
 QUANTITIES = [

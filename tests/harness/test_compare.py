@@ -14,7 +14,7 @@ from command_line import omegadot, quick_scenario
 from omegadot.harness.checks.baseline import OF_A_RUN, OF_A_SCENARIO
 from omegadot.harness.command_compare import compare_folders
 from omegadot.harness.command_report import report_of
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 from omegadot.reports.record import METRICS, read_record
 from omegadot.reports.schema import RecordError
 from omegadot.reports.two_runs.figures import changed_figures, paired

@@ -16,7 +16,8 @@ from omegadot.harness.checks.exceptions import (
     with_exceptions,
 )
 from omegadot.harness.plan import EngineChoice
-from omegadot.harness.usage import UsageError, engine_choices
+from omegadot.harness.usage import engine_choices
+from omegadot.harness.usage_error import UsageError
 
 LINK = "https://example.org/issues/17"
 NAME = "nogyroscopic"

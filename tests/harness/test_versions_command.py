@@ -15,7 +15,7 @@ from command_line import QUICK, Result, omegadot, quick_scenario
 from versioned_engine import ALL, TARGET, words
 
 from omegadot.harness.command_versions import Words, tell_versions
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 from omegadot.reports.versions_sheet import sheet_of
 from omegadot.reports.versions_text import markdown_of, print_sheet
 

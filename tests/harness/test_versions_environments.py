@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 from omegadot.harness.versions import installer as installing
 from omegadot.harness.versions.environments import Absent, Environments, Place
 from omegadot.harness.versions.installer import (

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 from omegadot.harness.versions.environments import default_cache
 from omegadot.harness.versions.metric import Figure, differ, matching, shown, unknown_words
 from omegadot.harness.versions.product import product_of

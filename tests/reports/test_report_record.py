@@ -78,7 +78,7 @@ def test_a_write_that_fails_leaves_the_earlier_record(folder, monkeypatch, step)
         real(source, target)
 
     if step == "write_table":
-        monkeypatch.setattr(record_module.pq, "write_table", refuse)
+        monkeypatch.setattr(pq, "write_table", refuse)
     else:
         monkeypatch.setattr(record_module.os, "replace", refuse_the_new)
     with pytest.raises(RecordError, match="No space left") as error:
@@ -92,7 +92,7 @@ def test_an_interrupted_write_leaves_nothing(tmp_path, monkeypatch, record):
     def interrupt(*_args, **_more):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(record_module.pq, "write_table", interrupt)
+    monkeypatch.setattr(pq, "write_table", interrupt)
     with pytest.raises(KeyboardInterrupt):
         write_record(record, tmp_path / "run", "")
     assert os.listdir(tmp_path) == []

@@ -15,7 +15,7 @@ def samples(**own: float) -> pl.DataFrame:
     found = {**exact, **own}
     columns = {name: [value, value] for name, value in found.items()}
     columns |= {f"{name}_exact": [value, value] for name, value in exact.items()}
-    return pl.DataFrame(columns)
+    return pl.DataFrame({"time": [0.0, 1.0], **columns})
 
 
 NAN = float("nan")

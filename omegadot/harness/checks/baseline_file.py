@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 
 SCHEMA = 1
 DIGITS = 3

@@ -17,7 +17,8 @@ from typing import Any
 from omegadot.adapters.registry import BUILT_IN
 from omegadot.harness.checks.check import Check, Result
 from omegadot.harness.plan import EngineChoice
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 
 OWN_FOLDER = Path(__file__).parent.parent / "exceptions"
 SUFFIX = ".exceptions.toml"

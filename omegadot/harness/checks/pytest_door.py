@@ -17,7 +17,7 @@ from omegadot.harness.checks.store import store
 from omegadot.harness.checks.suite import Suite
 from omegadot.harness.checks.tally import Tally, coverage
 from omegadot.harness.pytest_plugin import OPTIONS, PREFIX, dest_of
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 from omegadot.scenarios import ScenarioError
 
 # What xdist carries from the session that hands out the work to those that do it, and back.

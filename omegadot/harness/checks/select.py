@@ -12,12 +12,12 @@ from omegadot.adapters.registry import registered
 from omegadot.harness.checks.exceptions import DeclaredException, exceptions_of
 from omegadot.harness.plan import Case, EngineChoice
 from omegadot.harness.usage import (
-    UsageError,
     adapters_named,
     case_of,
     engine_choices,
     scenarios_of,
 )
+from omegadot.harness.usage_error import UsageError
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from omegadot.harness.plan import Case
-from omegadot.harness.usage import UsageError, case_of, scenarios_of
+from omegadot.harness.usage import case_of, scenarios_of
+from omegadot.harness.usage_error import UsageError
 from omegadot.scenarios import Scenario, scenario_of
 from omegadot.scenarios.links import body_of_word
 

@@ -9,7 +9,8 @@ from functools import partial
 from typing import Any, Literal
 
 from omegadot.harness.choose.units import quantity
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 
 Precision = Literal["double", "single"]
 # Requirement: the kind of its quantity, and the unit in which it is kept and shown.

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from omegadot.harness.choose.requirements import known_key
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 
 LARGEST_FILE = 100_000  # bytes
 

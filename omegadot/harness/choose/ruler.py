@@ -15,7 +15,7 @@ from omegadot.harness.choose.flips import Flips
 from omegadot.harness.choose.trial import Measured
 from omegadot.harness.measures import Yardstick
 from omegadot.harness.plan import Case, Sweep
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 from omegadot.harness.worker_process import Answer
 from omegadot.reference_impl.system import Array, State
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import re
 
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 
 DEGREE = math.pi / 180.0
 KINDS: dict[str, dict[str, float]] = {

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from omegadot.harness.score.table import Table, TraceError, find_column
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "t": ("t",),

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from omegadot.harness.score.units import ANGLE, LENGTH, RATE, TIME, scale
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 from omegadot.reference_impl.system import Array
 
 FRAMES = ("body", "world")

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 
 KEYS = (
     "time-unit", "angle-unit", "rate-unit", "length-unit", "omega-frame", "attitude-is", "euler",

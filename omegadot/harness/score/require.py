@@ -11,7 +11,7 @@ from omegadot.harness.rows import Row
 from omegadot.harness.score.measured import Measured
 from omegadot.harness.score.units import ANGLE, LENGTH, NUMBER, RATE, TIME, quantity
 from omegadot.harness.score.verdicts import GATES
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 
 UNITS: Mapping[str, dict[str, float]] = {
     "attitude": ANGLE,

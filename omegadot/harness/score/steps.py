@@ -14,7 +14,8 @@ from omegadot.harness.score.bounds import Rounding, joined
 from omegadot.harness.score.measured import Measured, distance
 from omegadot.harness.score.trace import Trace
 from omegadot.harness.truth import Truth
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 from omegadot.reference_impl.body_origin import is_offset
 from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.rotations import normalize

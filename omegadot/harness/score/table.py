@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 from omegadot.reference_impl.system import Array
 
 LARGEST_FILE = 500_000_000  # bytes

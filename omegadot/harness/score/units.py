@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import re
 
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 
 DEGREE = math.pi / 180.0
 TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}

@@ -6,7 +6,8 @@ import shutil
 from collections.abc import Sequence
 
 import omegadot
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 
 # The package alone is lent. Were its parent put on the path, the engine that is installed beside
 # it could be taken for the other one's.

@@ -10,7 +10,8 @@ from omegadot.adapters.protocol import Description
 from omegadot.harness.gates.course import CHANNELS
 from omegadot.harness.plan import Case, Sweep
 from omegadot.harness.study.probes import PROBES
-from omegadot.harness.usage import UsageError, case_of, nearest
+from omegadot.harness.usage import case_of, nearest
+from omegadot.harness.usage_error import UsageError
 from omegadot.harness.versions.metric import RATIO, Name
 from omegadot.reports.numbers import plain
 from omegadot.scenarios import Scenario, builtin_names, find_scenario, load_scenario

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Sequence
 
 from omegadot.harness.gates.course import CHANNELS
 from omegadot.harness.study.probes import PROBES
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 from omegadot.harness.versions.bisection import Bisection, bisect
 from omegadot.harness.versions.changes import Change, changes_between
 from omegadot.harness.versions.figures import Wanted

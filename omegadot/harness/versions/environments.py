@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from omegadot.harness.study.interpreter import worker_command
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage_error import UsageError
 from omegadot.harness.versions.installer import Installer, InstallError, python_of
 from omegadot.harness.versions.product import Product
 from omegadot.harness.versions.release import Span

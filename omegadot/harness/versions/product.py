@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from omegadot.adapters.registry import BUILT_IN
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import nearest
+from omegadot.harness.usage_error import UsageError
 
 BESIDE = ("numpy", "scipy")  # what a worker needs besides its engine
 
