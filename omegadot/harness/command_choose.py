@@ -20,6 +20,7 @@ from omegadot.harness.choose.document import document
 from omegadot.harness.choose.motion import Motion, cases_of
 from omegadot.harness.choose.requirements import Requirements, merged
 from omegadot.harness.choose.requirements_file import read_requirements
+from omegadot.harness.command_report import redraw
 from omegadot.harness.machine import describe_machine, package_versions
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import EngineChoice
@@ -27,6 +28,8 @@ from omegadot.harness.usage import engine_choices
 from omegadot.harness.usage_error import UsageError
 from omegadot.reports.choice_files import check_choice_folder, write_choice
 from omegadot.reports.choice_text import print_choice
+from omegadot.reports.numbers import listed
+from omegadot.reports.record import RUN
 from omegadot.reports.run_json import dump_json
 
 BROKEN = ("crashed", "timeout", "raised")
@@ -74,15 +77,21 @@ def choose_and_print(words: Words, out: Path | None, *, as_json: bool) -> int:
     }
     code = exit_code(found, choice, chooser.request.choices)
     found["exit_code"] = code
-    if out is not None:
-        write_choice(found, out)
+    written = _written(found, out) if out is not None else []
     if as_json:
         typer.echo(dump_json(found), nl=False)
     else:
         print_choice(found)
-        if out is not None:
-            typer.echo(f"Written to {out / 'choice.html'} and {out / 'choice.json'}.")
+        if written:
+            typer.echo(f"Written to {listed([str(path) for path in written])}.")
     return code
+
+
+def _written(found: Mapping[str, Any], out: Path) -> list[Path]:
+    """Write the choice; where that is a run's folder, the run's page has it as a section."""
+    write_choice(found, out)
+    paths = [out / "choice.html", out / "choice.json"]
+    return [*paths, redraw(out)] if (out / RUN).is_file() else paths
 
 
 def _chooser(words: Words, wanted: Requirements) -> Chooser:

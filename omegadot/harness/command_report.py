@@ -37,16 +37,21 @@ def report_of(folders: list[Path], out: Path | None, figures: Path | None, markd
 
 
 def redraw(folder: Path, out: Path | None = None) -> Path:
-    """Draw the page anew, into the run's folder or where `out` says. Raises RecordError."""
+    """Draw the page anew, into the run's folder or where `out` says. Raises RecordError.
+
+    A choice of engine that was written into the run's folder is a section of it.
+    """
     if folder.is_dir():
         packed_library()  # begun before anything else is imported or read: it has a core to itself
     collecting = gc.isenabled()
     gc.disable()  # nothing that is made here is garbage before the page is whole
     try:
+        from omegadot.reports.choice_files import read_choice
         from omegadot.reports.page import draw_page
         from omegadot.reports.record import PAGE, read_record
 
-        return _write(draw_page(read_record(folder)), out or folder / PAGE)
+        page = draw_page(read_record(folder), read_choice(folder))
+        return _write(page, out or folder / PAGE)
     finally:
         if collecting:
             gc.enable()

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from omegadot.reports.choice_page import draw_choice
+from omegadot.reports.choice_page import Section, draw_choice, section_of
 from omegadot.reports.run_json import dump_json
 from omegadot.reports.schema import RecordError
+
+NAME = "choice.json"
 
 
 def check_choice_folder(folder: Path) -> None:
@@ -23,9 +26,25 @@ def check_choice_folder(folder: Path) -> None:
         raise RecordError(f"{folder}: cannot be written to; give another.")
 
 
+def read_choice(folder: Path) -> Section | None:
+    """The section of a choice that was written beside a run; None where there is none.
+
+    Raises RecordError, one sentence, where it is not one that omegadot wrote.
+    """
+    path = folder / NAME
+    if not path.is_file():
+        return None
+    try:
+        return section_of(json.loads(path.read_text(encoding="utf-8")))
+    except (OSError, ValueError, RecursionError, LookupError, TypeError, AttributeError) as error:
+        raise RecordError(
+            f"{path}: not a choice that omegadot wrote; remove it or choose again."
+        ) from error
+
+
 def write_choice(choice: Mapping[str, Any], folder: Path) -> None:
     """Write page and JSON, each to a name of its own first, so that none is ever half there."""
-    texts = {"choice.json": dump_json(choice), "choice.html": draw_choice(choice)}
+    texts = {NAME: dump_json(choice), "choice.html": draw_choice(choice)}
     try:
         for name, text in texts.items():
             part = folder / f".{name}.part"

@@ -15,7 +15,7 @@ from omegadot.reports.templating import asset, environment
 
 @dataclass(frozen=True)
 class Part:
-    """One scenario of the section."""
+    """One scenario of a section."""
 
     name: str
     title: str
@@ -42,22 +42,41 @@ def parts(choice: Mapping[str, Any]) -> list[Part]:
     ]
 
 
+@dataclass(frozen=True)
+class Section:
+    """What a page says of a choice, its own page or a run's. asked: the requirements in words."""
+
+    asked: str
+    command: str
+    guarantee: str
+    overall: tables.Grid | None
+    parts: list[Part]
+    notes: list[str]
+    width: float = WIDTH
+    height: float = HEIGHT
+
+
+def section_of(choice: Mapping[str, Any]) -> Section:
+    """The section of a choice, as ``choice.json`` holds it."""
+    return Section(
+        words.asked(choice),
+        shlex.join(choice.get("command", ())),
+        words.GUARANTEE,
+        tables.everywhere(choice),
+        parts(choice),
+        list(words.notes(choice)),
+    )
+
+
 def draw_choice(choice: Mapping[str, Any]) -> str:
     """The whole page."""
-    overall = tables.everywhere(choice)
+    section = section_of(choice)
     lines = [words.headline(case) for case in choice["scenarios"]]
     template = environment().get_template("choice_page.html.j2")
     return template.render(
         choice=choice,
-        headline=words.verdict_everywhere(choice) if overall else lines[0],
-        asked=words.asked(choice),
-        command=shlex.join(choice.get("command", ())),
-        parts=parts(choice),
-        overall=overall,
-        notes=list(words.notes(choice)),
-        guarantee=words.GUARANTEE,
-        width=WIDTH,
-        height=HEIGHT,
+        headline=words.verdict_everywhere(choice) if section.overall else lines[0],
+        chosen=section,
         css=asset("report.css"),
         own_css=asset("choice.css"),
     )

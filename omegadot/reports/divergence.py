@@ -70,7 +70,7 @@ def _placed(found: State, exact: State) -> State:
 def divergence(system: System, samples: pl.DataFrame) -> tuple[Array, dict[str, str]]:
     """(n, channels) errors of samples of one system, and the unit of each channel that says much.
 
-    samples: the columns time and STATE, and STATE again with the suffix ``_exact``; NaN comes of what is null.
+    samples: time, and the columns STATE with and without the suffix ``_exact``; null becomes NaN.
     omega_dot: ``|omega_dot - exact|``, rad/s².  attitude: the angle between the two, rad.
     energy: ``|E - E_exact|`` over the exact course's greatest kinetic energy; of the rotation where
     a trace gives no position and velocity.  Momenta:

@@ -9,6 +9,7 @@ import polars as pl
 
 from omegadot.reports import matrix
 from omegadot.reports.chart_library import packed_library
+from omegadot.reports.choice_page import Section
 from omegadot.reports.copies import copies_of, sentence, where
 from omegadot.reports.courses import POINTS, chart_courses
 from omegadot.reports.glance import glances
@@ -35,9 +36,10 @@ CHART_TITLES = {
 }
 
 
-def draw_page(record: Record) -> str:
+def draw_page(record: Record, choice: Section | None = None) -> str:
     """The report of a record, as one self-contained HTML text.
 
+    choice: a choice of engine made beside the run, a section of its own.
     Charts need JavaScript; the verdicts and every table do not.
     """
     library = packed_library()
@@ -59,6 +61,7 @@ def draw_page(record: Record) -> str:
     return template.render(
         run=record.run,
         command=command_of(record.run),
+        choice=choice,
         headline=record.run.get("headline") or headline(summary),
         beside=remarks(summary) + truth(summary),
         counts=[(status, summary.runs[status]) for status in STATUSES if summary.runs[status]],
@@ -78,7 +81,7 @@ def draw_page(record: Record) -> str:
         chart_titles=CHART_TITLES,
         floor_decade=FLOOR_DECADE,
         points=POINTS,
-        css=asset("report.css") + asset("see.css"),
+        css=asset("report.css") + asset("see.css") + (asset("choice.css") if choice else ""),
         see=see_part(record, charts, lines, anchors),
         js=script(),
         plotly=library.result() if charts else "",

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from axe_check import LOOKS, violations
+from chromium import Chromium
 from command_line import QUICK, UNWELL, Result, omegadot, quick_scenario
 
 from omegadot.adapters.mujoco import MujocoAdapter
@@ -113,6 +115,36 @@ def test_the_page_stands_alone_and_the_json_is_the_one_printed(
     assert "https:" not in page
     assert "<script" not in page
     assert not list((folder / "out").glob(".*"))
+
+
+@LOOKS
+def test_axe_finds_nothing_on_the_page(
+    chosen: tuple[Path, Result], tmp_path: Path, look: dict[str, Any]
+) -> None:
+    with Chromium(tmp_path) as browser:
+        assert violations(browser, chosen[0] / "out" / "choice.html", **look) == []
+
+
+def test_a_choice_beside_a_run_is_a_section_of_its_report(tmp_path: Path) -> None:
+    scenario = quick_scenario(tmp_path)
+    assert omegadot("run", scenario, "--engine", "mujoco:RK4", folder=tmp_path).code == 0
+    run = tmp_path / "omegadot-run"
+    assert 'id="choice"' not in (run / "report.html").read_text()
+    words = ["choose", scenario, "--attitude", "1e-3", "--engine", "mujoco:RK4"]
+    result = omegadot(*words, "--out", run, folder=tmp_path)
+    assert result.code == 0, result.err
+    assert "report.html" in result.out
+    for _ in range(2):
+        page = (run / "report.html").read_text()
+        assert 'href="#choice"' in page
+        assert "Asked: attitude error within 1e-3" in page
+        omegadot("report", run, folder=tmp_path)
+    for broken in ("[]", "{", '{"scenarios": [{}]}', "[" * 100_000):
+        (run / "choice.json").write_text(broken)
+        result = omegadot("report", run, folder=tmp_path)
+        assert result.code == 2, result.err
+        assert "choice.json: not a choice" in result.err
+        assert result.err.count("\n") == 1
 
 
 def test_hostile_texts_are_shown_as_they_are(chosen: tuple[Path, Result]) -> None:

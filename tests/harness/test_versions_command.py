@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from axe_check import LOOKS, violations
+from chromium import Chromium
 from command_line import QUICK, Result, omegadot, quick_scenario
 from versioned_engine import ALL, TARGET, words
 
@@ -37,6 +39,14 @@ def seen(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Any]:
     result = versions(folder, *own, "--format", "json")
     assert result.code == 1, result.err  # 1.8 is not as it declares
     return folder / "out", result.json
+
+
+@LOOKS
+def test_axe_finds_nothing_on_the_page(
+    seen: tuple[Path, Any], tmp_path: Path, look: dict[str, Any]
+) -> None:
+    with Chromium(tmp_path) as browser:
+        assert violations(browser, seen[0] / "versions.html", **look) == []
 
 
 def step(record: Any, to: str) -> dict[str, tuple[Any, Any]]:

@@ -1,26 +1,13 @@
 """axe-core finds nothing on the page: in the light, in the dark, on a phone, with a card open."""
 
-from importlib.util import find_spec
-from pathlib import Path
-
 import pytest
+from axe_check import LOOKS, VIOLATIONS, axe
 from chromium import Chromium
 from synthetic_record import build, metric, task, with_metrics
 
 from omegadot.reports import draw_page
 
 CHARTS = 7
-VIOLATIONS = """axe.run(document, {resultTypes: ["violations"]}).then(({violations}) =>
-    violations.map(({id, nodes}) => [id, nodes.length, nodes[0].target, nodes[0].failureSummary]))
-"""
-
-
-def axe():
-    """The checker's script, out of an installed package whose own module is not loaded."""
-    package = find_spec("axe_playwright_python")
-    if package is None:
-        pytest.fail("axe-core is not installed: pip install -e '.[test]' brings it.")
-    return (Path(package.origin).parent / "axe.min.js").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -56,11 +43,7 @@ def opened(browser, path, **look):
     browser.evaluate(axe() + "; 0")
 
 
-@pytest.mark.parametrize(
-    "look",
-    [{}, {"dark": True}, {"width": 360, "height": 20000}],
-    ids=["light", "dark", "phone"],
-)
+@LOOKS
 def test_axe_finds_nothing(browser, path, look):
     opened(browser, path, **look)
     assert browser.evaluate(VIOLATIONS) == []

@@ -9,6 +9,8 @@ from dataclasses import replace
 import numpy as np
 import polars as pl
 import pytest
+from axe_check import LOOKS, violations
+from chromium import Chromium
 from comment import active
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -348,3 +350,14 @@ def test_everything_is_in_the_json(base) -> None:
     assert (change["scenario"], change["engine"], change["integrator"]) == RUN[:3]
     assert (change["value_was"], change["value_now"]) == (value_of(base), None)
     assert change["band"] == pytest.approx(2 * BOUND)
+
+
+@LOOKS
+def test_axe_finds_nothing_on_the_page(base, tmp_path, look):
+    worse = edited(base, value=value_of(base) * 3 + 1, verdict="fail")
+    fewer = with_run(worse, tasks=worse.run["tasks"][:-2])
+    page = tmp_path / "two-runs.html"
+    page.write_text(draw_two_runs(compare_records(base, fewer)), encoding="utf-8")
+    with Chromium(tmp_path / "profile") as browser:
+        assert violations(browser, page, **look) == []
+        assert browser.messages == []
