@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import stat
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,11 +13,8 @@ from pydantic import ValidationError
 from omegadot.scenarios.errors import ScenarioError, describe, printable
 from omegadot.scenarios.model import Scenario
 from omegadot.scenarios.refusals import nearest, scenario_error
+from omegadot.scenarios.toml_file import read_toml
 
-LARGEST_FILE = 1_000_000  # bytes; a scenario is a page of text
-MOST_DOTS = 32  # in one key; tomllib's memory grows with the square of their number
-_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
-_DEEP_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_DOTS}}}")
 BUILTIN = Path(__file__).with_name("builtin")
 
 
@@ -29,7 +24,7 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     Raises ScenarioError when the file cannot be read, is not TOML or is no valid scenario.
     """
     file = printable(os.fspath(path))
-    return scenario_of(_parse(_read(Path(path), file), file), file)
+    return scenario_of(read_toml(Path(path), file), file)
 
 
 def builtin_names() -> tuple[str, ...]:
@@ -78,52 +73,3 @@ def _other_name(name: str) -> str:
     if near:
         return f"write {near} if that is what you mean"
     return "give one of the built-in names or the path of a TOML file"
-
-
-def _read(path: Path, file: str) -> str:
-    """The text of a regular file of at most LARGEST_FILE bytes; a BOM is dropped."""
-    toml = "give the path of a TOML file"
-    try:
-        status = path.stat()
-        mode = status.st_mode
-        # a pipe would be waited for, a device never ends
-        content = _first_bytes(path) if stat.S_ISREG(mode) else b""
-    except FileNotFoundError:
-        raise ScenarioError(file, None, "missing", toml) from None
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise ScenarioError(file, None, f"not readable ({reason})", toml) from None
-    except ValueError:  # a NUL, or a character that no file name can hold
-        raise ScenarioError(file, None, "not a path", toml) from None
-    if not stat.S_ISREG(mode):
-        found = "a directory" if stat.S_ISDIR(mode) else "not a regular file"
-        raise ScenarioError(file, None, found, toml)
-    if len(content) > LARGEST_FILE:
-        found = f"a file of {max(status.st_size, len(content)):,} bytes"
-        advice = f"give a scenario of at most {LARGEST_FILE:,} bytes"
-        raise ScenarioError(file, None, found, advice)
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        found = f"not UTF-8 text (byte 0x{content[error.start]:02x} in line {line})"
-        raise ScenarioError(file, None, found, "save it in UTF-8") from None
-
-
-def _first_bytes(path: Path) -> bytes:
-    with path.open("rb") as stream:
-        return stream.read(LARGEST_FILE + 1)
-
-
-def _parse(text: str, file: str) -> dict[str, Any]:
-    try:
-        if deep := _DEEP_KEY.search(text):
-            line = text.count("\n", 0, deep.start()) + 1
-            raise ValueError(f"a key of more than {MOST_DOTS} parts in line {line}")
-        return tomllib.loads(text)
-    except RecursionError:
-        reason = "brackets nested too deep"
-    except ValueError as error:  # TOMLDecodeError, or an integer of thousands of digits
-        reason = re.split(r"[\n;]", str(error))[0].rstrip(".")
-    advice = "mend it there, as toml.io describes the format"
-    raise ScenarioError(file, None, f"not valid TOML ({printable(reason)})", advice) from None

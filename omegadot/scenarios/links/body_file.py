@@ -13,8 +13,8 @@ from omegadot.scenarios.errors import ScenarioError, describe, printable
 from omegadot.scenarios.links import mjcf, sdf, urdf
 from omegadot.scenarios.links.place import Place
 from omegadot.scenarios.links.safe_xml import read_xml
-from omegadot.scenarios.loader import _parse, _read
 from omegadot.scenarios.refusals import nearest
+from omegadot.scenarios.toml_file import read_toml
 
 MOST_NAMED = 12
 FORMATS: dict[str, tuple[str, Callable[[Element], dict[str, list[Element]]]]] = {
@@ -55,7 +55,7 @@ def body_of_word(word: str) -> NamedBody:
 
 
 def _of_toml(path: str, file: str) -> NamedBody:
-    data = _parse(_read(Path(path), file), file)
+    data = read_toml(Path(path), file)
     body = data.get("body")
     if not isinstance(body, dict):
         found = "missing" if body is None else describe(body)
