@@ -19,6 +19,8 @@ from omegadot.harness.commands.schemes import schemes
 from omegadot.harness.commands.score import score
 from omegadot.harness.commands.versions import versions
 
+INTERRUPTED = 130  # as shells count: 128 + SIGINT
+
 app = typer.Typer(
     name="omegadot",
     help="Cross-validate rigid-body engines against a readable Newton-Euler reference.",
@@ -64,14 +66,15 @@ def main() -> None:
     try:
         code = app(standalone_mode=False)
     except (typer.Abort, KeyboardInterrupt):
-        print("omegadot: interrupted.", file=sys.stderr)
-        sys.exit(130)
+        code = INTERRUPTED
     except Exception as error:
         sentence = _sentence(error)
         if sentence is None:
             raise
         print(f"omegadot: {sentence}", file=sys.stderr)
         sys.exit(3 if _is_our_own(error) else 2)
+    if code == INTERRUPTED:  # the parser makes this number of Ctrl-C, and says nothing
+        print("omegadot: interrupted.", file=sys.stderr)
     sys.exit(code if isinstance(code, int) else 0)
 
 
