@@ -11,7 +11,15 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.wire import state_from
 from omegadot.harness.choose.ruler import Ruler
-from omegadot.harness.choose.search import Edge, Range, Trials, confirmed, edge_of, largest_step
+from omegadot.harness.choose.search import (
+    Edge,
+    Range,
+    Seeking,
+    Trials,
+    confirmed,
+    edge_of,
+    largest_step,
+)
 from omegadot.harness.choose.trial import Trial
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine
@@ -100,22 +108,23 @@ class Prober:
 
     def seek(self, limits: Mapping[str, float]) -> Edge:
         """The largest step, tried at its neighbours and at every one of its samples."""
-        trials, declared = self._candidate.trials, self._candidate.declared_order(limits)
+        trials = self._candidate.trials
         if not trials:
             trials[self._start()] = self.evaluate(self._start())
+        return self._looked_at_closely(confirmed, limits)
+
+    def vary(self, limits: Mapping[str, float]) -> Edge:
+        """The largest step for other limits, beginning with the runs that were made already."""
+        return self._looked_at_closely(largest_step, limits)
+
+    def _looked_at_closely(self, seeking: Seeking, limits: Mapping[str, float]) -> Edge:
+        """What is found, until it passes at every one of its samples too."""
+        trials, declared = self._candidate.trials, self._candidate.declared_order(limits)
         for _ in range(MOST_RECHECKS):
-            edge = confirmed(trials, self.evaluate, limits, self._range, declared)
-            found = edge.passing
+            found = seeking(trials, self.evaluate, limits, self._range, declared).passing
             if found is None or found.samples >= len(self._ruler.sweep(found.steps, True).times):
                 break
             trials[found.steps] = self.evaluate(found.steps, dense=True)
             if trials[found.steps].passes(limits):
                 break
         return edge_of(trials, limits)
-
-    def vary(self, limits: Mapping[str, float]) -> Edge:
-        """The largest step for other limits, from the runs that were made already."""
-        trials = self._candidate.trials
-        return largest_step(
-            trials, self.evaluate, limits, self._range, self._candidate.declared_order(limits)
-        )

@@ -47,6 +47,7 @@ class Edge:
 
 Trials = dict[int, Trial]
 Evaluate = Callable[[int], Trial]
+Seeking = Callable[[Trials, Evaluate, Mapping[str, float], Range, float], Edge]
 
 
 def edge_of(trials: Mapping[int, Trial], limits: Mapping[str, float]) -> Edge:
