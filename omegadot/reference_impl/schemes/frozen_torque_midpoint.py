@@ -6,16 +6,14 @@ import numpy as np
 
 from omegadot.reference_impl.rotations import turn_in_body
 from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian, inverse_of_one_minus
+from omegadot.reference_impl.schemes.newton import mean_velocity_of
 from omegadot.reference_impl.schemes.scheme import (
     AccelerationOf,
     Scheme,
     every_channel,
     per_component,
 )
-from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State
-
-MOST_ITERATIONS = 50
 
 
 def mean_velocity(
@@ -28,8 +26,7 @@ def mean_velocity(
     ``a* = (a(q₀, ω_m) + a(q₀, -ω_m))/2 + (a(q₀, ω₀) - a(q₀, -ω₀))/2``. Hence
     ``I (ω₁ - ω₀) = h (τ₀ - ω_m × I ω_m)`` with ``ω_m = (ω₀ + ω₁)/2``.
 
-    Newton's method, the Jacobian in ω being that of the step's start, until it stands still to
-    round-off. A lane that has not settled comes back as NaN: its step is too large.
+    ω_m is found by Newton's method, see `mean_velocity_of`.
     """
     w0, half = state.angular_velocity, 0.5 * h
     turn = half if isinstance(half, float) else half[..., None]
@@ -42,17 +39,11 @@ def mean_velocity(
 
     found, jacobian, _ = acceleration_and_jacobian(starred, state, rate)
     inverse = inverse_of_one_minus(turn * jacobian)
-    w = w0 + apply(inverse, half * found.angular)
-    eps, last = np.finfo(w.dtype).eps, np.inf
-    for _ in range(MOST_ITERATIONS):
-        found = starred(_with_velocity(state, w))
-        change = apply(inverse, w0 + half * found.angular - w)
-        w = w + change
-        size = np.sqrt(np.add.reduce(change * change, -1) / np.add.reduce(w * w, -1).clip(1e-300))
-        if np.all((size <= eps) | ~(size < 0.5 * last)):
-            break
-        last = size
-    w = np.where((size <= np.sqrt(eps))[..., None], w, np.nan)
+
+    def evaluate(w: Array, _: Acceleration) -> Acceleration:
+        return starred(_with_velocity(state, w))
+
+    w, found = mean_velocity_of(evaluate, found, w0, half, inverse)
     return w, Acceleration(2 / h * (w - w0), found.linear)
 
 

@@ -6,16 +6,14 @@ import numpy as np
 
 from omegadot.reference_impl.rotations import normalize, quaternion_product
 from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian, inverse_of_one_minus
+from omegadot.reference_impl.schemes.newton import mean_velocity_of
 from omegadot.reference_impl.schemes.scheme import (
     AccelerationOf,
     Scheme,
     every_channel,
     per_component,
 )
-from omegadot.reference_impl.symmetric import apply
-from omegadot.reference_impl.system import Array, State
-
-MOST_ITERATIONS = 50
+from omegadot.reference_impl.system import Acceleration, Array, State
 
 
 def cayley(turn: Array) -> Array:
@@ -51,8 +49,7 @@ def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State
     -h. For a free body ``I(ω₁ - ω₀) = -h ω_m × I ω_m``, which keeps ``ωᵀ I ω``, and written as
     ``(1 + h ω_m×/2) I ω₁ = (1 - h ω_m×/2) I ω₀`` it is ``R₁ I ω₁ = R₀ I ω₀``: the momentum.
 
-    ω_m is found by Newton's method with the Jacobian in ω of the step's start, until it stands
-    still to round-off. A lane that has not settled comes back as NaN: its step is too large.
+    ω_m is found by Newton's method, see `mean_velocity_of`.
     """
     h = per_component(dt)
     w0, half = state.angular_velocity, 0.5 * h
@@ -60,20 +57,11 @@ def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State
     inverse = inverse_of_one_minus(
         (half if isinstance(half, float) else half[..., None]) * jacobian
     )
-    w = w0 + apply(inverse, half * found.angular)
-    eps = np.finfo(w.dtype).eps
-    last = np.inf
-    for _ in range(MOST_ITERATIONS):
-        found = acceleration(_midpoint(state, w, h, found.linear))
-        change = apply(inverse, w0 + half * found.angular - w)
-        w = w + change
-        size = np.sqrt(np.add.reduce(change * change, -1) / np.add.reduce(w * w, -1).clip(1e-300))
-        if np.all((size <= eps) | ~(size < 0.5 * last)):
-            break
-        last = size
-    # rounding stops Newton far below this, wherever the inertia's condition leaves half the digits
-    settled = (size <= np.sqrt(eps))[..., None]
-    w = np.where(settled, w, np.nan)
+
+    def evaluate(w: Array, before: Acceleration) -> Acceleration:
+        return acceleration(_midpoint(state, w, h, before.linear))
+
+    w, found = mean_velocity_of(evaluate, found, w0, half, inverse)
     v = state.linear_velocity + h * found.linear
     return State(
         quaternion_product(state.orientation, cayley(h * w)),
