@@ -1,8 +1,13 @@
 """What the gates of invariants and trajectory write of a course."""
 
+from dataclasses import is_dataclass
+from importlib import import_module
+from pkgutil import iter_modules
+
 import numpy as np
 import pytest
 
+from omegadot.harness import gates
 from omegadot.harness.gates import invariants, trajectory
 from omegadot.harness.gates.course import CHANNELS, Course
 from omegadot.harness.plan import Sweep
@@ -13,6 +18,13 @@ TIMES = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
 ERROR = np.array([0.0, 1.0, 5.0, 3.0, 4.0])
 FINE = Finding("consistent", "consistent: observed order 1.00, declared 1")
 BAD = Finding("unexplained", "declared conserved, and it drifts")
+
+
+def test_what_gates_hand_on_cannot_be_changed() -> None:
+    for module in iter_modules(gates.__path__, f"{gates.__name__}."):
+        for found in vars(import_module(module.name)).values():
+            if is_dataclass(found) and found.__module__ == module.name:
+                assert found.__dataclass_params__.frozen, found.__name__
 
 
 def course(bound: object, left: bool = False, error: object = ERROR) -> Course:

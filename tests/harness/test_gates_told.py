@@ -15,6 +15,9 @@ from in_process import judged
 from omegadot.adapters.protocol import Integrator, Trajectory
 from omegadot.adapters.reference import ReferenceAdapter
 from omegadot.harness.faults.prepared import Pool, Prepared
+from omegadot.harness.gates.course import CHANNELS, Course
+from omegadot.harness.gates.told import _first, _length, _start
+from omegadot.harness.plan import Sweep
 from omegadot.harness.rows import Row
 from omegadot.harness.scales import EPS
 from omegadot.reference_impl.schemes import SCHEMES
@@ -74,6 +77,27 @@ def test_the_start_is_the_state_given(field: str, prepared: Prepared) -> None:
     )
     channel = {"orientation": "attitude", "angular_velocity": "omega", "position": "position"}
     assert row.channel == channel[field]
+
+
+def test_a_start_without_an_error_is_at_no_distance() -> None:
+    none, tiny = dict.fromkeys(CHANNELS, np.zeros(2)), dict.fromkeys(CHANNELS, np.full(2, EPS))
+    row = _start(Course(Sweep(0.1, 1, 1), none, tiny, {}))
+    assert (row.value, row.bound, row.verdict) == (0.0, 1.0, "pass")
+
+
+def test_the_start_is_held_to_the_floor_of_the_start() -> None:
+    assert _first(np.array([1.0, 2.0, 3.0])) == 1.0
+    assert _first(None) == 0.0
+
+
+def test_the_length_told_is_that_of_the_worst_sample(prepared: Prepared) -> None:
+    q = np.tile([1.0, 0.0, 0.0, 0.0], (4, 1))
+    q[2] *= 1.0 + 40 * EPS
+    q[3] *= 1.0 + 44 * EPS  # farther off, and less so for the steps it took
+    row = _length(Sweep(0.1, 3, 1), State(q, *3 * [np.zeros((4, 3))]))
+    assert row.verdict == "pass"
+    assert row.value == pytest.approx(40 * EPS, rel=0.02)
+    assert row.bound == 16 * EPS * 3
 
 
 @pytest.mark.parametrize("sample", [0, 7, -1])

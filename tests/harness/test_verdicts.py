@@ -78,6 +78,16 @@ def test_too_few_steps_leave_it_open() -> None:
     assert kind(LARGE, LARGE, (RESOLVED, None), 1) == "unresolved"
 
 
+def test_what_lies_below_the_floor_is_not_judged() -> None:
+    floor = np.array([0.0, 1e-3, 1e-2])
+    seen = judge(Evidence(LARGE, BOUND, None, (None,), floor), "scheme", 1)
+    assert (seen.kind, seen.verdict) == ("beyond", "info")
+    seen = judge(Evidence(LARGE / 2, BOUND, None, (None,), floor), "scheme", 1)
+    assert seen.kind == "beyond"
+    seen = judge(Evidence(2 * LARGE, BOUND, None, (RESOLVED,), floor), "scheme", 1)
+    assert seen.kind == "consistent"
+
+
 def test_nan_is_never_explained() -> None:
     assert kind(np.array([0.0, np.nan, 0.0]), BOUND / 2, (RESOLVED,), 1) == "unexplained"
 

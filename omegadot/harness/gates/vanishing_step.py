@@ -132,12 +132,10 @@ def _limit(h: Array, change: Array, expected: Array, rounding: Array, told: Arra
 
 def _common_factor(found: dict[str, Limit]) -> float | None:
     """By which all rates are off alike: the step is that much longer than it says."""
-    rates = np.concatenate(
-        [np.ravel(one.found[0] / one.bound[0, :, None]) for one in found.values()]
-    )
-    true = np.concatenate(
-        [np.ravel(one.expected / one.bound[0, :, None]) for one in found.values()]
-    )
+    weights = [np.where(one.bound[0] > 0.0, 1.0 / one.bound[0], 0.0) for one in found.values()]
+    pairs = list(zip(found.values(), weights, strict=True))
+    rates = np.concatenate([np.ravel(one.found[0] * part[:, None]) for one, part in pairs])
+    true = np.concatenate([np.ravel(one.expected * part[:, None]) for one, part in pairs])
     factor = float(rates @ true / (true @ true))
     return factor if all(np.all(one.shares(factor) <= 1.0) for one in found.values()) else None
 
