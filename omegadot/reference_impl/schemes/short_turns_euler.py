@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product
+from omegadot.reference_impl.cross_product import skew
+from omegadot.reference_impl.rotations import (
+    conjugate,
+    exp_quaternion,
+    normalize,
+    quaternion_product,
+    rotation_matrix,
+)
 from omegadot.reference_impl.schemes.scheme import (
     AccelerationOf,
     Scheme,
@@ -14,18 +21,56 @@ from omegadot.reference_impl.schemes.scheme import (
 from omegadot.reference_impl.system import Array, State
 
 SHORT = 1e-3  # rad
+# The attitude of the joint's frame in the world, 120 degrees about (1, 1, 1): in which frame a
+# matrix is read makes a difference where it is not quite a rotation.
+FRAME = np.full(4, 0.5)
 
 
-def _turn(rotation_vector: Array) -> Array:
-    """The quaternion of ``1 + [r] + [r]^2/2`` where ``|r| < 1e-3``, else of ``exp r``.
+def quaternion_read(matrix: Array) -> Array:
+    """The unit quaternion, (..., 4), that Eigen reads from a matrix (..., 3, 3).
 
-    The former turns by ``2 atan(x / (1 - x^2))``, x = |r|/2: by ``|r|^3 / 6`` too far.
+    Four times a component times the quaternion is a row of sums and differences of the matrix's
+    entries: the scalar's where the trace is positive, else that of the largest diagonal entry. The
+    four rows agree for a rotation; for what is near one, the choice makes a difference.
     """
-    square = np.add.reduce(rotation_vector * rotation_vector, -1, keepdims=True)
-    angle = np.sqrt(np.maximum(square, 1e-36))
-    x = 0.5 * angle
-    turned = np.where(angle < SHORT, 2 * np.arctan(x / (1 - x * x)), angle)
-    return exp_quaternion(rotation_vector * (turned / angle))
+    m = matrix
+    x, y, z = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
+    wx, wy, wz = (m[..., j, i] - m[..., i, j] for i, j in ((1, 2), (2, 0), (0, 1)))
+    xy, yz, zx = (m[..., j, i] + m[..., i, j] for i, j in ((0, 1), (1, 2), (2, 0)))
+    rows = [
+        np.stack(row, -1)
+        for row in (
+            (1 + x + y + z, wx, wy, wz),
+            (wx, 1 + x - y - z, xy, zx),
+            (wy, xy, 1 - x + y - z, yz),
+            (wz, zx, yz, 1 - x - y + z),
+        )
+    ]
+    largest = 1 + np.argmax(np.stack((x, y, z), -1), -1)
+    which = np.where(x + y + z > 0, 0, largest)[..., None]
+    found: Array = np.select([which == k for k in range(4)], rows, rows[0])
+    return normalize(found)
+
+
+def _turned_short(q: Array, rotation_vector: Array) -> Array:
+    """``q (1 + [r] + [r]²/2)``, (..., 4), read as a quaternion in the joint's frame.
+
+    It turns by ``|r|³/6`` too far, and is off orthogonality by ``|r|⁴/4``.
+    """
+    r = skew(rotation_vector)
+    off = rotation_matrix(quaternion_product(conjugate(FRAME), q)) @ (np.eye(3) + r + 0.5 * r @ r)
+    found = quaternion_product(FRAME, quaternion_read(off))
+    same = np.add.reduce(found * q, -1, keepdims=True) >= 0  # of two signs, the one q has
+    return np.where(same, found, -found)
+
+
+def _turned(q: Array, rotation_vector: Array) -> Array:
+    """The attitude turned by r in the body frame: expanded below 1e-3 rad, else by ``exp r``."""
+    exact = quaternion_product(q, exp_quaternion(rotation_vector))
+    short = np.add.reduce(rotation_vector * rotation_vector, -1, keepdims=True) < SHORT * SHORT
+    if not np.any(short):
+        return exact
+    return np.where(short, _turned_short(q, rotation_vector), exact)
 
 
 def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
@@ -34,8 +79,7 @@ def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State
     found = acceleration(state)
     w = state.angular_velocity + h * found.angular
     v = state.linear_velocity + h * found.linear
-    q = quaternion_product(state.orientation, _turn(w * h))
-    return State(q, w, state.position + h * v, v)
+    return State(_turned(state.orientation, w * h), w, state.position + h * v, v)
 
 
 SCHEME = Scheme(
@@ -44,5 +88,5 @@ SCHEME = Scheme(
     step=step,
     orders=every_channel(1),
     special={"free": {"linear_momentum": None}},
-    source="DART (dart/math/Geometry.cpp, expMapRot), confirmed by its steps",
+    source="DART (dart/math/Geometry.cpp, expMapRot and logMap), confirmed by its steps",
 )
