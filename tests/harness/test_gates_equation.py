@@ -11,6 +11,7 @@ from omegadot.harness.gates.equation import (
     inverse_rows,
     random_acceleration,
     random_states,
+    told_rows,
 )
 from omegadot.harness.scales import EPS, body_scale, linear_size, norm, torque_size
 from omegadot.reference_impl.kinematics import place_on_pivot
@@ -166,3 +167,26 @@ def test_inverse_dynamics_is_asked_for_what_no_load_gives() -> None:
     assert np.median(norm(extra) / rate) == pytest.approx(1.538, rel=0.1)
     carried = center_of_mass_acceleration(HUNG, states, asked.angular)
     np.testing.assert_array_equal(asked.linear, carried)
+
+
+@pytest.mark.parametrize("system", [FREE, HUNG])
+def test_what_a_run_tells_of_omega_dot_has_the_same_bound(system: System) -> None:
+    states = random_states(case(system), 6, SEED)
+    (row,) = told_rows(system, states, forward_dynamics(system, states).angular)
+    (same, _) = forward_rows(system, states, forward_dynamics(system, states), "residual")
+    assert (row.metric, row.verdict) == ("residual_in_run", "pass")
+    assert row.bound == same.bound
+    assert row.value < 8 * EPS
+
+
+def test_states_that_are_not_finite_are_left_to_others() -> None:
+    states = random_states(case(FREE), 6, SEED)
+    told = forward_dynamics(FREE, states).angular
+    told[2] = np.nan
+    states.angular_velocity[3, 0] = 1e200  # its square overflows
+    states.orientation[4] = np.inf
+    (row,) = told_rows(FREE, states, told)
+    assert row.verdict == "pass"
+    assert told_rows(FREE, states, np.full_like(told, np.nan)) == []
+    told[5] *= 1.0 + 1e-9
+    assert told_rows(FREE, states, told)[0].verdict == "fail"
