@@ -236,3 +236,22 @@ def test_a_page_without_charts_still_has_its_tables_and_cards(browser, tmp_path)
     browser.wait(f"{CARD}.open")
     assert browser.evaluate("document.querySelector('.matrix').dataset.ready") == "yes"
     assert browser.messages == []
+
+
+def test_paper_gets_every_chart_and_the_bodies(browser, path):
+    """Printing waits for nobody: what was never scrolled to is drawn at once."""
+    browser.messages.clear()
+    browser.open(path, width=1000, height=200)
+    browser.wait(
+        "typeof Plotly !== 'undefined' && document.getElementById('see-box').dataset.ready"
+    )
+    assert browser.evaluate("document.querySelectorAll('.chart:empty').length") > 0
+    browser.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert browser.evaluate("document.querySelectorAll('.chart:empty').length") == 0
+    width = "document.querySelector('.chart .main-svg').clientWidth"
+    assert browser.evaluate(width) == 21 * 16
+    browser.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert not browser.evaluate("document.documentElement.classList.contains('printing')")
+    browser.evaluate("document.querySelector('.chart').scrollIntoView()")
+    browser.wait(f"{width} > 21 * 16")
+    assert browser.messages == []

@@ -66,6 +66,9 @@ if (sections.length) {
   element("lines").open = !narrow.matches;
   const controls = document.querySelector(".controls");
   new ResizeObserver(() => root.style.setProperty("--covered", `${controls.offsetHeight}px`)).observe(controls);
-  addEventListener("beforeprint", () => { printing = true; sections.forEach((s) => { s.dirty = true; draw(s); }); });
-  addEventListener("afterprint", () => { printing = false; redraw(); });
+  // Printing waits for nobody: what it needs is unpacked as soon as there is time.
+  const print = (on) => { printing = on; root.classList.toggle("printing", on); };
+  addEventListener("beforeprint", () => { print(true); sections.forEach((s) => { s.dirty = true; draw(s); }); });
+  addEventListener("afterprint", () => { print(false); redraw(); });
+  addEventListener("load", () => (window.requestIdleCallback ?? setTimeout)(load));
 }

@@ -123,12 +123,15 @@ function drag(stage) {
 if (box) {
   box.hidden = false;
   let begun = false;
+  const beginOnce = () => {
+    if (begun) return;
+    begun = true;
+    begin().catch((error) => { console.error(error); element("see-told").textContent = `The bodies cannot be drawn in this browser (${error.message}).`; });
+  };
   new IntersectionObserver((entries) => {
     show.visible = entries.at(-1).isIntersecting;
-    if (show.visible && !begun) {
-      begun = true;
-      begin().catch((error) => { console.error(error); element("see-told").textContent = `The bodies cannot be drawn in this browser (${error.message}).`; });
-    }
+    if (show.visible) beginOnce();
     run();
   }, { rootMargin: "100px 0px" }).observe(box);
+  addEventListener("load", () => (window.requestIdleCallback ?? setTimeout)(beginOnce)); // for print
 }
