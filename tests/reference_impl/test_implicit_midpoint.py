@@ -6,6 +6,7 @@ from reference_cases import EPS, start, system
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import Acceleration, State
 
 INERTIA = np.array([1.0, 2.0, 2.5])
 MIDPOINT = SCHEMES["implicit-midpoint"]
@@ -26,3 +27,21 @@ def test_a_step_that_is_too_large_is_no_number() -> None:
     w0 = np.array([70.0, 200.0, 110.0])
     found = MIDPOINT.step(acceleration_of(system(INERTIA)), start(w0), 5.0).angular_velocity
     assert np.all(np.isnan(found))
+
+
+def test_forces_are_taken_where_the_middle_of_the_step_is() -> None:
+    """Place and velocity there, for loads that depend on them: under a constant pull, exactly."""
+    pull, h = np.array([0.5, -1.0, 2.0]), 0.3
+    asked = []
+
+    def acceleration(state: State) -> Acceleration:
+        asked.append(state)
+        w = state.angular_velocity
+        return Acceleration(-0.1 * w, np.zeros_like(w) + pull)
+
+    begin = start([1.0, 2.0, 3.0], position=[1.0, 2.0, 3.0], velocity=[-4.0, 5.0, 7.0])
+    MIDPOINT.step(acceleration, begin, h)
+    velocity = begin.linear_velocity + 0.5 * h * pull
+    place = begin.position + 0.5 * h * velocity
+    np.testing.assert_allclose(asked[-1].linear_velocity, velocity, rtol=4 * EPS)
+    np.testing.assert_allclose(asked[-1].position, place, rtol=4 * EPS)

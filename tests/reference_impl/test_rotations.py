@@ -126,3 +126,10 @@ def test_extended_precision_and_leading_axes_are_kept() -> None:
     assert long.dtype == np.longdouble
     assert np.max(np.abs(np.add.reduce(long**2, -1) - 1)) <= 4 * np.finfo(np.longdouble).eps
     assert rotation_matrix(long).dtype == rotate(long, r).dtype == np.longdouble
+
+
+def test_many_rotations_are_found_each_for_itself() -> None:
+    r = np.array([[0.1, 0.2, -0.3], [1.0, -1.0, 0.5], [-2.0, 0.3, 0.1]])
+    q = exp_quaternion(np.array([[0.4, 0.0, 0.1], [1.0, 2.0, 0.0], [0.0, -0.7, 0.2]]))
+    found = rotation_between(q, quaternion_product(q, exp_quaternion(r)))
+    assert np.allclose(found, r, rtol=0, atol=64 * EPS)

@@ -42,4 +42,6 @@ def test_a_tensor_that_is_not_positive_definite_is_refused() -> None:
     with pytest.raises(ValueError, match="positive definite"):
         inverse(np.diag([1.0, -1.0, 2.0]))
     with pytest.raises(ValueError, match="positive definite"):
+        inverse(np.diag([1.0, -1e-3, 2.0]))
+    with pytest.raises(ValueError, match="positive definite"):
         inverse(np.full((3, 3), np.nan))

@@ -43,8 +43,7 @@ def mean_velocity(
     def evaluate(w: Array, _: Acceleration) -> Acceleration:
         return starred(_with_velocity(state, w))
 
-    w, found = mean_velocity_of(evaluate, found, w0, half, inverse)
-    return w, Acceleration(2 / h * (w - w0), found.linear)
+    return mean_velocity_of(evaluate, found, w0, half, inverse)
 
 
 def _even_and_odd(acceleration: AccelerationOf, state: State) -> tuple[Acceleration, Acceleration]:
