@@ -27,21 +27,23 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # plain help: importing what frames it takes a fifth of its time
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 
-app.command()(run)
-app.command()(engines)
-app.command()(scenarios)
-app.command()(schemes)
-app.command()(check)
-app.command()(faults)
-app.command()(choose)
-app.command()(report)
-app.command()(score)
-app.command()(compare)
-app.command()(versions)
+# Short enough for a line of 80 columns beside the longest name.
+app.command(short_help="Run scenarios on engines, judge them, write a report.")(run)
+app.command(short_help="List the engines and what each is set to.")(engines)
+app.command(short_help="List the built-in scenarios and what each shows.")(scenarios)
+app.command(short_help="Name the scheme of every integrator, from its steps.")(schemes)
+app.command(short_help="Put one engine, your own too, through every check.")(check)
+app.command(short_help="Break sound engines in known ways: what catches it?")(faults)
+app.command(short_help="Find engine, integrator and step for a requirement.")(choose)
+app.command(short_help="Draw the page of a stored run again, or of two runs.")(report)
+app.command(short_help="Score a trajectory of any simulator, or a log.")(score)
+app.command(short_help="Say what changed from one run to another.")(compare)
+app.command(short_help="Tell what changed between releases of an engine.")(versions)
 
 
 def _version(show: bool) -> None:
