@@ -92,11 +92,14 @@ def test_it_opens_at_the_end_standing_still(page, path):
     assert [text.split(" at step")[0] for text in others] == ["mujoco Euler", "dart semi-implicit"]
 
 
-def test_nothing_is_unpacked_before_it_comes_near(browser, path):
+def test_it_is_made_ready_without_being_scrolled_to(browser, path):
+    """Paper has no scrolling: once the page has come to rest, the bodies are unpacked and drawn."""
     browser.open(path, height=300)
-    assert not browser.evaluate(READY)
-    browser.evaluate("document.getElementById('see').scrollIntoView()")
     browser.wait(READY)
+    assert not browser.evaluate("document.getElementById('see').getBoundingClientRect().top < 300")
+    drawn = """(() => { const c = document.getElementById('see-stage');
+        return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v); })()"""
+    assert browser.evaluate(drawn)
 
 
 def test_playing_turns_the_body_from_the_start_and_pause_holds_it(page):
