@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import gc
-import os
-import secrets
 from pathlib import Path
 
 from omegadot.harness.usage_error import UsageError
 from omegadot.reports.chart_library import packed_library
+from omegadot.reports.whole_file import write_whole
 
 TWO_RUNS = Path("two-runs.html")
 
@@ -51,7 +50,7 @@ def redraw(folder: Path, out: Path | None = None) -> Path:
         from omegadot.reports.record import PAGE, read_record
 
         page = draw_page(read_record(folder), read_choice(folder))
-        return _write(page, out or folder / PAGE)
+        return write_whole(out or folder / PAGE, page)
     finally:
         if collecting:
             gc.enable()
@@ -69,20 +68,4 @@ def _of_two(was: Path, now: Path, out: Path | None, figures: Path | None, markdo
     comparison = compare_records(*records, (was.as_posix(), now.as_posix()))
     if markdown:
         return as_markdown(comparison).rstrip("\n")
-    return str(_write(draw_two_runs(comparison), out or TWO_RUNS))
-
-
-def _write(page: str, target: Path) -> Path:
-    """Write a page, whole or not at all."""
-    from omegadot.reports.schema import RecordError
-
-    if target.is_dir():
-        raise RecordError(f"{target}: is a folder; name a file.")
-    fresh = target.with_name(f".{target.name}.{secrets.token_hex(6)}")
-    try:
-        fresh.write_text(page, encoding="utf-8", errors="replace", newline="\n")
-        os.replace(fresh, target)
-    except OSError as error:
-        fresh.unlink(missing_ok=True)
-        raise RecordError(f"{target}: cannot be written ({error.strerror}).") from error
-    return target
+    return str(write_whole(out or TWO_RUNS, draw_two_runs(comparison)))

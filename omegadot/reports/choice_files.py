@@ -11,6 +11,7 @@ from typing import Any
 from omegadot.reports.choice_page import Section, draw_choice, section_of
 from omegadot.reports.run_json import dump_json
 from omegadot.reports.schema import RecordError
+from omegadot.reports.whole_file import write_whole
 
 NAME = "choice.json"
 
@@ -43,13 +44,6 @@ def read_choice(folder: Path) -> Section | None:
 
 
 def write_choice(choice: Mapping[str, Any], folder: Path) -> None:
-    """Write page and JSON, each to a name of its own first, so that none is ever half there."""
-    texts = {NAME: dump_json(choice), "choice.html": draw_choice(choice)}
-    try:
-        for name, text in texts.items():
-            part = folder / f".{name}.part"
-            part.write_text(text, encoding="utf-8")
-            part.replace(folder / name)
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise RecordError(f"{folder}: cannot be written to ({reason}); give another.") from error
+    """Page and JSON, each whole or not at all. Raises RecordError."""
+    write_whole(folder / NAME, dump_json(choice))
+    write_whole(folder / "choice.html", draw_choice(choice))

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
-import secrets
 from pathlib import Path
 from typing import Any
 
 from omegadot.reports.schema import RecordError
 from omegadot.reports.versions_page import draw_versions
+from omegadot.reports.whole_file import write_whole
 
 RECORD, PAGE = "versions.json", "versions.html"
 
@@ -24,15 +23,5 @@ def check_folder(folder: Path) -> None:
 
 def write_versions(record: dict[str, Any], folder: Path) -> None:
     """Both files, each whole or not at all. Raises RecordError."""
-    _write(folder / RECORD, json.dumps(record, indent=2) + "\n")
-    _write(folder / PAGE, draw_versions(record))
-
-
-def _write(target: Path, text: str) -> None:
-    fresh = target.with_name(f".{target.name}.{secrets.token_hex(6)}")
-    try:
-        fresh.write_text(text, encoding="utf-8", errors="replace", newline="\n")
-        os.replace(fresh, target)
-    except OSError as error:
-        fresh.unlink(missing_ok=True)
-        raise RecordError(f"{target}: cannot be written ({error.strerror}).") from error
+    write_whole(folder / RECORD, json.dumps(record, indent=2) + "\n")
+    write_whole(folder / PAGE, draw_versions(record))

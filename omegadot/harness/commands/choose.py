@@ -9,9 +9,6 @@ import typer
 
 from omegadot.harness.commands.options import Format
 
-ASKED = "Accuracy asked for"
-OTHER = "Other requirements"
-
 
 def choose(
     scenarios: Annotated[
@@ -44,49 +41,46 @@ def choose(
     ] = None,
     attitude: Annotated[
         str | None,
-        typer.Option(metavar="ANGLE", help="Greatest error: 0.1deg.", rich_help_panel=ASKED),
+        typer.Option(metavar="ANGLE", help="Greatest error of attitude: 0.1deg."),
     ] = None,
     omega: Annotated[
         str | None,
-        typer.Option(metavar="RATE", help="Greatest error: 0.01rad/s.", rich_help_panel=ASKED),
+        typer.Option(metavar="RATE", help="Greatest error of omega: 0.01rad/s."),
     ] = None,
     energy_drift: Annotated[
-        str | None, typer.Option(metavar="RATIO", help="Of energy: 1e-6.", rich_help_panel=ASKED)
+        str | None, typer.Option(metavar="RATIO", help="Greatest drift of energy: 1e-6.")
     ] = None,
     momentum_drift: Annotated[
         str | None,
-        typer.Option(metavar="RATIO", help="Of angular momentum.", rich_help_panel=ASKED),
+        typer.Option(metavar="RATIO", help="Greatest drift of angular momentum."),
     ] = None,
     linear_momentum_drift: Annotated[
-        str | None, typer.Option(metavar="RATIO", help="Of momentum.", rich_help_panel=ASKED)
+        str | None, typer.Option(metavar="RATIO", help="Greatest drift of momentum.")
     ] = None,
     flip_time: Annotated[
         str | None,
-        typer.Option(metavar="TIME", help="Greatest error of a flip: 1ms.", rich_help_panel=ASKED),
+        typer.Option(metavar="TIME", help="Greatest error of a flip: 1ms."),
     ] = None,
     real_time_factor: Annotated[
         str | None,
-        typer.Option(
-            metavar="X", help="Least simulated over elapsed seconds.", rich_help_panel=OTHER
-        ),
+        typer.Option(metavar="X", help="Least simulated over elapsed seconds."),
     ] = None,
     precision: Annotated[
-        str | None, typer.Option(metavar="P", help="double or single.", rich_help_panel=OTHER)
+        str | None, typer.Option(metavar="P", help="What it computes in: double or single.")
     ] = None,
     feature: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME",
-            help="pivot, inverse-dynamics, batch and others; repeatable.",
-            rich_help_panel=OTHER,
+            help="What it must have: pivot, batch, inverse-dynamics; repeatable.",
         ),
     ] = None,
     licence: Annotated[
         list[str] | None,
-        typer.Option(metavar="SPDX", help="One allowed; repeatable.", rich_help_panel=OTHER),
+        typer.Option(metavar="SPDX", help="One that is allowed, by its SPDX name; repeatable."),
     ] = None,
     python: Annotated[
-        str | None, typer.Option(metavar="3.N", help="To run under.", rich_help_panel=OTHER)
+        str | None, typer.Option(metavar="3.N", help="A Python that its package must not refuse.")
     ] = None,
     engine: Annotated[
         list[str] | None,
@@ -107,7 +101,11 @@ def choose(
         typer.Option(metavar="N", min=1, help="Engines at the same time. Default: cores."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write choice.html and choice.json there.")
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Write the choice there; in the folder of a run, into its report too.",
+        ),
     ] = None,
     output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
 ) -> None:
