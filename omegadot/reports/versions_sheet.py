@@ -86,6 +86,8 @@ def _beside(record: Record) -> list[str]:
         cases = [f"{c['name']} ({plain(c['timestep'])} s)" for c in record["cases"]]
         return [f"Run on {listed(cases)}, setup {record['setup']}."]
     followed = bisected["metrics"]
+    if not followed:  # no release could be asked which metrics there are
+        return [f"Looked at: {listed(bisected['looked_at'])}."]
     named = listed(followed) if len(followed) <= MOST_NAMED else times(len(followed), "metric")
     return [
         f"Followed: {named}.",

@@ -41,6 +41,15 @@ def seen(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Any]:
     return folder / "out", result.json
 
 
+def test_a_bisection_in_which_nothing_runs_says_so(tmp_path: Path) -> None:
+    result = versions(tmp_path, *words(tmp_path, *UNWELL[:2]), "--bisect", "order", "--out", "out")
+    assert result.code == 3, result.err
+    assert "none could be asked" in result.out
+    assert "Looked at: 1.5 and 1.6." in result.out
+    assert "Traceback" not in result.err
+    assert (tmp_path / "out" / "versions.html").exists()
+
+
 @LOOKS
 def test_axe_finds_nothing_on_the_page(
     seen: tuple[Path, Any], tmp_path: Path, look: dict[str, Any]
