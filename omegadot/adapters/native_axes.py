@@ -12,7 +12,7 @@ TURNED_QUATERNION = (0.5, 0.5, 0.5, 0.5)  # w x y z, or any other order
 GIVEN = np.array([1.0, 0.0, 0.0])
 
 
-def axes_told_by(seen_in_world: Array) -> str:
+def axes_observed(seen_in_world: Array) -> str:
     """Whose axes ``GIVEN`` was taken in by a body at ``TURNED``, of what is seen of it in world.
 
     Some roundings are granted; anything else is told as it is.
@@ -22,12 +22,12 @@ def axes_told_by(seen_in_world: Array) -> str:
         return "world axes"
     if np.all(np.abs(seen_in_world - TURNED @ GIVEN) <= close):
         return "body axes"
-    return f"neither body nor world axes: (1, 0, 0) is seen as {in_words(seen_in_world)}"
+    return f"neither body nor world axes: (1, 0, 0) is seen as {described(seen_in_world)}"
 
 
-def in_words(value: object) -> str:
+def described(value: object) -> str:
     """A setting as text that is the same wherever the setting is the same."""
     array = np.asarray(value)
     if array.ndim:
-        return f"({', '.join(in_words(item) for item in array.ravel())})"
+        return f"({', '.join(described(item) for item in array.ravel())})"
     return f"{array.item() + 0.0:.12g}" if array.dtype.kind == "f" else str(array.item())

@@ -15,11 +15,11 @@ from omegadot.adapters.protocol import Adapter, Setup
 ENTRY_POINT_GROUP = "omegadot.adapters"
 
 BUILT_IN: dict[str, str] = {
-    "exact": "omegadot.adapters.exact:ExactAdapter",
-    "reference": "omegadot.adapters.reference:ReferenceAdapter",
-    "mujoco": "omegadot.adapters.mujoco:MujocoAdapter",
-    "pinocchio": "omegadot.adapters.pinocchio:PinocchioAdapter",
-    "dart": "omegadot.adapters.dart:DartAdapter",
+    "exact": "omegadot.adapters.exact.adapter:ExactAdapter",
+    "reference": "omegadot.adapters.reference.adapter:ReferenceAdapter",
+    "mujoco": "omegadot.adapters.mujoco.adapter:MujocoAdapter",
+    "pinocchio": "omegadot.adapters.pinocchio.adapter:PinocchioAdapter",
+    "dart": "omegadot.adapters.dart.adapter:DartAdapter",
 }
 
 

@@ -9,17 +9,16 @@ import numpy as np
 import polars as pl
 
 from omegadot import __version__
-from omegadot.adapters.wire import state_from
-from omegadot.harness.checks.causes import causes_of
-from omegadot.harness.checks.judge import Cause
-from omegadot.harness.exact_floor import floor_rows
-from omegadot.harness.exact_rows import exact_rows
-from omegadot.harness.judge_case import JudgedRun
-from omegadot.harness.outcome import EngineCase, JudgedCase, Outcome
-from omegadot.harness.plan import Case, Engine, Task
-from omegadot.harness.rows import Row, worst
+from omegadot.gates.case import Case
+from omegadot.gates.exact_floor import floor_rows
+from omegadot.gates.exact_rows import exact_rows
+from omegadot.gates.rows import Row, worst
+from omegadot.harness.judge import JudgedRun
+from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase, Outcome
+from omegadot.harness.plan import Engine, Task
 from omegadot.reference_impl.system import Array, State
-from omegadot.reports import schema
+from omegadot.reports.record import schema
+from omegadot.workers.wire import state_from
 
 # Causes are tried by stepping anew, which takes seconds: a run asks about so many of an engine's
 # failed integrators, in the order of the scenarios. `omegadot check` asks about all.
@@ -61,21 +60,21 @@ def _gates(rows: list[Row]) -> dict[str, str]:
 class _Causes:
     """Asks for the likeliest causes, as long as an engine has not had its share."""
 
-    def __init__(self, seed: int) -> None:
-        self._seed = seed
-        self._asked: dict[str, set[tuple[str, str]]] = {}
+    def __init__(self, causes_of: CausesOf, seed: int) -> None:
+        self._causes_of, self._seed = causes_of, seed
+        self._requested: dict[str, set[tuple[str, str]]] = {}
 
     def of(self, case: JudgedCase, found: EngineCase) -> Cause:
         """The causes of one engine's runs on one case."""
-        ask = causes_of(case, found, self._seed)
-        asked = self._asked.setdefault(found.engine.name, set())
+        request = self._causes_of(case, found, self._seed)
+        requested = self._requested.setdefault(found.engine.name, set())
 
         def cause(run: JudgedRun | None) -> str:
             key = (case.case.name, run.integrator.name if run else "")
-            if key not in asked and len(asked) >= MOST_CAUSES:
+            if key not in requested and len(requested) >= MOST_CAUSES:
                 return ""
-            asked.add(key)
-            return ask(run)
+            requested.add(key)
+            return request(run)
 
         return cause
 
@@ -138,14 +137,15 @@ def _engine_tasks(
 
 
 def tasks_of_run(
-    outcome: Outcome, cases: list[Case], setup: str, seed: int
+    outcome: Outcome, cases: list[Case], setup: str, seed: int, causes_of: CausesOf
 ) -> list[dict[str, Any]]:
     """Every task with its outcome; engines that did not start have one task a scenario.
 
-    seed: that of the run, by which the questions were drawn that a cause must answer.
+    seed: that of the run, from which the evaluation states were drawn.
+    causes_of: names the likeliest causes of an engine's failures.
     """
     found: list[dict[str, Any]] = []
-    causes = _Causes(seed)
+    causes = _Causes(causes_of, seed)
     for case in outcome.cases:
         for engine in case.engines:
             if engine.engine.name == "exact":

@@ -13,32 +13,17 @@ from functools import partial
 from typing import Any
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.adapters.wire import description_of
-from omegadot.harness.plan import Case, Engine, Sweep
-from omegadot.harness.worker_process import Answer, WorkerProcess
-from omegadot.reference_impl.system import Acceleration, Array, State
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.evaluation_states import EvaluationStates, Probe
+from omegadot.harness.plan import Engine
+from omegadot.reference_impl.system import State
+from omegadot.workers.harness_end.process import Answer, WorkerProcess
+from omegadot.workers.wire import description_of
 
 MOST_TIMEOUTS_IN_A_ROW = 3
 # Outcomes of loading a scenario that deserve a second attempt; the others would come again.
 MAY_PASS = {"crashed", "timeout", "interrupted"}
 INTERRUPTED = Answer("interrupted", "the run was interrupted before this task")
-
-
-@dataclass(frozen=True)
-class Questions:
-    """States to put to an engine's equations: random ones, and ones along the exact course."""
-
-    random: State
-    path: State
-    asked: Acceleration
-
-
-@dataclass(frozen=True)
-class Probe:
-    """States (m, ...) to take one step from, and the steps (m, k) in s to try there."""
-
-    states: State
-    timesteps: Array
 
 
 @dataclass
@@ -94,7 +79,7 @@ class Driver:
         self._refused: dict[str, Answer] = {}
         self._declared: tuple[Integrator, ...] = ()
 
-    def _ask(self, call: Callable[[], Answer]) -> Answer:
+    def _send(self, call: Callable[[], Answer]) -> Answer:
         """What a call to the worker comes to, when its turn has come."""
         with self._slots:
             answer = INTERRUPTED if self._stopping.is_set() else call()
@@ -113,12 +98,12 @@ class Driver:
         if case.name in self._refused:
             return self._refused[case.name]
         if not self.worker.started:
-            started = self._ask(self.worker.start)
+            started = self._send(self.worker.start)
             if not started.ok:
                 return started
         if self._loaded is case:
             return Answer("ok")
-        answer = self._ask(partial(self.worker.ask, "load", system=case.system))
+        answer = self._send(partial(self.worker.request, "load", system=case.system))
         self._loaded = case if answer.ok else None
         if answer.ok:
             self._declared = description_of(answer.result).integrators
@@ -135,7 +120,9 @@ class Driver:
     def request(self, case: Case, operation: str, **fields: Any) -> Answer:
         """One request about a case; what fails is the answer."""
         loaded = self._load(case)
-        return self._ask(partial(self.worker.ask, operation, **fields)) if loaded.ok else loaded
+        return (
+            self._send(partial(self.worker.request, operation, **fields)) if loaded.ok else loaded
+        )
 
     def run(
         self, case: Case, integrator: str, sweep: Sweep, initial: State | None = None
@@ -151,22 +138,22 @@ class Driver:
             every=sweep.every,
         )
 
-    def ask_equations(self, case: Case, questions: Questions) -> CaseResult:
+    def evaluate_equations(self, case: Case, evaluation: EvaluationStates) -> CaseResult:
         """The model read back, and the engine's equations at the states in question."""
         precision = self.engine.description.precision
         result = CaseResult(self.engine.name, case.name, precision=precision)
         features = self.engine.description.features
-        first = State(*(f[0] for f in vars(questions.random).values()))
+        first = State(*(f[0] for f in vars(evaluation.random).values()))
         result.model = self.request(case, "model", state=first)
         result.integrators = self.integrators()
         lacking = Answer("unsupported", "the engine offers no such call")
         result.forward = result.path = result.inverse = lacking
         if "forward_dynamics" in features:
-            result.forward = self.request(case, "forward", states=questions.random)
-            result.path = self.request(case, "forward", states=questions.path)
+            result.forward = self.request(case, "forward", states=evaluation.random)
+            result.path = self.request(case, "forward", states=evaluation.path)
         if "inverse_dynamics" in features:
             result.inverse = self.request(
-                case, "inverse", states=questions.random, acceleration=questions.asked
+                case, "inverse", states=evaluation.random, acceleration=evaluation.requested
             )
         return result
 

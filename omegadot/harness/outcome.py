@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 
+from omegadot.gates.case import Case
+from omegadot.gates.measured_run import Companion, SchemeKey
+from omegadot.gates.rows import Row
+from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.gates.course import Companion, SchemeKey
-from omegadot.harness.judge_case import JudgedRun
-from omegadot.harness.plan import Case, Engine, EngineChoice
-from omegadot.harness.rows import Row
-from omegadot.harness.truth import Truth
-from omegadot.harness.worker_process import Answer
+from omegadot.harness.judge import JudgedRun
+from omegadot.harness.plan import Engine, EngineChoice
+from omegadot.workers.harness_end.process import Answer
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,12 @@ class JudgedCase:
     truth: Truth | None
     reason: str
     engines: list[EngineCase]
+
+
+# Names the likeliest cause of a failure: in one run, or (None) in what all runs share.
+Cause = Callable[[JudgedRun | None], str]
+# From an engine's judged case to its causes; the seed is that of the evaluation states.
+CausesOf = Callable[[JudgedCase, EngineCase, int], Cause]
 
 
 @dataclass(frozen=True)

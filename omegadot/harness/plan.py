@@ -1,17 +1,10 @@
-"""What will be run: engines, scenarios, steps, and the samples each run keeps."""
+"""What is run: the engines requested, the engines that started, and the tasks."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Description, Integrator
-from omegadot.reference_impl.stepping import kept_steps
-from omegadot.reference_impl.system import Array, State, System
-from omegadot.scenarios import Scenario
 
 
 @dataclass(frozen=True)
@@ -22,58 +15,6 @@ class EngineChoice:
     target: str
     integrators: tuple[str, ...] = ()
     required: bool = False
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """One step size of a scenario: `steps` of `timestep`, keeping every `every`-th."""
-
-    timestep: float
-    steps: int
-    every: int
-
-    @property
-    def sample_steps(self) -> NDArray[Any]:
-        """The step numbers that are kept: the start, every `every`-th, the end."""
-        return np.array(kept_steps(self.steps, self.every))
-
-    @property
-    def times(self) -> Array:
-        """(n,) s: the step numbers times the step, the contract's sample times."""
-        return self.sample_steps * self.timestep
-
-    def refined(self, factor: int) -> Sweep:
-        """The same samples at a step `factor` times smaller."""
-        return Sweep(self.timestep / factor, self.steps * factor, self.every * factor)
-
-
-@dataclass(frozen=True)
-class Case:
-    """A scenario made ready: its system, its initial state, its sweep."""
-
-    scenario: Scenario
-    system: System
-    initial: State
-    sweeps: tuple[Sweep, ...]
-
-    @property
-    def name(self) -> str:
-        """The scenario's name."""
-        return self.scenario.name
-
-    @property
-    def sample_times(self) -> Array:
-        """Every sample time of every sweep, sorted, each once."""
-        return np.unique(np.concatenate([sweep.times for sweep in self.sweeps]))
-
-
-def sweep_of(duration: float, timestep: float, sample: float) -> Sweep:
-    """Whole steps within the duration, and k = max(1, round(sample / step)) between samples."""
-    ratio = duration / timestep
-    nearest = round(ratio)
-    # A duration that is a whole multiple on paper is one here, whatever the division rounded to.
-    whole = nearest if abs(ratio - nearest) <= 4 * np.finfo(float).eps * ratio else int(ratio)
-    return Sweep(timestep, max(1, whole), max(1, round(sample / timestep)))
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from omegadot.gates.case import Case, Sweep
 from omegadot.harness.drive import Driver
-from omegadot.harness.judge_case import JudgedRun
-from omegadot.harness.plan import Case, Sweep
-from omegadot.harness.worker_process import Answer
+from omegadot.harness.judge import JudgedRun
+from omegadot.workers.harness_end.process import Answer
 
 MOST_HALVINGS = 4
 Refinements = dict[str, dict[float, tuple[Sweep, Answer]]]

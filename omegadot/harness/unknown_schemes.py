@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.adapters.wire import state_from
-from omegadot.harness.drive import CaseResult, Driver, Questions
-from omegadot.harness.gates import restart, vanishing_step
-from omegadot.harness.plan import Case, Sweep
-from omegadot.harness.rows import Row
-from omegadot.harness.truth import Truth
+from omegadot.gates import restart, vanishing_step
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.evaluation_states import EvaluationStates
+from omegadot.gates.rows import Row
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import CaseResult, Driver
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
+from omegadot.workers.wire import state_from
 
 
 def is_unknown(integrator: Integrator) -> bool:
@@ -18,18 +19,18 @@ def is_unknown(integrator: Integrator) -> bool:
     return integrator.scheme not in SCHEMES and integrator.knob == "timestep"
 
 
-def ask_unknown_schemes(
-    driver: Driver, case: Case, questions: Questions, result: CaseResult
+def probe_unknown_schemes(
+    driver: Driver, case: Case, evaluation: EvaluationStates, result: CaseResult
 ) -> None:
     """Have unknown schemes take first steps, and begin their runs anew, into `result`."""
     for integrator in filter(is_unknown, result.integrators):
         runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue
-        probe = vanishing_step.probe_of(case.system, questions)
+        probe = vanishing_step.probe_of(case.system, evaluation)
         fields = {"states": probe.states, "timesteps": probe.timesteps}
-        asked = driver.request(case, "first_steps", integrator=integrator.name, **fields)
-        result.first_steps[integrator.name] = (probe, asked)
+        requested = driver.request(case, "first_steps", integrator=integrator.name, **fields)
+        result.first_steps[integrator.name] = (probe, requested)
         for sweep, run in runs.items():
             if run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
                 state = state_from(run.result["state"])

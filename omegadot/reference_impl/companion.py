@@ -14,7 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.reference_impl.body_origin import from_origin, origin_acceleration_of, to_origin
+from omegadot.reference_impl.body_origin import (
+    from_origin,
+    origin_acceleration_of,
+    to_origin,
+)
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.schemes import SCHEMES, Scheme

@@ -45,5 +45,7 @@ def place_on_pivot(system: System, state: State) -> State:
         return state
     r = lever(system)
     origin = np.zeros_like(state.angular_velocity)
-    hung = replace(state, position=origin, linear_velocity=origin)
-    return replace(state, position=point_position(hung, r), linear_velocity=point_velocity(hung, r))
+    pivoted = replace(state, position=origin, linear_velocity=origin)
+    return replace(
+        state, position=point_position(pivoted, r), linear_velocity=point_velocity(pivoted, r)
+    )

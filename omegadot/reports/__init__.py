@@ -8,11 +8,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from omegadot.reports.page import draw_page
-    from omegadot.reports.record import Record, check_folder, read_record, write_record
-    from omegadot.reports.schema import SCHEMA, RecordError
-    from omegadot.reports.summary import Summary, summarise
-    from omegadot.reports.terminal import print_summary
+    from omegadot.reports.page.page import draw_page
+    from omegadot.reports.record.record import (
+        Record,
+        check_folder,
+        read_record,
+        write_record,
+    )
+    from omegadot.reports.record.schema import SCHEMA, RecordError
+    from omegadot.reports.summary.summary import Summary, summarise
+    from omegadot.reports.text.terminal import print_summary
 
 __all__ = [
     "SCHEMA",
@@ -27,11 +32,11 @@ __all__ = [
     "write_record",
 ]
 _PLACES = {
-    "page": ("draw_page",),
-    "record": ("Record", "check_folder", "read_record", "write_record"),
-    "schema": ("SCHEMA", "RecordError"),
-    "summary": ("Summary", "summarise"),
-    "terminal": ("print_summary",),
+    "page.page": ("draw_page",),
+    "record.record": ("Record", "check_folder", "read_record", "write_record"),
+    "record.schema": ("SCHEMA", "RecordError"),
+    "summary.summary": ("Summary", "summarise"),
+    "text.terminal": ("print_summary",),
 }
 
 

@@ -107,7 +107,7 @@ def _nearest_key(location: Location) -> str:
     return f"take it out, the keys known there are {', '.join(known)}"
 
 
-def nearest(word: str, known: list[str]) -> str | None:
+def nearest(term: str, known: list[str]) -> str | None:
     """The known word that is spelt most like this one, if any is."""
-    near = difflib.get_close_matches(word[:64].lower(), known, n=1)
+    near = difflib.get_close_matches(term[:64].lower(), known, n=1)
     return near[0] if near else None

@@ -77,8 +77,8 @@ def translation_scale(of: System, many: State) -> Array:
 def angular_bound(of: System, many: State) -> Array:
     inertia = moving_inertia(of)
     moments = np.linalg.eigvalsh(inertia)
-    ill = moments[-1] / moments[0] * torque_scale(of, many) + translation_scale(of, many)
-    bound: Array = FEW * EPS * ill / moments[0]
+    faulty = moments[-1] / moments[0] * torque_scale(of, many) + translation_scale(of, many)
+    bound: Array = FEW * EPS * faulty / moments[0]
     return bound
 
 
@@ -97,14 +97,14 @@ def cases(count: int, of: System, seed: int, fast: float) -> State:
 @pytest.mark.parametrize("name", ENGINES)
 def test_answers_the_protocol_and_says_what_it_is(name: str) -> None:
     adapter = engine(name)
-    told = adapter.description
+    reported = adapter.description
     assert isinstance(adapter, Adapter)
-    assert told.name == name
-    assert told.version
-    assert told.licence
-    assert told.integrators
-    assert {"free", "pivot", "forward_dynamics"} <= told.features
-    assert len({i.name for i in told.integrators}) == len(told.integrators)
+    assert reported.name == name
+    assert reported.version
+    assert reported.licence
+    assert reported.integrators
+    assert {"free", "pivot", "forward_dynamics"} <= reported.features
+    assert len({i.name for i in reported.integrators}) == len(reported.integrators)
 
 
 @pytest.mark.parametrize(
@@ -120,13 +120,13 @@ def test_importing_an_adapter_leaves_its_engine_alone(name: str, package: str) -
 @pytest.mark.parametrize("inertia", sorted(INERTIAS))
 @pytest.mark.parametrize("load", ["none", "pivot"])
 def test_the_model_reads_back(name: str, inertia: str, load: str) -> None:
-    asked = system(inertia, load)
-    (found,) = loaded(name, asked).model()
-    size = float(np.max(np.abs(asked.body.inertia)))
-    assert found.mass == asked.body.mass
+    requested = system(inertia, load)
+    (found,) = loaded(name, requested).model()
+    size = float(np.max(np.abs(requested.body.inertia)))
+    assert found.mass == requested.body.mass
     far = norm(OFFSET) + norm(PIVOT)
-    assert np.max(np.abs(found.center_of_mass - asked.body.center_of_mass)) <= 4 * EPS * far
-    assert np.max(np.abs(found.inertia - asked.body.inertia)) <= FEW * EPS * size
+    assert np.max(np.abs(found.center_of_mass - requested.body.center_of_mass)) <= 4 * EPS * far
+    assert np.max(np.abs(found.inertia - requested.body.inertia)) <= FEW * EPS * size
 
 
 @pytest.mark.parametrize("name", ENGINES)

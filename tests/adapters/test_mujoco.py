@@ -23,8 +23,12 @@ from mujoco_cases import (
     tensor,
 )
 
-from omegadot.adapters.mujoco import MujocoAdapter
-from omegadot.adapters.mujoco_model import _nearest_to_identity, apply_setup, principal_frame
+from omegadot.adapters.mujoco.adapter import MujocoAdapter
+from omegadot.adapters.mujoco.model import (
+    _nearest_to_identity,
+    apply_setup,
+    principal_frame,
+)
 from omegadot.adapters.protocol import Adapter, UnsupportedError
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
@@ -48,7 +52,7 @@ def test_satisfies_the_protocol() -> None:
 
 
 def test_importing_the_adapter_leaves_mujoco_alone() -> None:
-    code = "import sys, omegadot.adapters.mujoco; sys.exit('mujoco' in sys.modules)"
+    code = "import sys, omegadot.adapters.mujoco.adapter; sys.exit('mujoco' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
@@ -89,13 +93,13 @@ def test_physics_holds_off_what_a_version_might_turn_on() -> None:
 @pytest.mark.parametrize("inertia", INERTIAS)
 @pytest.mark.parametrize("load", ["none", "pivot"])
 def test_model_is_read_back_as_it_was_asked(inertia: str, load: str) -> None:
-    asked = system(inertia, load)
-    (found,) = loaded(asked).model()
-    assert found.mass == asked.body.mass
-    np.testing.assert_array_equal(found.center_of_mass, asked.body.center_of_mass)
+    requested = system(inertia, load)
+    (found,) = loaded(requested).model()
+    assert found.mass == requested.body.mass
+    np.testing.assert_array_equal(found.center_of_mass, requested.body.center_of_mass)
     # principal axes in double precision: a product of three matrices, each good to a few eps
-    bound = 16 * EPS * np.linalg.norm(asked.body.inertia, 2)
-    assert np.abs(found.inertia - asked.body.inertia).max() <= bound
+    bound = 16 * EPS * np.linalg.norm(requested.body.inertia, 2)
+    assert np.abs(found.inertia - requested.body.inertia).max() <= bound
 
 
 @given(SEEDS)
@@ -162,12 +166,12 @@ def test_refuses_what_mujoco_would_clamp(mass: float, scale: float) -> None:
 @settings(max_examples=50, derandomize=True, deadline=None)
 def test_states_come_back(seed: int, load: str) -> None:
     of = system(load=load)
-    adapter, asked = loaded(of), place_on_pivot(of, at(states(1, seed), 0))
-    adapter.set_state(asked)
+    adapter, requested = loaded(of), place_on_pivot(of, at(states(1, seed), 0))
+    adapter.set_state(requested)
     found = adapter.get_state()
-    reach = norm(asked.angular_velocity) * norm(OFFSET)
+    reach = norm(requested.angular_velocity) * norm(OFFSET)
     sizes = (1.0, 1.0, 80.0 + norm(OFFSET), 50.0 + reach)
-    for back, sent, size in zip(parts(found), parts(asked), sizes, strict=True):
+    for back, sent, size in zip(parts(found), parts(requested), sizes, strict=True):
         assert np.abs(back - sent).max() <= 8 * EPS * size
 
 
@@ -182,18 +186,18 @@ def test_mujoco_sees_the_body_where_the_state_puts_it() -> None:
     """MuJoCo's own kinematics, not the adapter's, place the centre of mass and its velocity."""
     for load in ("none", "pivot"):
         of = system(load=load)
-        adapter, asked = loaded(of), place_on_pivot(of, at(states(1), 0))
-        adapter.set_state(asked)
+        adapter, requested = loaded(of), place_on_pivot(of, at(states(1), 0))
+        adapter.set_state(requested)
         model, data = adapter._model, adapter._data
         mujoco.mj_forward(model, data)
         velocity = np.empty(6)
         kind = mujoco.mjtObj.mjOBJ_BODY  # MuJoCo's name for the inertial frame
         mujoco.mj_objectVelocity(model, data, kind, 1, velocity, 0)
-        np.testing.assert_allclose(data.xipos[1], asked.position, rtol=0, atol=8 * EPS * 80)
+        np.testing.assert_allclose(data.xipos[1], requested.position, rtol=0, atol=8 * EPS * 80)
         np.testing.assert_allclose(
-            velocity[3:], asked.linear_velocity, rtol=0, atol=64 * EPS * (50 + 80)
+            velocity[3:], requested.linear_velocity, rtol=0, atol=64 * EPS * (50 + 80)
         )
-        world = rotation_matrix(asked.orientation) @ asked.angular_velocity
+        world = rotation_matrix(requested.orientation) @ requested.angular_velocity
         np.testing.assert_allclose(velocity[:3], world, rtol=0, atol=64 * EPS * norm(world))
 
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from omegadot.adapters.mujoco_integrators import (
+from omegadot.adapters.mujoco.integrators import (
     Case,
     declared_integrators,
     integrator_flag,

@@ -21,10 +21,10 @@ from mujoco_cases import (
     system,
 )
 
-from omegadot.adapters import mujoco_stepping
-from omegadot.adapters.mujoco import MujocoAdapter
-from omegadot.adapters.mujoco_integrators import version_of
-from omegadot.adapters.mujoco_stepping import CHUNK
+from omegadot.adapters.mujoco import stepping as mujoco_stepping
+from omegadot.adapters.mujoco.adapter import MujocoAdapter
+from omegadot.adapters.mujoco.integrators import version_of
+from omegadot.adapters.mujoco.stepping import CHUNK
 from omegadot.adapters.protocol import Setup, UnsupportedError
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.momentum import angular_momentum

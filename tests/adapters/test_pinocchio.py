@@ -9,8 +9,8 @@ import pinocchio
 import pytest
 from mujoco_cases import EPS, at, norm, states, system
 
-from omegadot.adapters.pinocchio import LOOPED, PREFIX, PinocchioAdapter
-from omegadot.adapters.pinocchio_joint import PinocchioJoint
+from omegadot.adapters.pinocchio.adapter import LOOPED, PREFIX, PinocchioAdapter
+from omegadot.adapters.pinocchio.joint import PinocchioJoint
 from omegadot.adapters.protocol import UnsupportedError
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
@@ -38,11 +38,13 @@ def growth(of: System, start: State, time: float) -> float:
 
 
 def test_every_scheme_is_an_integrator_named_for_what_it_is() -> None:
-    told = PinocchioAdapter().description
-    assert {i.name: i.scheme for i in told.integrators} == {PREFIX + name: name for name in LOOPED}
-    assert all(i.orders == SCHEMES[str(i.scheme)].orders for i in told.integrators)
-    assert told.version == pinocchio.__version__
-    assert told.switched_off == ()
+    reported = PinocchioAdapter().description
+    assert {i.name: i.scheme for i in reported.integrators} == {
+        PREFIX + name: name for name in LOOPED
+    }
+    assert all(i.orders == SCHEMES[str(i.scheme)].orders for i in reported.integrators)
+    assert reported.version == pinocchio.__version__
+    assert reported.switched_off == ()
 
 
 @pytest.mark.parametrize("scheme", sorted(SCHEMES))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from mujoco_cases import EPS, at, norm, parts, states, system
 
-from omegadot.adapters.exact import ExactAdapter
-from omegadot.adapters.reference import ReferenceAdapter
+from omegadot.adapters.exact.adapter import ExactAdapter
+from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.momentum import angular_momentum
@@ -103,5 +103,5 @@ def test_the_exact_solution_starts_at_the_start() -> None:
     found = exact(of).run(start, "series", 0.01, 0, 1)
     assert np.array_equal(found.time, [0.0])
     assert attitude_angle(found.state.orientation[0], start.orientation) <= 8 * EPS
-    for given, told in zip(parts(start)[1:], parts(found.state)[1:], strict=True):
-        assert norm(told[0] - given) <= 8 * EPS * norm(given)
+    for given, reported in zip(parts(start)[1:], parts(found.state)[1:], strict=True):
+        assert norm(reported[0] - given) <= 8 * EPS * norm(given)

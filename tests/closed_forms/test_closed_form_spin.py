@@ -9,7 +9,9 @@ from closed_form_errors import EPS, errors
 from closed_form_taylor import TaylorSeries
 
 from omegadot.reference_impl.closed_forms import closed_form_of, floor, problem_of
-from omegadot.reference_impl.closed_forms.damped_symmetric import damped_symmetric_angular_velocity
+from omegadot.reference_impl.closed_forms.damped_symmetric import (
+    damped_symmetric_angular_velocity,
+)
 from omegadot.reference_impl.rotations import attitude_angle, quaternion_product, rotate
 from omegadot.reference_impl.system import Body, Load, State, System
 

@@ -6,21 +6,22 @@ import io
 from dataclasses import replace
 from typing import Any
 
-from omegadot.adapters.operations import OPERATIONS
 from omegadot.adapters.protocol import Integrator
-from omegadot.adapters.reference import ReferenceAdapter
-from omegadot.adapters.wire import read_frame, write_frame
-from omegadot.harness.ask_truth import case_companions, case_truth
+from omegadot.adapters.reference.adapter import ReferenceAdapter
+from omegadot.gates.case import Case
+from omegadot.gates.measured_run import SchemeKey
+from omegadot.gates.truth import Truth
+from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.gates.course import SchemeKey
-from omegadot.harness.judge_case import JudgedRun, judge_integrator
+from omegadot.harness.judge import JudgedRun, judge_integrator
 from omegadot.harness.outcome import EngineCase
-from omegadot.harness.plan import Case, Engine, EngineChoice
-from omegadot.harness.truth import Truth
-from omegadot.harness.usage import case_of
-from omegadot.harness.worker_process import Answer
+from omegadot.harness.plan import Engine, EngineChoice
+from omegadot.harness.truth_requests import case_companions, case_truth
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.scenarios import load_builtin
+from omegadot.workers.engine_end.operations import OPERATIONS
+from omegadot.workers.harness_end.process import Answer
+from omegadot.workers.wire import read_frame, write_frame
 
 
 def _sent(message: dict[str, Any]) -> dict[str, Any]:

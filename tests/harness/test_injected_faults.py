@@ -15,7 +15,7 @@ import pytest
 from command_line import ENGINES, Result, omegadot, quick_scenario
 
 INJECTED = ENGINES / "injected.py"
-ILL, WELL = "semi-implicit-euler", "rk4-quaternion"
+FAULTY_ENGINES, WELL = "semi-implicit-euler", "rk4-quaternion"
 MARK = "OMEGADOT_TEST_MARK"
 TINY = """
 schema = 1
@@ -122,11 +122,11 @@ def processes_marked(mark: str) -> list[str]:
 
 def run_engines(folder: Path, adapters: list[str], *more: object) -> Run:
     scenario = quick_scenario(folder, TINY, "tiny.toml")
-    words = [word for adapter in adapters for word in ("--adapter", adapter)]
+    terms = [term for adapter in adapters for term in ("--adapter", adapter)]
     mark = os.environ[MARK] = uuid.uuid4().hex
     try:
         out = ("--out", "out", *more)
-        result = omegadot("run", scenario, "--engine", "reference", *words, *out, folder=folder)
+        result = omegadot("run", scenario, "--engine", "reference", *terms, *out, folder=folder)
     finally:
         del os.environ[MARK]
     assert "Traceback" not in result.err, result.err
@@ -152,8 +152,8 @@ def hanging(tmp_path_factory: pytest.TempPathFactory) -> Run:
     return run_engines(folder, adapters, "--timeout", 4, "--jobs", 8)
 
 
-def check_reason(reason: str, said: str) -> None:
-    assert said in reason
+def check_reason(reason: str, text: str) -> None:
+    assert text in reason
     assert reason.isprintable()
     assert len(reason) <= 560  # 500 of the message, and the stage that it came from
 
@@ -161,13 +161,13 @@ def check_reason(reason: str, said: str) -> None:
 @pytest.mark.parametrize("name", BROKEN)
 def test_a_fault_in_a_run_costs_that_run_alone(name: str, broken: Run) -> None:
     outcome, reason = BROKEN[name]
-    ill, well = broken.tasks(name, ILL), broken.tasks(name, WELL)
-    assert [task["outcome"] for task in ill] == [outcome]
-    check_reason(ill[0]["reason"], reason)
+    faulty, well = broken.tasks(name, FAULTY_ENGINES), broken.tasks(name, WELL)
+    assert [task["outcome"] for task in faulty] == [outcome]
+    check_reason(faulty[0]["reason"], reason)
     assert [task["outcome"] for task in well] == ["ok"]
     assert set(well[0]["gates"].values()) <= {"pass", "info"}
     if outcome == "ok":
-        sound = "fail" not in ill[0]["gates"].values()
+        sound = "fail" not in faulty[0]["gates"].values()
         assert sound == (name in SOUND_TO_THE_GATES)
 
 
@@ -191,8 +191,8 @@ def test_an_engine_that_does_not_start_says_why(name: str, broken: Run) -> None:
 
 @pytest.mark.parametrize("name", HANGING)
 def test_a_hang_costs_its_time_limit_alone(name: str, hanging: Run) -> None:
-    assert [t["outcome"] for t in hanging.tasks(name, ILL)] == ["timeout"]
-    check_reason(hanging.tasks(name, ILL)[0]["reason"], LATE)
+    assert [t["outcome"] for t in hanging.tasks(name, FAULTY_ENGINES)] == ["timeout"]
+    check_reason(hanging.tasks(name, FAULTY_ENGINES)[0]["reason"], LATE)
     assert [t["outcome"] for t in hanging.tasks(name, WELL)] == ["ok"]
 
 

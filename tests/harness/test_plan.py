@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from omegadot.harness.plan import sweep_of
+from omegadot.gates.case import sweep_of
 
 
 @pytest.mark.parametrize(

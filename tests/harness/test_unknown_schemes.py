@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 from omegadot.adapters.protocol import Adapter, Description, Integrator, Trajectory
-from omegadot.adapters.reference import FEATURES, ReferenceAdapter
-from omegadot.harness.faults.catalogue import FAULTS
-from omegadot.harness.faults.detect import Judgement, judge
-from omegadot.harness.faults.nameless import Nameless, without_scheme
-from omegadot.harness.faults.prepared import Pool
-from omegadot.harness.gates.restart import restart_of
-from omegadot.harness.plan import Sweep
+from omegadot.adapters.reference.adapter import FEATURES, ReferenceAdapter
+from omegadot.commands.faults.catalogue.every import FAULTS
+from omegadot.commands.faults.detect import Judgement, judge
+from omegadot.commands.faults.prepared import Pool
+from omegadot.commands.faults.undeclared import Nameless, without_scheme
+from omegadot.gates.case import Sweep
+from omegadot.gates.restart import restart_of
 from omegadot.reference_impl.energy import rotational_kinetic_energy
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.rotations import turn_in_body
@@ -167,8 +167,8 @@ def test_a_conserving_method_of_its_own_is_not_accused(pool: Pool) -> None:
 
 def test_a_method_that_keeps_earlier_steps_in_mind_says_so(pool: Pool) -> None:
     assert failures(judged(pool, TwoStep(), {"torque-free", "asymmetric"})) == []
-    told = judged(pool, TwoStepUntold(), {"torque-free", "asymmetric"})
-    assert {(row.gate, row.metric) for row in failures(told)} == {("scheme", "begun_anew")}  # type: ignore[attr-defined]
+    reported = judged(pool, TwoStepUntold(), {"torque-free", "asymmetric"})
+    assert {(row.gate, row.metric) for row in failures(reported)} == {("scheme", "begun_anew")}  # type: ignore[attr-defined]
 
 
 def rows_of(found: Judgement, metric: str) -> list[str]:
@@ -212,8 +212,8 @@ def test_a_run_that_cannot_be_begun_anew_fails(pool: Pool) -> None:
 
     prepared = pool.prepare(pool.having({"asymmetric"}, 1)[0])
     found = judge(pool, prepared, "own", OnlyFromTheStart(ReferenceAdapter()), (EULER,))
-    said = "a run cannot be begun anew at its own sample: ValueError: not from here"
-    assert set(rows_of(found, "begun_anew")) == {said}
+    text = "a run cannot be begun anew at its own sample: ValueError: not from here"
+    assert set(rows_of(found, "begun_anew")) == {text}
 
 
 def test_loads_are_no_time(pool: Pool) -> None:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Adapter
-from omegadot.harness.gates.course import CHANNELS, scheme_key
-from omegadot.harness.measures import Yardstick
-from omegadot.harness.scales import (
+from omegadot.gates.measured_run import CHANNELS, scheme_key
+from omegadot.gates.measures import Yardstick
+from omegadot.gates.scales import (
     EPS,
     ROUNDINGS_PER_EVALUATION,
     body_scale,
@@ -123,13 +123,13 @@ def timestep_of(motion: Motion) -> float:
     return 0.05 / float(np.max([spin, np.sqrt(pull)]))
 
 
-def course(adapter: Adapter, motion: Motion, integrator: str, timestep: float) -> State:
+def trajectory(adapter: Adapter, motion: Motion, integrator: str, timestep: float) -> State:
     """The engine's states over some steps, from the first state."""
     adapter.load(motion.system)
     return adapter.run(motion.first, integrator, timestep, STEPS, 1).state
 
 
-def course_gap(
+def trajectory_gap(
     adapter: Adapter,
     motion: Motion,
     integrator: str,

@@ -39,8 +39,8 @@ def _along(matrix: Array, vectors: Array) -> Array:
     return np.asarray((matrix @ vectors[..., None])[..., 0])
 
 
-def _on_pivot(system: System, told: StateMap) -> StateMap:
-    return lambda state: place_on_pivot(system, told(state))
+def _on_pivot(system: System, reported: StateMap) -> StateMap:
+    return lambda state: place_on_pivot(system, reported(state))
 
 
 def rotated_world(motion: Motion, random: np.random.Generator) -> Retold:
@@ -54,7 +54,7 @@ def rotated_world(motion: Motion, random: np.random.Generator) -> Retold:
     )
     system = replace(motion.system, load=load)
 
-    def told(state: State) -> State:
+    def reported(state: State) -> State:
         return State(
             normalize(quaternion_product(turn, state.orientation)),
             state.angular_velocity,
@@ -62,7 +62,7 @@ def rotated_world(motion: Motion, random: np.random.Generator) -> Retold:
             _along(matrix, state.linear_velocity),
         )
 
-    state = _on_pivot(system, told)
+    state = _on_pivot(system, reported)
     return Retold(
         Motion(system, state(motion.states)),
         state,
@@ -81,12 +81,12 @@ def rotated_body(motion: Motion, random: np.random.Generator) -> Retold:
     loads = replace(load, pivot=pivot, torque_body=_along(matrix, load.torque_body))
     system = System((turned,), loads)
 
-    def told(state: State) -> State:
+    def reported(state: State) -> State:
         orientation = normalize(quaternion_product(state.orientation, conjugate(turn)))
         omega = _along(matrix, state.angular_velocity)
         return replace(state, orientation=orientation, angular_velocity=omega)
 
-    state = _on_pivot(system, told)
+    state = _on_pivot(system, reported)
     return Retold(
         Motion(system, state(motion.states)),
         state,
@@ -115,7 +115,7 @@ def relabelled(motion: Motion, random: np.random.Generator) -> Retold:
     )
     system = System((Body(body.mass, body.center_of_mass[order], inertia),), loads)
 
-    def told(state: State) -> State:
+    def reported(state: State) -> State:
         q = state.orientation
         return State(
             np.concatenate([q[..., :1], axial(q[..., 1:])], axis=-1),
@@ -124,7 +124,7 @@ def relabelled(motion: Motion, random: np.random.Generator) -> Retold:
             state.linear_velocity[..., order],
         )
 
-    state = _on_pivot(system, told)
+    state = _on_pivot(system, reported)
     return Retold(
         Motion(system, state(motion.states)),
         state,
@@ -138,11 +138,13 @@ def galilean(motion: Motion, random: np.random.Generator) -> Retold:
     reach = float(np.max(np.abs(motion.states.position)))
     place, velocity = reach * random.standard_normal(3), speed * random.standard_normal(3)
 
-    def told(state: State) -> State:
+    def reported(state: State) -> State:
         moved = state.position + place
         return replace(state, position=moved, linear_velocity=state.linear_velocity + velocity)
 
-    return Retold(Motion(motion.system, told(motion.states)), told, lambda a: a, drift=velocity)
+    return Retold(
+        Motion(motion.system, reported(motion.states)), reported, lambda a: a, drift=velocity
+    )
 
 
 def scaled_units(motion: Motion, random: np.random.Generator) -> Retold:
@@ -160,7 +162,7 @@ def scaled_units(motion: Motion, random: np.random.Generator) -> Retold:
     scaled = Body(body.mass * mass, body.center_of_mass * length, body.inertia * moment)
     system = System((scaled,), loads)
 
-    def told(state: State) -> State:
+    def reported(state: State) -> State:
         return State(
             state.orientation,
             state.angular_velocity / time,
@@ -169,8 +171,8 @@ def scaled_units(motion: Motion, random: np.random.Generator) -> Retold:
         )
 
     return Retold(
-        Motion(system, told(motion.states)),
-        told,
+        Motion(system, reported(motion.states)),
+        reported,
         lambda a: Acceleration(a.angular / time**2, a.linear * length / time**2),
         time,
     )
@@ -191,8 +193,8 @@ def offset_origin(motion: Motion, random: np.random.Generator) -> Retold:
 def reversed_time(motion: Motion, _: np.random.Generator) -> Retold:
     """The film run backwards: velocities change their sign, accelerations do not."""
 
-    def told(state: State) -> State:
+    def reported(state: State) -> State:
         w, v = -state.angular_velocity, -state.linear_velocity
         return replace(state, angular_velocity=w, linear_velocity=v)
 
-    return Retold(Motion(motion.system, told(motion.states)), told, lambda a: a)
+    return Retold(Motion(motion.system, reported(motion.states)), reported, lambda a: a)

@@ -12,7 +12,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_motions import STEPS, Motion, Wanted, course, course_gap, random_motion, timestep_of
+from random_motions import (
+    STEPS,
+    Motion,
+    Wanted,
+    random_motion,
+    timestep_of,
+    trajectory,
+    trajectory_gap,
+)
 from relations import galilean, relabelled, rotated_body, rotated_world, scaled_units
 from test_metamorphic_equation import ENGINES, engine
 
@@ -63,12 +71,12 @@ def gap(adapter: Adapter, relation, motion: Motion, integrator: str, seed: int) 
     """How far the retold motion's course is from the course, retold."""
     retold = relation(motion, np.random.default_rng(seed))
     step = timestep_of(motion)
-    expected = retold.state(course(adapter, motion, integrator, step))
+    expected = retold.state(trajectory(adapter, motion, integrator, step))
     moved = np.arange(STEPS + 1)[:, None] * step * retold.drift
     expected = replace(expected, position=expected.position + moved)
     step *= retold.time
-    found = course(adapter, retold.motion, integrator, step)
-    return course_gap(adapter, retold.motion, integrator, step, expected, found)
+    found = trajectory(adapter, retold.motion, integrator, step)
+    return trajectory_gap(adapter, retold.motion, integrator, step, expected, found)
 
 
 @pytest.mark.parametrize("name", ENGINES)

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_motions import STEPS, Motion, Wanted, course, random_motion, timestep_of
+from random_motions import STEPS, Motion, Wanted, random_motion, timestep_of, trajectory
 from test_metamorphic_equation import engine
 
-from omegadot.harness.measures import Yardstick
-from omegadot.harness.scales import EPS
+from omegadot.gates.measures import Yardstick
+from omegadot.gates.scales import EPS
 from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.rotations import attitude_angle
@@ -80,10 +80,10 @@ def test_a_hidden_friction_does_not_come_back() -> None:
 def scheme_gap(motion: Motion, scheme: str) -> float:
     """How far a scheme's course there and back ends from its start, over what rounding allows."""
     reference, step = engine("reference"), timestep_of(motion)
-    there = course(reference, motion, scheme, step)
+    there = trajectory(reference, motion, scheme, step)
     start = reversed_state(last(there))
     back = Motion(motion.system, State(*(v[None] for v in vars(start).values())))
-    again = course(reference, back, scheme, step)
+    again = trajectory(reference, back, scheme, step)
     times = step * np.arange(STEPS + 1)
     yardstick = Yardstick(motion.system, times, there)
     growth = growth_along(motion.system, times, again, yardstick.rate)

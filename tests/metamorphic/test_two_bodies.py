@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from random_motions import ROUNDINGS, Motion, Wanted, random_motion
 
-from omegadot.harness.scales import EPS, body_scale, norm, torque_size
+from omegadot.gates.scales import EPS, body_scale, norm, torque_size
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State
 
@@ -22,7 +22,7 @@ BODY = """
 TOUCHING = '<geom type="sphere" size="10" mass="0"/>'
 
 
-def words(values: Array) -> str:
+def terms(values: Array) -> str:
     return " ".join(f"{value:.17g}" for value in values)
 
 
@@ -31,11 +31,11 @@ def mujoco_body(motion: Motion, geom: str) -> str:
     i = body.inertia
     full = np.array([i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]])
     return BODY.format(
-        p=words(state.position),
-        q=words(state.orientation),
-        c=words(body.center_of_mass),
+        p=terms(state.position),
+        q=terms(state.orientation),
+        c=terms(body.center_of_mass),
         m=f"{float(body.mass):.17g}",
-        i=words(full),
+        i=terms(full),
         geom=geom,
     )
 

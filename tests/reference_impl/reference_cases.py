@@ -31,11 +31,11 @@ def inertias(draw: st.DrawFn) -> Array:
 @st.composite
 def systems(draw: st.DrawFn, pivoted: bool | None = None) -> System:
     """Any body under all loads at once, free or pivoted."""
-    hung = draw(st.booleans()) if pivoted is None else pivoted
+    pivoted = draw(st.booleans()) if pivoted is None else pivoted
     body = Body(np.array(draw(positive)), draw(vectors), draw(inertias()))
     load = Load(
         gravity=draw(vectors),
-        pivot=draw(vectors) if hung else None,
+        pivot=draw(vectors) if pivoted else None,
         damping=np.array(draw(st.floats(0.0, 1.0))),
         torque_body=draw(vectors),
         torque_world=draw(vectors),

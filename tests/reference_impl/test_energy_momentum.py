@@ -16,7 +16,11 @@ from omegadot.reference_impl.energy import (
     total_energy,
 )
 from omegadot.reference_impl.inertia import lever, moving_inertia
-from omegadot.reference_impl.kinematics import place_on_pivot, point_position, point_velocity
+from omegadot.reference_impl.kinematics import (
+    place_on_pivot,
+    point_position,
+    point_velocity,
+)
 from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
 from omegadot.reference_impl.rotations import rotate, turn_in_body
 from omegadot.reference_impl.system import Array, State, System
@@ -129,10 +133,10 @@ def test_pivot_point_stands_still_at_the_origin() -> None:
     q = rng.normal(size=(7, 4))
     q /= np.linalg.norm(q, axis=-1, keepdims=True)
     any_state = State(q, rng.normal(size=(7, 3)), rng.normal(size=(7, 3)), rng.normal(size=(7, 3)))
-    hung = place_on_pivot(system, any_state)
+    pivoted = place_on_pivot(system, any_state)
     back = -lever(system)
-    assert np.max(np.abs(point_position(hung, back))) <= 16 * EPS
-    assert np.max(np.abs(point_velocity(hung, back))) <= 64 * EPS
+    assert np.max(np.abs(point_position(pivoted, back))) <= 16 * EPS
+    assert np.max(np.abs(point_velocity(pivoted, back))) <= 64 * EPS
     one = place_on_pivot(system, rows(any_state, 3))
-    assert np.max(np.abs(one.position - hung.position[3])) <= 8 * EPS
+    assert np.max(np.abs(one.position - pivoted.position[3])) <= 8 * EPS
     assert place_on_pivot(System(system.bodies), any_state) is any_state

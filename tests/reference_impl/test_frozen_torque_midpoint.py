@@ -7,7 +7,11 @@ import pytest
 from reference_cases import EPS, rows, start, system, turned
 from scipy.spatial.transform import Rotation
 
-from omegadot.reference_impl.body_origin import from_origin, origin_acceleration_of, to_origin
+from omegadot.reference_impl.body_origin import (
+    from_origin,
+    origin_acceleration_of,
+    to_origin,
+)
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.motion import acceleration_of

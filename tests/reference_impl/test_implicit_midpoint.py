@@ -32,10 +32,10 @@ def test_a_step_that_is_too_large_is_no_number() -> None:
 def test_forces_are_taken_where_the_middle_of_the_step_is() -> None:
     """Place and velocity there, for loads that depend on them: under a constant pull, exactly."""
     pull, h = np.array([0.5, -1.0, 2.0]), 0.3
-    asked = []
+    requested = []
 
     def acceleration(state: State) -> Acceleration:
-        asked.append(state)
+        requested.append(state)
         w = state.angular_velocity
         return Acceleration(-0.1 * w, np.zeros_like(w) + pull)
 
@@ -43,5 +43,5 @@ def test_forces_are_taken_where_the_middle_of_the_step_is() -> None:
     MIDPOINT.step(acceleration, begin, h)
     velocity = begin.linear_velocity + 0.5 * h * pull
     place = begin.position + 0.5 * h * velocity
-    np.testing.assert_allclose(asked[-1].linear_velocity, velocity, rtol=4 * EPS)
-    np.testing.assert_allclose(asked[-1].position, place, rtol=4 * EPS)
+    np.testing.assert_allclose(requested[-1].linear_velocity, velocity, rtol=4 * EPS)
+    np.testing.assert_allclose(requested[-1].position, place, rtol=4 * EPS)

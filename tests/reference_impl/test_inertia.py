@@ -9,7 +9,12 @@ from reference_cases import EPS, quaternions, vectors
 
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.from_scenario import body_of_part
-from omegadot.reference_impl.inertia import assemble, inertia_of_moments, parallel_axis, place
+from omegadot.reference_impl.inertia import (
+    assemble,
+    inertia_of_moments,
+    parallel_axis,
+    place,
+)
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array, Body
 from omegadot.scenarios.parts import Box, Capsule, Cylinder, Ellipsoid, Part, Point, Sphere

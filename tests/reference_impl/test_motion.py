@@ -274,9 +274,9 @@ def test_loads_one_by_one() -> None:
     world = torque(system([1, 2, 2.5], torque_world=(1, 2, 3)), state)
     assert np.allclose(world, [2, -1, 3], atol=8 * EPS)  # the world's x is the body's -y
     assert np.allclose(world, rotate_inverse(state.orientation, np.array([1.0, 2.0, 3.0])))
-    hung = system([1, 2, 2.5], 2.0, (0, 0, 1), pivot=(0, 0, 0.5), gravity=(0, 3, 0))
+    pivoted = system([1, 2, 2.5], 2.0, (0, 0, 1), pivot=(0, 0, 0.5), gravity=(0, 3, 0))
     # weight 6 N along the body's x, half a metre up its z: 3 N m about its y
-    assert np.allclose(torque(hung, state), [0, 3, 0], atol=16 * EPS)
+    assert np.allclose(torque(pivoted, state), [0, 3, 0], atol=16 * EPS)
 
 
 def test_a_system_of_two_bodies_is_refused() -> None:

@@ -7,7 +7,11 @@ import pytest
 from reference_cases import EPS, start, system
 
 from omegadot.reference_impl.motion import acceleration_of
-from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product, rotation_between
+from omegadot.reference_impl.rotations import (
+    exp_quaternion,
+    quaternion_product,
+    rotation_between,
+)
 from omegadot.reference_impl.schemes import SCHEMES, lie_rk4, munthe_kaas_rk4
 
 

@@ -11,30 +11,30 @@ EYE, START = np.eye(3), np.array([1.0, -2.0, 0.5])
 
 def solved(rate, noise=0.0):
     """ω_m for ``ω̇ = rate (ω - ω₀) + 1``, half a step of 1 s, the Jacobian taken for zero."""
-    generator, asked = np.random.default_rng(0), []
+    generator, requested = np.random.default_rng(0), []
 
     def evaluate(w, _):
-        asked.append(w)
+        requested.append(w)
         jitter = noise * generator.standard_normal(3)
         return Acceleration(rate * (w - START) + 1.0 + jitter, np.zeros(3))
 
     first = Acceleration(np.ones(3), np.zeros(3))
-    return mean_velocity_of(evaluate, first, START, 1.0, EYE)[0], len(asked)
+    return mean_velocity_of(evaluate, first, START, 1.0, EYE)[0], len(requested)
 
 
 @pytest.mark.parametrize("rate", [0.0, 0.1, -0.4, 0.6, -0.7])
 def test_it_settles_where_changes_shrink_however_slowly(rate):
-    found, asked = solved(rate)
+    found, requested = solved(rate)
     # Fifty changes, each `rate` of the one before, leave |rate|^50, below 2e-8.
     assert np.allclose(found, START + 1.0 / (1.0 - rate), rtol=1e-7)
-    assert asked <= 50
+    assert requested <= 50
 
 
 @pytest.mark.parametrize("noise", [1e-12, 1e-7, 1e-4])
 def test_noise_of_an_engine_ends_it_and_is_no_divergence(noise):
-    found, asked = solved(0.1, noise)
+    found, requested = solved(0.1, noise)
     assert np.allclose(found, START + 1.0 / 0.9, atol=20 * noise)
-    assert asked < 25
+    assert requested < 25
 
 
 @pytest.mark.parametrize("rate", [1.0, -1.5, 3.0])

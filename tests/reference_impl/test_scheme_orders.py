@@ -75,13 +75,16 @@ def test_observed_orders_are_the_declared_ones(name: str, case: str) -> None:
         found.append(errors(system, states, true))
     size = sizes(system, true)
     for channel, order in declared.items():
-        course = np.array([error[channel] for error in found])
+        trajectory = np.array([error[channel] for error in found])
         if order is None:
             # a few roundings in every step, of things that hardly grow in one second
-            assert np.max(course) <= 16 * EPS * counts[-1] * size[channel], (channel, course)
+            assert np.max(trajectory) <= 16 * EPS * counts[-1] * size[channel], (
+                channel,
+                trajectory,
+            )
             continue
-        slope = -np.polyfit(np.log(counts), np.log(course), 1)[0]
-        assert abs(slope - order) <= 0.15, (channel, order, slope, course)
+        slope = -np.polyfit(np.log(counts), np.log(trajectory), 1)[0]
+        assert abs(slope - order) <= 0.15, (channel, order, slope, trajectory)
 
 
 def test_the_naive_mean_is_hidden_from_energy_but_not_from_momentum() -> None:

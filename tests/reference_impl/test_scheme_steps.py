@@ -15,7 +15,10 @@ from omegadot.reference_impl.motion import acceleration_of, forward_dynamics
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.implicit_midpoint import cayley
-from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian, solve_one_minus
+from omegadot.reference_impl.schemes.jacobian import (
+    acceleration_and_jacobian,
+    solve_one_minus,
+)
 from omegadot.reference_impl.schemes.lie_rk4 import vector_rate
 from omegadot.reference_impl.system import Array, State, System
 

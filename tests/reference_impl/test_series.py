@@ -142,10 +142,10 @@ def test_free_fall_is_a_parabola_and_a_pivoted_body_stays_on_its_pivot() -> None
     assert np.array_equal(found.linear_velocity, [4, 5, 6] + t[:, None] * g)
     expected = np.array([1, 2, 3]) + np.outer(t, [4, 5, 6]) + np.outer(t**2 / 2, g)
     assert np.max(np.abs(found.position - expected)) <= 4 * EPS * 20
-    hung = solve_series(TOP, start([1, 2, 3], on=TOP), t)
-    placed = place_on_pivot(TOP, hung)
-    assert np.max(np.abs(hung.position - placed.position)) <= 8 * EPS
-    assert np.max(np.abs(hung.linear_velocity - placed.linear_velocity)) <= 32 * EPS
+    pivoted = solve_series(TOP, start([1, 2, 3], on=TOP), t)
+    placed = place_on_pivot(TOP, pivoted)
+    assert np.max(np.abs(pivoted.position - placed.position)) <= 8 * EPS
+    assert np.max(np.abs(pivoted.linear_velocity - placed.linear_velocity)) <= 32 * EPS
 
 
 def test_any_order_of_times_repeated_and_of_either_sign() -> None:

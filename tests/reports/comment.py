@@ -14,9 +14,9 @@ def active(text: str) -> list[str]:
     html = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
     for tag in OWN:
         html = html.replace(tag, "")
-    told = re.sub(r"<code>.*?</code>", "", html, flags=re.DOTALL)
+    reported = re.sub(r"<code>.*?</code>", "", html, flags=re.DOTALL)
     allowed = r"/?(?:h3|p|ul|li|table|thead|tbody|tr|th|td|strong|hr /)"
-    found = re.findall(rf"<(?!{allowed}>)[^>]*>", told)
-    found += re.findall(r"(?<![\w`])[@#]\w+", re.sub(r"&#?\w+;", "", told))
+    found = re.findall(rf"<(?!{allowed}>)[^>]*>", reported)
+    found += re.findall(r"(?<![\w`])[@#]\w+", re.sub(r"&#?\w+;", "", reported))
     # Some renderers make a link of a bare address as well, unless its colon is escaped.
     return found + re.findall(r"(?<!\\):(?=//)", re.sub(r"(`+).*?\1", "", text))

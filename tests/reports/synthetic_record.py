@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import polars as pl
 
-from omegadot.reports import schema
-from omegadot.reports.record import Record
+from omegadot.reports.record import schema
+from omegadot.reports.record.record import Record
 
 INTEGRATORS = {
     "reference": {"semi-implicit-euler": 1, "lie-rk4": 4},

@@ -18,16 +18,16 @@ from omegadot.reference_impl.rotations import (
     rotation_between,
 )
 from omegadot.reports import draw_page
-from omegadot.reports.depth_order import depth_order
-from omegadot.reports.see import Codes
-from omegadot.reports.see_shapes import tree_of
-from omegadot.reports.templating import asset
+from omegadot.reports.page.templating import asset
+from omegadot.reports.page.view_3d.depth_order import depth_order
+from omegadot.reports.page.view_3d.shapes import tree_of
+from omegadot.reports.page.view_3d.view import Codes
 
 HOSTILE = "<img src=x onerror=\"document.title='broken'\">"
 READY = "document.getElementById('see-box').dataset.ready === '1'"
 PICTURE = "document.getElementById('see-stage').toDataURL()"
 TIME = "Number(document.getElementById('see-time').value)"
-SAID = "document.getElementById('see-said').textContent"
+TEXT = "document.getElementById('see-said').textContent"
 PLAY = "document.getElementById('see-play')"
 HANDLE = [
     {"shape": "cylinder", "radius": 0.01, "length": 0.1, "density": 1.0,
@@ -114,7 +114,7 @@ def test_playing_turns_the_body_from_the_start_and_pause_holds_it(page):
     assert held[1] != before
     two_frames = "new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))"
     assert page.evaluate(f"{two_frames}.then(() => [{TIME}, {PICTURE}])") == held
-    assert page.evaluate(SAID).startswith("Paused.")
+    assert page.evaluate(TEXT).startswith("Paused.")
 
 
 def test_playing_ends_at_the_end_and_tells_of_a_parting(page):
@@ -124,13 +124,13 @@ def test_playing_ends_at_the_end_and_tells_of_a_parting(page):
     choose(page, "see-time", "1.45")
     page.evaluate(
         "{ window.heard = []; new MutationObserver(() => heard.push("
-        f"{SAID})).observe(document.getElementById('see-said'), {{ childList: true }}); }}"
+        f"{TEXT})).observe(document.getElementById('see-said'), {{ childList: true }}); }}"
     )
     choose(page, "see-speed", "10")
     page.evaluate(f"{PLAY}.click()")
     page.wait(f"{PLAY}.textContent === 'Play' && {TIME} === 4")
-    words = "dart semi-implicit parts from the exact solution at 1.50 s."
-    assert any(text.startswith(words) for text in page.evaluate("heard"))
+    terms = "dart semi-implicit parts from the exact solution at 1.50 s."
+    assert any(text.startswith(terms) for text in page.evaluate("heard"))
 
 
 def test_scrubbing_sets_the_clock_and_the_numbers(page):
@@ -143,7 +143,7 @@ def test_scrubbing_sets_the_clock_and_the_numbers(page):
     # Late by 2 * 0.3 * 0.02 * 2 rad, which is 1.375 degrees.
     (text,) = [text for text in listed(page) if text.startswith("dart")]
     assert "1.4° off" in text
-    assert "dart semi-implicit 1.4° off" in page.evaluate(SAID)
+    assert "dart semi-implicit 1.4° off" in page.evaluate(TEXT)
 
 
 def test_the_moment_of_parting_is_one_press_away(page):
@@ -173,10 +173,10 @@ def test_the_keyboard_plays_and_scrubs(page):
 
 def test_another_scenario_has_another_body(page):
     ball = page.evaluate(PICTURE)
-    told = "document.getElementById('see-told').textContent"
-    assert "homogeneous ball" in page.evaluate(told)
+    reported = "document.getElementById('see-told').textContent"
+    assert "homogeneous ball" in page.evaluate(reported)
     choose(page, "see-scenario", "1")
-    assert page.evaluate(told).startswith("A handle, spun: drawn from its parts")
+    assert page.evaluate(reported).startswith("A handle, spun: drawn from its parts")
     assert page.evaluate(PICTURE) != ball
     assert page.evaluate("document.getElementById('see-there').hash") == "#scenario-spun-again"
 
@@ -218,7 +218,7 @@ def test_runs_can_be_chosen_and_left_out(page):
         " s.value = '-1'; s.dispatchEvent(new Event('change')); })"
     )
     assert len(listed(page)) == 1
-    assert page.evaluate(SAID).endswith("the exact solution alone.")
+    assert page.evaluate(TEXT).endswith("the exact solution alone.")
 
 
 def test_the_table_behind_it_holds_every_run(page):
@@ -233,8 +233,8 @@ def test_the_table_behind_it_holds_every_run(page):
 
 
 def test_a_hostile_title_stays_text(page):
-    told = "document.getElementById('see-told').textContent"
-    assert page.evaluate(told).startswith(HOSTILE)
+    reported = "document.getElementById('see-told').textContent"
+    assert page.evaluate(reported).startswith(HOSTILE)
     assert page.evaluate("document.images.length") == 0
     assert page.evaluate("document.title").startswith("omegadot report")
 

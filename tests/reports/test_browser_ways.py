@@ -27,8 +27,8 @@ def browser(tmp_path_factory):
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     record = build()
-    words = [HOSTILE, "folder/spun-again.toml", "--seed", "7", "--adapter=mine.py:My Engine"]
-    record.run["command"] = ["omegadot", "run", *words]
+    terms = [HOSTILE, "folder/spun-again.toml", "--seed", "7", "--adapter=mine.py:My Engine"]
+    record.run["command"] = ["omegadot", "run", *terms]
     record.run["scenarios"] = [scenario_entry("sphere"), scenario_entry("spun-again")]
     file = tmp_path_factory.mktemp("page") / "report.html"
     file.write_text(draw_page(record), encoding="utf-8")
@@ -141,8 +141,8 @@ def test_a_point_tells_its_run_by_keyboard_and_by_click(page):
     focus(page, "[data-place='3']")
     for key, code in (("ArrowDown", 40), ("End", 35)):
         page.press(key, code)
-    said = page.evaluate("document.getElementById('said').textContent")
-    assert said.startswith("reference lie-rk4 at 4 s: ")
+    message = page.evaluate("document.getElementById('said').textContent")
+    assert message.startswith("reference lie-rk4 at 4 s: ")
     assert page.evaluate("document.querySelectorAll('.hoverlayer .hovertext').length") >= 1
     page.press("Enter", 13, "\r")
     page.wait(f"{CARD}.open")

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from synthetic_record import build, task
 
-from omegadot.reports.markdown import markdown_of
-from omegadot.reports.markdown_text import code, escape, table
+from omegadot.reports.text.markdown import markdown_of
+from omegadot.reports.text.markdown_text import code, escape, table
 
 LIMIT = 65_536
 HOSTILE = "<script>alert(1)</script> | `@someone` ![x](https://example.org) #12 **b** www.a.org"
@@ -21,23 +21,23 @@ def test_the_verdict_the_failures_and_what_did_not_run_are_there(record) -> None
     broken |= {"gates": {"trajectory": "fail"}, "why": "it parts from its scheme"}
     lost = {"outcome": "not-installed", "reason": "No module named 'dartpy'", "gates": {}}
     record.run["tasks"].append(task("sphere", "other", "", None, **lost))
-    said = markdown_of(record)
-    first = said.splitlines()[0]
+    message = markdown_of(record)
+    first = message.splitlines()[0]
     assert first.startswith("### omegadot: 1 of ")
     assert "dart, on spun-again" in first
-    assert "it parts from its scheme" in said
-    assert "| other | not-installed | 1 | No module named 'dartpy' |" in said
-    assert "✗" in said
-    assert "`omegadot run --out 'a folder'`" in said
-    assert "| numpy | 2.0.0 |" in said
-    assert not active(said)
+    assert "it parts from its scheme" in message
+    assert "| other | not-installed | 1 | No module named 'dartpy' |" in message
+    assert "✗" in message
+    assert "`omegadot run --out 'a folder'`" in message
+    assert "| numpy | 2.0.0 |" in message
+    assert not active(message)
 
 
 def test_a_skip_is_no_pass(record) -> None:
     for entry in record.run["tasks"]:
         entry |= {"outcome": "unsupported", "gates": {}, "reason": "no free joints"}
-    said = markdown_of(record)
-    matrix = [line for line in said.splitlines() if line.startswith("| sphere |")]
+    message = markdown_of(record)
+    matrix = [line for line in message.splitlines() if line.startswith("| sphere |")]
     assert matrix
     assert all("✓" not in line and "unsupported" in line for line in matrix)
 
@@ -54,11 +54,11 @@ def test_the_worst_is_kept_where_there_is_no_room_for_all() -> None:
     )
     record.run["tasks"][-1] |= {"gates": {"trajectory": "fail"}, "why": HOSTILE * 100}
     record.run["command"] = ["omegadot", "run", "`" * 5 + HOSTILE * 50]
-    said = markdown_of(record)
-    assert len(said.encode()) < LIMIT
-    assert "more scenarios, none of them worse." in said
-    assert [line for line in said.splitlines() if "✗ " in line and line.startswith("| ")]
-    assert not active(said)
+    message = markdown_of(record)
+    assert len(message.encode()) < LIMIT
+    assert "more scenarios, none of them worse." in message
+    assert [line for line in message.splitlines() if "✗ " in line and line.startswith("| ")]
+    assert not active(message)
 
 
 @settings(derandomize=True, max_examples=60)

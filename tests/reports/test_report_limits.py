@@ -7,13 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from synthetic_record import build, metric, with_metrics
 
-from omegadot.reports.bounds import bounds_of, floors_of, limits_of, residuals_of
-from omegadot.reports.courses import chart_courses
-from omegadot.reports.diagrams import equation_payload
-from omegadot.reports.front import named, pareto_front
-from omegadot.reports.payload import lines_of, payload
-from omegadot.reports.provenance import Sources
-from omegadot.reports.sweeps import Point, Sweep
+from omegadot.reports.charts.bounds import bounds_of, floors_of, limits_of, residuals_of
+from omegadot.reports.charts.deviations import chart_deviations
+from omegadot.reports.charts.diagrams import equation_payload
+from omegadot.reports.charts.front import named, pareto_front
+from omegadot.reports.charts.payload import lines_of, payload
+from omegadot.reports.charts.sweeps import Point, Sweep
+from omegadot.reports.summary.provenance import Sources
 
 RUN = ["sphere", "dart", "semi-implicit", 0.01]
 KEY = ("dart", "physics", "semi-implicit", 0.01, None)
@@ -54,15 +54,15 @@ def test_floors_are_those_of_the_exact_solution_and_zero_is_none(judged):
 
 def test_limits_are_told_in_the_chart_s_unit_alone(judged):
     limits = limits_of(judged.metrics)["sphere"]
-    course = next(c for c in chart_courses(judged)["sphere"].courses if c.engine == "dart")
+    deviation = next(c for c in chart_deviations(judged)["sphere"].deviations if c.engine == "dart")
     assert limits.floor("energy", "1") == 2e-15
     assert limits.floor("energy", "J") is None
-    assert limits.bound(course, "angular_momentum", "kg m²/s") == []
+    assert limits.bound(deviation, "angular_momentum", "kg m²/s") == []
     assert limits.floor("attitude", "rad") == 3e-14
 
 
 def test_the_axes_hold_the_floor_and_the_bounds(judged):
-    charts = chart_courses(judged)
+    charts = chart_deviations(judged)
     lines = lines_of(charts.values(), judged.run["engines"])
     described, _ = payload(charts, {}, lines, limits_of(judged.metrics))
     scenario = described["scenarios"]["sphere"]

@@ -7,9 +7,9 @@ from itertools import combinations
 import pytest
 from synthetic_record import INTEGRATORS, engine_entry
 
-from omegadot.reports.palette import COLOURS, INK, colours, dashes
+from omegadot.reports.charts.palette import COLOURS, INK, colours, dashes
 
-CSS = files("omegadot.reports").joinpath("templates", "report.css").read_text()
+CSS = files("omegadot.reports.page").joinpath("templates", "report.css").read_text()
 
 
 def themes():

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from omegadot.reports.packing import (
+from omegadot.reports.charts.packing import (
     CEILING_DECADE,
     FLOOR,
     FLOOR_DECADE,

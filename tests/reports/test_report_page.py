@@ -9,9 +9,9 @@ import pytest
 from synthetic_record import build, metric, scenario_entry, task, with_metrics
 
 from omegadot.reports import Record, draw_page, read_record, write_record
-from omegadot.reports.numbers import short
-from omegadot.reports.page import _JUDGED_SHOWN
-from omegadot.reports.schema import METRICS, TRAJECTORIES, empty
+from omegadot.reports.page.page import _JUDGED_SHOWN
+from omegadot.reports.record.schema import METRICS, TRAJECTORIES, empty
+from omegadot.reports.text.numbers import short
 
 HOSTILE = "<script>alert(1)</script>"
 
@@ -106,10 +106,10 @@ def test_every_chart_has_a_text_alternative_and_a_table(sound):
 
 def test_equations_errata_and_limitations_are_told(sound):
     text = text_of(sound)
-    for words in ("(8)", "(9) is printed without its minus sign", "2.2.1", "Limitations"):
-        assert words in text
-    for words in ("sleeping", "quaternions are (w, x, y, z)", "numpy", "2.0.0", "x86_64"):
-        assert words in text
+    for terms in ("(8)", "(9) is printed without its minus sign", "2.2.1", "Limitations"):
+        assert terms in text
+    for terms in ("sleeping", "quaternions are (w, x, y, z)", "numpy", "2.0.0", "x86_64"):
+        assert terms in text
     assert "omegadot run --out 'a folder'" in text
     assert "example.org/issue/1" in text
 

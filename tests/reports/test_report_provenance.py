@@ -2,35 +2,35 @@
 
 from synthetic_record import build
 
-from omegadot.reports import matrix
-from omegadot.reports.glance import glances
-from omegadot.reports.matrix_cards import cards
-from omegadot.reports.provenance import (
+from omegadot.reports.page.glance import glances
+from omegadot.reports.page.matrix_cards import cards
+from omegadot.reports.page.tables import deviation_table, engine_table, run_table
+from omegadot.reports.summary import matrix
+from omegadot.reports.summary.provenance import (
     Sources,
-    asked_as,
     command_of,
     kept_options,
     provenance_payload,
+    requested_as,
     sources_for,
     steps_given,
 )
-from omegadot.reports.summary import summarise
-from omegadot.reports.tables import course_table, engine_table, run_table
+from omegadot.reports.summary.summary import summarise
 
 
-def run(*words, names=("sphere", "spun")):
-    return {"command": ["omegadot", "run", *words], "scenarios": [{"name": n} for n in names]}
+def run(*terms, names=("sphere", "spun")):
+    return {"command": ["omegadot", "run", *terms], "scenarios": [{"name": n} for n in names]}
 
 
 def test_a_scenario_of_a_file_is_asked_for_by_its_path():
     given = run("--engine", "mujoco", "a folder/sphere.toml", "--timestep=0.1", "spun")
-    assert asked_as(given) == {"sphere": "a folder/sphere.toml", "spun": "spun"}
+    assert requested_as(given) == {"sphere": "a folder/sphere.toml", "spun": "spun"}
 
 
 def test_where_nothing_or_something_else_was_asked_for_the_name_stands():
-    assert asked_as(run()) == {"sphere": "sphere", "spun": "spun"}
-    assert asked_as(run("one")) == {"sphere": "sphere", "spun": "spun"}
-    assert asked_as({"scenarios": [{"name": "x"}]}) == {"x": "x"}
+    assert requested_as(run()) == {"sphere": "sphere", "spun": "spun"}
+    assert requested_as(run("one")) == {"sphere": "sphere", "spun": "spun"}
+    assert requested_as({"scenarios": [{"name": "x"}]}) == {"x": "x"}
 
 
 def test_options_that_change_what_is_computed_are_kept():
@@ -55,11 +55,11 @@ def test_rows_of_all_tables_name_one_and_the_same_run(record):
     sources = sources_for(record.run["engines"])
     own = record.metrics.filter(record.metrics["scenario"] == "sphere")
     tasks = [task for task in record.run["tasks"] if task["scenario"] == "sphere"]
-    from omegadot.reports.courses import chart_courses
+    from omegadot.reports.charts.deviations import chart_deviations
 
     runs = run_table(own, tasks, sources).rows
-    courses = course_table(chart_courses(record)["sphere"], sources).rows
-    assert {row.heads: row.source for row in runs} == {row.heads: row.source for row in courses}
+    all_series = deviation_table(chart_deviations(record)["sphere"], sources).rows
+    assert {row.heads: row.source for row in runs} == {row.heads: row.source for row in all_series}
     assert len({row.source for row in runs}) == len(runs)
     listed = list(sources.numbers)
     for row in engine_table(own, sources).rows:

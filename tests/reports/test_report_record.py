@@ -12,10 +12,10 @@ from polars.testing import assert_frame_equal
 from synthetic_record import build, with_metrics
 
 from omegadot.reports import Record, RecordError, check_folder, read_record, write_record
-from omegadot.reports import record as record_module
-from omegadot.reports.record import FILES
-from omegadot.reports.run_json import dump_json
-from omegadot.reports.schema import METRICS, TRAJECTORIES, conform
+from omegadot.reports.record import record as record_module
+from omegadot.reports.record.record import FILES
+from omegadot.reports.record.run_json import dump_json
+from omegadot.reports.record.schema import METRICS, TRAJECTORIES, conform
 
 
 @pytest.fixture
@@ -168,7 +168,7 @@ WHOLE = '{"schema": 1, "engines": [], "scenarios": [], "tasks": [], "clusters": 
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("[]", "not an omegadot record"),
         ("{}", "not an omegadot record"),
@@ -184,9 +184,9 @@ WHOLE = '{"schema": 1, "engines": [], "scenarios": [], "tasks": [], "clusters": 
         ("\xff", "run.json"),
     ],
 )
-def test_a_wrong_run_file_is_one_sentence(folder, text, said):
+def test_a_wrong_run_file_is_one_sentence(folder, text, message):
     (folder / "run.json").write_bytes(text.encode("latin-1"))
-    with pytest.raises(RecordError, match=said) as error:
+    with pytest.raises(RecordError, match=message) as error:
         read_record(folder)
     one_sentence(error)
 
@@ -203,7 +203,7 @@ def test_words_outside_the_contract_are_refused(folder, tmp_path, record):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         (lambda t: t.drop("qz"), "'qz' is missing"),
         (lambda t: t.with_columns(wx=pl.lit("fast")), "type"),
@@ -211,9 +211,9 @@ def test_words_outside_the_contract_are_refused(folder, tmp_path, record):
         (lambda t: t.with_columns(setup=pl.lit("tuned")), "'tuned'"),
     ],
 )
-def test_tables_that_break_the_contract_are_not_written(tmp_path, record, change, said):
+def test_tables_that_break_the_contract_are_not_written(tmp_path, record, change, message):
     wrong = Record(record.run, record.metrics, change(record.trajectories))
-    with pytest.raises(RecordError, match=said) as error:
+    with pytest.raises(RecordError, match=message) as error:
         write_record(wrong, tmp_path / "run", "")
     one_sentence(error)
     assert os.listdir(tmp_path) == []

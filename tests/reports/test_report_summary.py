@@ -6,10 +6,10 @@ import pytest
 from synthetic_record import INTEGRATORS, build, metric, task, with_metrics
 
 from omegadot.reports import Record, summarise
-from omegadot.reports.headline import headline, remarks
-from omegadot.reports.numbers import short
-from omegadot.reports.schema import METRICS, OUTCOMES, TRAJECTORIES, empty
-from omegadot.reports.summary import STATUSES, task_status, worst
+from omegadot.reports.record.schema import METRICS, OUTCOMES, TRAJECTORIES, empty
+from omegadot.reports.summary.headline import headline, remarks
+from omegadot.reports.summary.summary import STATUSES, task_status, worst
+from omegadot.reports.text.numbers import short
 
 
 def cell(record, scenario, engine):
@@ -34,7 +34,7 @@ def test_every_gate_holding_is_a_pass(record):
     assert found.runs == {"pass": 6}
 
 
-@pytest.mark.parametrize("outcome", [word for word in OUTCOMES if word != "ok"])
+@pytest.mark.parametrize("outcome", [term for term in OUTCOMES if term != "ok"])
 def test_a_skip_is_never_a_pass(record, outcome):
     changed = change(record, first_of(record, "dart"), outcome=outcome, reason="because", gates={})
     found = cell(changed, "sphere", "dart")
@@ -118,9 +118,9 @@ def test_an_engine_that_is_not_installed_is_named(record):
 
 
 def test_the_headline_of_a_sound_run(record):
-    said = headline(summarise(record))
-    assert said.startswith("Both engines agree with the Newton–Euler equations")
-    assert "6.2e-15 (mujoco on spun-again)" in said
+    message = headline(summarise(record))
+    assert message.startswith("Both engines agree with the Newton–Euler equations")
+    assert "6.2e-15 (mujoco on spun-again)" in message
     (spread,) = remarks(summarise(record))
     assert "spun-again" in spread
     assert "1.5e-9 rad (mujoco RK4" in spread
@@ -128,8 +128,8 @@ def test_the_headline_of_a_sound_run(record):
 
 def test_the_headline_of_a_failing_run(record):
     failed = change(record, first_of(record, "dart"), gates={"equation": "fail"})
-    said = headline(summarise(failed))
-    assert said == "1 of 2 engines fails a gate: dart, on sphere."
+    message = headline(summarise(failed))
+    assert message == "1 of 2 engines fails a gate: dart, on sphere."
 
 
 def test_a_failing_yardstick_is_not_hidden(record):
@@ -142,8 +142,8 @@ def test_an_engine_without_a_verdict_does_not_agree(record):
     for place, entry in enumerate(record.run["tasks"]):
         if entry["engine"] == "dart":
             crashed = change(crashed, place, outcome="crashed", gates={})
-    said = headline(summarise(crashed))
-    assert said.startswith("mujoco (of 2 engines) agrees")
+    message = headline(summarise(crashed))
+    assert message.startswith("mujoco (of 2 engines) agrees")
     assert "6 of 30 runs gave no verdict; each has its reason." in remarks(summarise(crashed))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import polars as pl
 
 from omegadot.reference_impl.system import Body, System
-from omegadot.reports.divergence import CHANNELS, STATE, divergence
+from omegadot.reports.charts.divergence import CHANNELS, STATE, divergence
 
 SYSTEM = System((Body(np.array(2.0), np.zeros(3), np.diag([1.0, 2.0, 3.0])),))
 EXACT = {"qw": 1.0, "wx": 1.0, "wy": 2.0, "vx": 3.0}

@@ -7,10 +7,7 @@ import polars as pl
 import pytest
 from synthetic_record import build, metric, with_metrics
 
-from omegadot.reports.copies import copies_of, sentence, votes, where
-from omegadot.reports.headline import truth
-from omegadot.reports.summary import summarise
-from omegadot.reports.sweeps import (
+from omegadot.reports.charts.sweeps import (
     Point,
     Sweep,
     decades,
@@ -19,7 +16,10 @@ from omegadot.reports.sweeps import (
     sweep_payload,
     sweeps_of,
 )
-from omegadot.reports.why import order_table, scheme_table
+from omegadot.reports.page.why import order_table, scheme_table
+from omegadot.reports.summary.copies import copies_of, sentence, votes, where
+from omegadot.reports.summary.headline import truth
+from omegadot.reports.summary.summary import summarise
 
 
 def cluster(scenario, members, scheme="euler", timestep=0.01):
@@ -57,8 +57,8 @@ def test_an_exception_does_not_part_copies_and_is_named():
 
 def test_a_motion_that_tells_nothing_apart_makes_no_copies():
     simple = cluster("sphere", "x:a y:b x:c")
-    telling = [cluster(name, own) for name in ("one", "two") for own in ("x:a y:b", "x:c")]
-    assert [copies.members for copies in copies_of(of(simple, *telling))] == [("x:a", "y:b")]
+    listing = [cluster(name, own) for name in ("one", "two") for own in ("x:a y:b", "x:c")]
+    assert [copies.members for copies in copies_of(of(simple, *listing))] == [("x:a", "y:b")]
 
 
 def test_together_means_at_every_step():
@@ -93,8 +93,8 @@ def test_a_record_without_clusters_says_nothing():
 
 def test_one_scenarios_votes_are_those_of_its_finest_step():
     coarse = cluster("one", "x:a y:b z:c", timestep=0.02)
-    said = votes(of(coarse, cluster("one", "x:a z:c"), cluster("one", "y:b")), "one")
-    assert said == "3 runs at step 0.01 s make 2 different courses: x a = z c."
+    message = votes(of(coarse, cluster("one", "x:a z:c"), cluster("one", "y:b")), "one")
+    assert message == "3 runs at step 0.01 s make 2 different courses: x a = z c."
 
 
 def row(table, *heads):

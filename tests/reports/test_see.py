@@ -11,19 +11,23 @@ import polars as pl
 import pytest
 from synthetic_record import build, scenario_entry
 
-from omegadot.reference_impl.rotations import attitude_angle, exp_quaternion, quaternion_product
+from omegadot.reference_impl.rotations import (
+    attitude_angle,
+    exp_quaternion,
+    quaternion_product,
+)
 from omegadot.reports import draw_page
-from omegadot.reports.attitudes import FRAMES, PARTED, flights_of
-from omegadot.reports.courses import chart_courses
-from omegadot.reports.packing import pack_codes
-from omegadot.reports.payload import lines_of
-from omegadot.reports.see import see_payload
+from omegadot.reports.charts.deviations import chart_deviations
+from omegadot.reports.charts.packing import pack_codes
+from omegadot.reports.charts.payload import lines_of
+from omegadot.reports.page.view_3d.attitudes import FRAMES, PARTED, flights_of
+from omegadot.reports.page.view_3d.view import see_payload
 
 HALF = 0.5 / 32767
 
 
 def payload_of(record):
-    charts = {name: chart for name, chart in chart_courses(record).items() if chart.units}
+    charts = {name: chart for name, chart in chart_deviations(record).items() if chart.units}
     lines = lines_of(charts.values(), record.run["engines"])
     return *see_payload(record, charts, lines), lines
 
@@ -64,9 +68,9 @@ def test_the_attitudes_that_travel_are_the_stored_ones(record):
     omega = values[start + 4 * count : start + 7 * count].reshape(3, count).T
     assert omega * scenario["fastest"] == pytest.approx(np.tile([0, 0, 2.0], (count, 1)), abs=1e-12)
     exact = exact / np.linalg.norm(exact, axis=-1, keepdims=True)
-    for line, _, words, clock, first, n, *_ in scenario["runs"]:
+    for line, _, terms, clock, first, n, *_ in scenario["runs"]:
         engine, integrator = lines[line].engine, lines[line].integrator
-        step = float(words.removeprefix("step ").removesuffix(" s"))
+        step = float(terms.removeprefix("step ").removesuffix(" s"))
         stored = column(record, engine, integrator, step, ["qw", "qx", "qy", "qz", "wz"])
         frames = scenario["frames"][clock]
         assert np.array(scenario["times"])[frames] == pytest.approx(stored[:, 0], rel=1e-6)

@@ -12,9 +12,16 @@ from omegadot.reference_impl.from_scenario import body_of_part, system_of
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.rotations import normalize, rotation_matrix
 from omegadot.reference_impl.system import Body, Load, System
-from omegadot.reports.bodies import look_of
-from omegadot.reports.depth_order import depth_order
-from omegadot.reports.meshes import Mesh, box, capsule, cylinder, ellipsoid, mesh_of
+from omegadot.reports.page.view_3d.bodies import look_of
+from omegadot.reports.page.view_3d.depth_order import depth_order
+from omegadot.reports.page.view_3d.meshes import (
+    Mesh,
+    box,
+    capsule,
+    cylinder,
+    ellipsoid,
+    mesh_of,
+)
 from omegadot.scenarios import load_builtin
 from omegadot.scenarios.parts import SHAPES
 from omegadot.scenarios.solids import volume
@@ -98,7 +105,7 @@ def test_a_body_known_by_its_inertia_is_drawn_as_a_box_of_that_inertia(sizes, q)
     system = System((Body(np.array(mass), np.array([0.3, 0.2, 0.1]), inertia),), Load())
     look = look_of(system, {"body": {"mass": 1.0}}, np.array([1.0, 0.0, 0.0]))
     (solid,) = look.solids
-    assert "box" in look.told
+    assert "box" in look.reported
     found, centre, _ = inertia_of(look.solids, mass / moments(solid)[0])
     # The smallest square comes of a difference of moments: rounding over its share of them.
     slack = 256 * EPS * (max(squares) / min(squares)) ** 2
@@ -114,7 +121,7 @@ def test_alike_moments_are_drawn_round(moments_given, name):
     inertia = np.diag(np.array(moments_given, float))
     system = System((Body(np.array(1.0), np.zeros(3), inertia),), Load())
     look = look_of(system, {}, np.array([0.0, 0.0, 1.0]))
-    assert look.told == f"drawn as the homogeneous {name} of its mass and inertia"
+    assert look.reported == f"drawn as the homogeneous {name} of its mass and inertia"
     (solid,) = look.solids
     found, _, _ = inertia_of([solid], 1.0 / moments(solid)[0])
     # A prism or a ball of 24 sides is this much lighter at its rim than the round solid.
@@ -125,7 +132,7 @@ def test_the_t_handle_looks_like_one():
     scenario = load_builtin("t-handle")
     system = system_of(scenario)
     look = look_of(system, scenario.to_dict(), np.array([0.05, 0.05, 9.0]))
-    assert look.told == "drawn from its parts"
+    assert look.reported == "drawn from its parts"
     crossbar, stem = (np.ptp(mesh.vertices, axis=0) for mesh in look.solids)
     assert np.argmax(crossbar) == 0
     assert np.argmax(stem) == 2

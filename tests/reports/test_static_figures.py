@@ -17,16 +17,16 @@ from hypothesis import strategies as st
 from matplotlib.colors import to_hex
 from synthetic_record import build, metric, with_metrics
 
-from omegadot.reports.bounds import Limits
-from omegadot.reports.palette import colours
-from omegadot.reports.schema import RecordError
-from omegadot.reports.static import write_figures
-from omegadot.reports.static.charts import charts_of
-from omegadot.reports.static.courses import draw, shown
-from omegadot.reports.static.legend import Entry, blocks_of
-from omegadot.reports.static.names import file_stems
-from omegadot.reports.static.style import RC, SOFT
-from omegadot.reports.static.sweeps import draw_convergence, draw_work_precision
+from omegadot.reports.charts.bounds import Limits
+from omegadot.reports.charts.palette import colours
+from omegadot.reports.charts.static import write_figures
+from omegadot.reports.charts.static.charts import charts_of
+from omegadot.reports.charts.static.deviations import draw, shown
+from omegadot.reports.charts.static.legend import Entry, blocks_of
+from omegadot.reports.charts.static.names import file_stems
+from omegadot.reports.charts.static.style import RC, SOFT
+from omegadot.reports.charts.static.sweeps import draw_convergence, draw_work_precision
+from omegadot.reports.record.schema import RecordError
 
 CHARTS = {
     "omega-dot",
@@ -137,15 +137,15 @@ def test_the_values_drawn_are_the_finest_step_s(charts) -> None:
     figure = draw(charts, "attitude")
     assert "step 0.005 s" in figure.axes[0].get_title(loc="left")
     for line, lane in zip(lines_of(figure), charts.lines.values(), strict=False):
-        (course,) = [
+        (deviation,) = [
             c
-            for c in charts.chart.courses
+            for c in charts.chart.deviations
             if (c.engine, c.integrator, c.timestep) == (lane.engine, lane.integrator, 0.005)
         ]
         seen = np.asarray(line.get_ydata(), dtype=float)
         known = np.isfinite(seen)
         assert known.any()
-        np.testing.assert_array_equal(seen[known], course.values["attitude"][known])
+        np.testing.assert_array_equal(seen[known], deviation.values["attitude"][known])
 
 
 def test_no_zero_stands_on_a_logarithmic_axis(charts) -> None:
@@ -156,9 +156,11 @@ def test_no_zero_stands_on_a_logarithmic_axis(charts) -> None:
             assert not np.any(values <= 0.0)
         low, high = figure.axes[0].get_ylim()
         assert 0.0 < low < high
-    course = charts.finest[0]
+    deviation = charts.finest[0]
     values = np.array([0.0, 1e-18, -1.0, np.nan, np.inf, 1e300, 1e-3])
-    odd = type(course)(**{**vars(course), "time": np.arange(7.0), "values": {"energy": values}})
+    odd = type(deviation)(
+        **{**vars(deviation), "time": np.arange(7.0), "values": {"energy": values}}
+    )
     drawn = shown(odd, "energy")
     assert np.isnan(drawn[:5]).all()
     assert drawn[5] < 1e300
@@ -193,8 +195,8 @@ def test_a_floor_far_below_is_told_and_does_not_flatten_the_rest(charts) -> None
 
 def test_convergence_shows_slopes_of_the_declared_orders(charts) -> None:
     figure = draw_convergence(charts)
-    said = {text.get_text() for text in figure.axes[0].texts}
-    assert {"slope 1", "slope 4"} <= said
+    message = {text.get_text() for text in figure.axes[0].texts}
+    assert {"slope 1", "slope 4"} <= message
     guides = [line for line in lines_of(figure) if to_hex(line.get_color()) == SOFT]
     slopes = set()
     for line in guides:
@@ -211,9 +213,9 @@ def test_the_pareto_front_is_named(record) -> None:
     value = pl.when(best & cost).then(1e-7).when(best & error).then(1e-8).otherwise("value")
     made = type(record)(record.run, record.metrics.with_columns(value=value), record.trajectories)
     figure = draw_work_precision(charts_of(made)[0])
-    said = [text for text in texts_of(figure) if text.startswith("1  ")]
-    assert len(said) == 1
-    assert said[0].startswith("1  mujoco RK4 at step 0.02 s: 1.0e-8 rad")
+    message = [text for text in texts_of(figure) if text.startswith("1  ")]
+    assert len(message) == 1
+    assert message[0].startswith("1  mujoco RK4 at step 0.02 s: 1.0e-8 rad")
     assert not [text for text in texts_of(figure) if text.startswith("2  ")]
 
 
@@ -251,7 +253,7 @@ def test_nothing_half_written_is_left(record, monkeypatch, tmp_path: Path) -> No
     def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("omegadot.reports.static.write.os.replace", fail)
+    monkeypatch.setattr("omegadot.reports.charts.static.write.os.replace", fail)
     with pytest.raises(RecordError, match="No space left"):
         write_figures(record, tmp_path)
     assert not list(tmp_path.iterdir())

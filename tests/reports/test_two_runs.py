@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from synthetic_record import build, metric, task, with_metrics
 
-from omegadot.reports.run_json import dump_json
+from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.two_runs import compare_records
 from omegadot.reports.two_runs.page import draw_two_runs
 from omegadot.reports.two_runs.text import as_json, as_markdown, as_text
@@ -251,8 +251,8 @@ def test_a_scenario_that_is_another_one_compares_by_verdict(base) -> None:
     found = compare_records(base, other)
     assert not found.regressed
     assert found.redefined == {"sphere"}
-    told = [(d.what, d.was, d.now) for d in found.settings]
-    assert ("sphere body.mass", "1.0", "2.0") in told
+    reported = [(d.what, d.was, d.now) for d in found.settings]
+    assert ("sphere body.mass", "1.0", "2.0") in reported
     assert compare_records(base, edited(other, verdict="fail")).regressed
 
 
@@ -301,10 +301,10 @@ def test_what_an_engine_says_of_itself_is_a_difference(base) -> None:
     other = with_run(base, seed=8)
     other.run["engines"][1]["integrators"][0]["scheme"] = "lie-rk4"
     other.run["machine"]["processor"] = "arm64"
-    told = {d.what: (d.was, d.now) for d in compare_records(base, other).settings}
-    assert told["mujoco Euler, declared scheme"] == ("semi-implicit-euler", "lie-rk4")
-    assert told["machine processor"] == ("x86_64", "arm64")
-    assert told["seed"] == ("7", "8")
+    reported = {d.what: (d.was, d.now) for d in compare_records(base, other).settings}
+    assert reported["mujoco Euler, declared scheme"] == ("semi-implicit-euler", "lie-rk4")
+    assert reported["machine processor"] == ("x86_64", "arm64")
+    assert reported["seed"] == ("7", "8")
 
 
 def hostile_records():
@@ -321,9 +321,9 @@ def hostile_records():
 
 def test_hostile_names_stay_text_and_comments_stay_short() -> None:
     found = compare_records(*hostile_records(), (HOSTILE, HOSTILE))
-    said = as_markdown(found)
-    assert len(said.encode()) < 65_536
-    assert not active(said)
+    message = as_markdown(found)
+    assert len(message.encode()) < 65_536
+    assert not active(message)
     page = draw_two_runs(found)
     assert "<img" not in page
     assert "://" not in page

@@ -153,24 +153,24 @@ REFUSED = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "link", "says"), REFUSED)
+@pytest.mark.parametrize(("text", "link", "statement"), REFUSED)
 def test_what_cannot_be_read_is_told_in_one_sentence(
-    tmp_path: Path, text: str, link: str, says: str
+    tmp_path: Path, text: str, link: str, statement: str
 ) -> None:
     path = tmp_path / "file.xml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(ScenarioError) as caught:
         body_of_word(f"{path}{link}")
     sentence = str(caught.value)
-    assert says in sentence
+    assert statement in sentence
     assert "file.xml" in sentence
     assert "\n" not in sentence
 
 
-@pytest.mark.parametrize("word", ["missing.urdf#a", ".#a", "\0#a", "missing.toml"])
-def test_files_that_are_none_are_told(word: str) -> None:
+@pytest.mark.parametrize("term", ["missing.urdf#a", ".#a", "\0#a", "missing.toml"])
+def test_files_that_are_none_are_told(term: str) -> None:
     with pytest.raises(ScenarioError):
-        body_of_word(word)
+        body_of_word(term)
 
 
 def test_a_body_that_breaks_the_triangle_inequality_is_told_with_its_key(tmp_path: Path) -> None:

@@ -51,7 +51,7 @@ def mass_and_inertia(scenario: Scenario) -> tuple[float, Array]:
     return float(masses.sum()), inertia
 
 
-def course(scenario: Scenario) -> tuple[Array, Array]:
+def trajectory(scenario: Scenario) -> tuple[Array, Array]:
     """Quaternions (n, 4) and angular velocities (n, 3) by a solver that is not the project's."""
     m, inertia = mass_and_inertia(scenario)
     load, arm = scenario.load, np.zeros(3)
@@ -104,7 +104,7 @@ def test_t_handle_turns_over_three_times_about_its_intermediate_axis() -> None:
     x, y, z = np.diag(inertia)
     assert x < z < y
     assert np.argmax(np.abs(scenario.initial.angular_velocity)) == 2
-    _, omega = course(scenario)
+    _, omega = trajectory(scenario)
     flips = np.count_nonzero(np.diff(np.sign(omega[:, 2])))
     assert flips == 3
 
@@ -148,7 +148,7 @@ def test_tops_stand_on_their_side_of_the_critical_spin(name: str, side: int) -> 
 
 def test_the_slow_sleeping_top_falls_and_the_fast_one_does_not() -> None:
     for name, falls in (("sleeping-top-stable", False), ("sleeping-top-unstable", True)):
-        orientations, _ = course(load_builtin(name))
+        orientations, _ = trajectory(load_builtin(name))
         tilt = np.array([math.acos(min(rotation(q)[2, 2], 1.0)) for q in orientations])
         assert tilt[0] == pytest.approx(0.01, rel=1e-9)
         # linear theory: the fast one wobbles by 1 / sqrt(1 - (critical / spin)^2) = 3.3 times its
@@ -174,7 +174,7 @@ def test_sphere_is_alike_about_all_axes() -> None:
 def test_damped_tumble_goes_over_to_the_axis_of_greatest_inertia() -> None:
     scenario = load_builtin("damped-tumble")
     assert np.argmax(np.diag(np.array(scenario.body.inertia))) == 2
-    _, omega = course(scenario)
+    _, omega = trajectory(scenario)
     share = np.abs(omega[:, 2]) / np.linalg.norm(omega, axis=1)
     assert share[0] < 0.5
     assert share[-1] > 0.95

@@ -267,7 +267,7 @@ def test_one_sentence_names_file_key_and_value(
     assert error.key == key
     assert found in error.found
     assert advice in error.advice
-    assert all(words in str(error) for words in (str(path), key, found, advice))
+    assert all(terms in str(error) for terms in (str(path), key, found, advice))
     assert os.listdir(tmp_path) == ["case.toml"]
 
 

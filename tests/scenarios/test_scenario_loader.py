@@ -132,13 +132,13 @@ def test_a_builtin_goes_before_a_file_of_its_name(
 
 
 @pytest.mark.parametrize(
-    ("asked", "near"),
+    ("requested", "near"),
     [("t-handel", "t-handle"), ("T-HANDLE", "t-handle"), ("fulltensor", "full-tensor")],
 )
-def test_a_mistyped_builtin_is_offered_the_nearest(asked: str, near: str) -> None:
+def test_a_mistyped_builtin_is_offered_the_nearest(requested: str, near: str) -> None:
     for find in (load_builtin, find_scenario):
         with pytest.raises(ScenarioError, match=f"write {near} if"):
-            find(asked)
+            find(requested)
 
 
 def test_a_word_like_no_builtin_is_told_what_to_give() -> None:

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.append(str(Path(__file__).parent))
-from unwell import Unwell
+from faulty import Faulty
 
 from omegadot.adapters.protocol import Description, Trajectory
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
@@ -33,7 +33,7 @@ def _with_omega(trajectory: Trajectory, omega: Array) -> Trajectory:
 # Ends of the process.
 
 
-class KillNine(Unwell):
+class KillNine(Faulty):
     """kill -9, as the system does when memory runs out."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -41,7 +41,7 @@ class KillNine(Unwell):
         return trajectory
 
 
-class Segfault(Unwell):
+class Segfault(Faulty):
     """Reads where there is nothing."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -49,7 +49,7 @@ class Segfault(Unwell):
         return trajectory
 
 
-class Aborts(Unwell):
+class Aborts(Faulty):
     """What a failed assertion in native code does, with a last word full of escape codes."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -57,7 +57,7 @@ class Aborts(Unwell):
         os.abort()
 
 
-class NamelessSignal(Unwell):
+class NamelessSignal(Faulty):
     """A real-time signal, which has no name."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -65,14 +65,14 @@ class NamelessSignal(Unwell):
         return trajectory
 
 
-class ExitsWithZero(Unwell):
+class ExitsWithZero(Faulty):
     """Leaves in the middle as if all were well."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         os._exit(0)
 
 
-class LeavesAChild(Unwell):
+class LeavesAChild(Faulty):
     """Dies, and a child that it forked holds the pipes open."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -81,7 +81,7 @@ class LeavesAChild(Unwell):
         os._exit(9)
 
 
-class LeavesADaemon(Unwell):
+class LeavesADaemon(Faulty):
     """Dies, and a child that it forked has made itself a session of its own."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -94,7 +94,7 @@ class LeavesADaemon(Unwell):
         os._exit(9)
 
 
-class ClosesItsChannel(Unwell):
+class ClosesItsChannel(Faulty):
     """Closes every file that it can find."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -102,7 +102,7 @@ class ClosesItsChannel(Unwell):
         return trajectory
 
 
-class ClosesAndStays(Unwell):
+class ClosesAndStays(Faulty):
     """Closes every file and does not go."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -111,7 +111,7 @@ class ClosesAndStays(Unwell):
         return trajectory
 
 
-class WritesIntoTheChannel(Unwell):
+class WritesIntoTheChannel(Faulty):
     """Prints into every open file, the channel of its answers among them."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -126,28 +126,28 @@ class WritesIntoTheChannel(Unwell):
 # Exceptions.
 
 
-class Exits(Unwell):
+class Exits(Faulty):
     """sys.exit(0) in the middle of a run."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         sys.exit(0)
 
 
-class Interrupts(Unwell):
+class Interrupts(Faulty):
     """Raises what Ctrl-C raises."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         raise KeyboardInterrupt
 
 
-class Recurses(Unwell):
+class Recurses(Faulty):
     """Calls itself without end."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         return self.fail(trajectory)
 
 
-class EatsMemory(Unwell):
+class EatsMemory(Faulty):
     """Takes memory a little at a time, and keeps it, until there is none."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -156,21 +156,21 @@ class EatsMemory(Unwell):
             self.hoard.append(bytearray(MEGABYTE))
 
 
-class LongMessage(Unwell):
+class LongMessage(Faulty):
     """An exception with 10 MB to say."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         raise ValueError("no convergence, residuals: " + "0.1 " * (10 * MEGABYTE // 4))
 
 
-class OddMessage(Unwell):
+class OddMessage(Faulty):
     """Escape codes, NUL, half of a surrogate pair, and the markup of terminals and pages."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         raise ValueError("\x1b[2J\x07\x00\ud800 [/red] [bold <script>alert(1)</script> {{ x }} ok")
 
 
-class Speechless(Unwell):
+class Speechless(Faulty):
     """An exception that cannot be printed."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -184,12 +184,12 @@ class Speechless(Unwell):
 # Answers that are none.
 
 
-class ReturnsNothing(Unwell):
+class ReturnsNothing(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         return None  # type: ignore[return-value]
 
 
-class WrongShape(Unwell):
+class WrongShape(Faulty):
     """A quaternion without its scalar."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -197,23 +197,23 @@ class WrongShape(Unwell):
         return Trajectory(trajectory.time, replace(trajectory.state, orientation=short))
 
 
-class FewerStatesThanTimes(Unwell):
+class FewerStatesThanTimes(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         rest = State(*(values[1:] for values in vars(trajectory.state).values()))
         return Trajectory(trajectory.time, rest)
 
 
-class ComplexNumbers(Unwell):
+class ComplexNumbers(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         return _with_omega(trajectory, trajectory.state.angular_velocity + 0j)
 
 
-class Words(Unwell):
+class Arguments(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         return _with_omega(trajectory, trajectory.state.angular_velocity.astype(str))
 
 
-class RaggedRows(Unwell):
+class RaggedRows(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         return _with_omega(trajectory, [[1.0, 2.0, 3.0], [1.0, 2.0]])  # type: ignore[arg-type]
 
@@ -221,33 +221,33 @@ class RaggedRows(Unwell):
 # Answers that are wrong.
 
 
-class TooFewSamples(Unwell):
+class TooFewSamples(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         rest = State(*(values[:-2] for values in vars(trajectory.state).values()))
         return Trajectory(trajectory.time[:-2], rest)
 
 
-class NoSamples(Unwell):
+class NoSamples(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         none = State(*(values[:0] for values in vars(trajectory.state).values()))
         return Trajectory(trajectory.time[:0], none)
 
 
-class NotANumber(Unwell):
+class NotANumber(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         omega = trajectory.state.angular_velocity.copy()
         omega[-1] = np.nan
         return _with_omega(trajectory, omega)
 
 
-class Infinite(Unwell):
+class Infinite(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         omega = trajectory.state.angular_velocity.copy()
         omega[-1, 0] = np.inf
         return _with_omega(trajectory, omega)
 
 
-class Astronomical(Unwell):
+class Astronomical(Faulty):
     """Finite, and beyond what can be squared."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -257,7 +257,7 @@ class Astronomical(Unwell):
 # Noise around sound answers.
 
 
-class Floods(Unwell):
+class Floods(Faulty):
     """150 MB on standard output and as much on standard error."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -268,7 +268,7 @@ class Floods(Unwell):
         return trajectory
 
 
-class Twin(Unwell):
+class Twin(Faulty):
     """Forks, and its child goes on as if it were the worker."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -276,7 +276,7 @@ class Twin(Unwell):
         return trajectory
 
 
-class Reads(Unwell):
+class Reads(Faulty):
     """Asks the user for advice."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -284,7 +284,7 @@ class Reads(Unwell):
         return trajectory
 
 
-class HangsAtExit(Unwell):
+class HangsAtExit(Faulty):
     """Sound, and cannot let go."""
 
     def __init__(self, setup: str = "physics") -> None:
@@ -298,7 +298,7 @@ class HangsAtExit(Unwell):
 # Elsewhere than in a run.
 
 
-class Elsewhere(Unwell):
+class Elsewhere(Faulty):
     """Its runs are well."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -354,13 +354,13 @@ class TorqueOfOneState(Elsewhere):
 # Hangs.
 
 
-class Sleeps(Unwell):
+class Sleeps(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         time.sleep(3600)
         return trajectory
 
 
-class Spins(Unwell):
+class Spins(Faulty):
     """A busy loop."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -368,7 +368,7 @@ class Spins(Unwell):
             pass
 
 
-class IgnoresSignals(Unwell):
+class IgnoresSignals(Faulty):
     """Sleeps, and does not listen to requests to end."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -378,7 +378,7 @@ class IgnoresSignals(Unwell):
         return trajectory
 
 
-class StopsItself(Unwell):
+class StopsItself(Faulty):
     """As Ctrl-Z would."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -386,7 +386,7 @@ class StopsItself(Unwell):
         return trajectory
 
 
-class HoldsTheLock(Unwell):
+class HoldsTheLock(Faulty):
     """Sleeps in native code with the interpreter's lock held."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -394,7 +394,7 @@ class HoldsTheLock(Unwell):
         return trajectory
 
 
-class SleepsWithAChild(Unwell):
+class SleepsWithAChild(Faulty):
     """It hangs, and so does a program that it started."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
@@ -402,7 +402,7 @@ class SleepsWithAChild(Unwell):
         return trajectory
 
 
-class SleepsWithADaemon(Unwell):
+class SleepsWithADaemon(Faulty):
     """It hangs, and a program that it started is in a session of its own."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:

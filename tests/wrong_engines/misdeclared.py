@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from omegadot.adapters.protocol import Description, Integrator, Trajectory, UnsupportedError
-from omegadot.adapters.reference import FEATURES, ReferenceAdapter
+from omegadot.adapters.reference.adapter import FEATURES, ReferenceAdapter
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.rotations import turn_in_body
 from omegadot.reference_impl.schemes import SCHEMES, AccelerationOf, Scheme

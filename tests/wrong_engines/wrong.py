@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.adapters.protocol import Description, Trajectory
-from omegadot.adapters.reference import ReferenceAdapter
+from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import acceleration_of

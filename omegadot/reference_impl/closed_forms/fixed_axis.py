@@ -22,7 +22,7 @@ from omegadot.reference_impl.closed_forms.digits import (
 from omegadot.reference_impl.closed_forms.problem import (
     IDENTITY,
     UPRIGHT,
-    Course,
+    MeasuredRun,
     Motion,
     Problem,
     inertia_about,
@@ -63,10 +63,10 @@ def fixed_axis_of(system: System, initial: State) -> Problem | None:
 
 def _solve(numbers: Row) -> Motion:
     with many_digits():
-        return place(_course(numbers[:4], numbers[4:7]), IDENTITY, UPRIGHT, numbers[7:])
+        return place(_trajectory(numbers[:4], numbers[4:7]), IDENTITY, UPRIGHT, numbers[7:])
 
 
-def _course(numbers: Row, axis: Row) -> Course:
+def _trajectory(numbers: Row, axis: Row) -> MeasuredRun:
     """``I dω/dt = τ - d ω``, with ``x = d t / I``, ``φ_1 = (1 - e^-x)/x``, ``φ_2 = (1 - φ_1)/x``:
 
     ω = ω_0 e^-x + (τ/I) t φ_1,  angle = ω_0 t φ_1 + (τ/I) t² φ_2.
@@ -75,7 +75,7 @@ def _course(numbers: Row, axis: Row) -> Course:
     decay, drive, start = float(damping / inertia), float(torque / inertia), float(speed)
     n = doubles(axis)[:, None]
 
-    def course(times: Times, vector: Array, q: Array) -> None:
+    def trajectory(times: Times, vector: Array, q: Array) -> None:
         t = times.value
         x = decay * t
         first, second = _phi(x)
@@ -87,7 +87,7 @@ def _course(numbers: Row, axis: Row) -> Course:
         np.multiply(n, half.imag, out=q[1:])
         np.multiply(n, omega, out=vector)
 
-    return course
+    return trajectory
 
 
 def _phi(x: Array) -> tuple[Array, Array]:

@@ -29,12 +29,12 @@ from omegadot.reference_impl.closed_forms.digits import (
     pi,
 )
 from omegadot.reference_impl.closed_forms.euler_poinsot import constants_of
-from omegadot.reference_impl.closed_forms.free_rotation_course import course_of
+from omegadot.reference_impl.closed_forms.free_rotation_motion import motion_of
 from omegadot.reference_impl.closed_forms.phase import Phase
 from omegadot.reference_impl.closed_forms.problem import (
     IDENTITY,
     UPRIGHT,
-    Course,
+    MeasuredRun,
     Motion,
     Problem,
     inertia_about,
@@ -77,7 +77,7 @@ def _solve(numbers: Row) -> Motion:
         axes = [constants.axes[i] for i in order]
         scales = [constants.momentum / constants.inertia[i] for i in order]
         turning = [[s * x for x in row] for s, row in zip(scales, axes, strict=True)]
-        return place(course_of(constants), turning, quaternion_of(axes), orientation)
+        return place(motion_of(constants), turning, quaternion_of(axes), orientation)
 
 
 def inertia_and_omega(numbers: Row) -> tuple[Matrix, Row]:
@@ -86,17 +86,17 @@ def inertia_and_omega(numbers: Row) -> tuple[Matrix, Row]:
     return [[a, b, d], [b, c, e], [d, e, f]], numbers[6:9]
 
 
-def uniform(omega: Row) -> Course:
+def uniform(omega: Row) -> MeasuredRun:
     """ω constant: ``q = (cos |ω|t/2, sin |ω|t/2 ω/|ω|)``, the vector of the course is ω."""
     speed = dot(omega, omega).sqrt()
     angle = Phase.of(speed / (4 * pi()), ZERO)
     direction = doubles([x / speed for x in omega] if speed else omega)[:, None]
     w = doubles(omega)[:, None]
 
-    def course(times: Times, vector: Array, q: Array) -> None:
+    def trajectory(times: Times, vector: Array, q: Array) -> None:
         circle = angle.circle(times)
         q[0] = circle.real
         np.multiply(circle.imag, direction, out=q[1:])
         vector[:] = w
 
-    return course
+    return trajectory

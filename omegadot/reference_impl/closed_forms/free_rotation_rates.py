@@ -14,7 +14,10 @@ from omegadot.reference_impl.closed_forms.free_rotation import (
     free_rotation_of,
     inertia_and_omega,
 )
-from omegadot.reference_impl.closed_forms.free_rotation_course import encircling_theta, mean_rate
+from omegadot.reference_impl.closed_forms.free_rotation_motion import (
+    encircling_theta,
+    mean_rate,
+)
 from omegadot.reference_impl.system import Array, State, System
 
 

@@ -36,7 +36,7 @@ class Factor:
         sign = -1 if self.opposite else 1
         return self.rate - sign * nutation.rate * self.theta.winding
 
-    def course(self) -> Callable[[Times, Frame], Array]:
+    def trajectory(self) -> Callable[[Times, Frame], Array]:
         """The factor as a function of time, up to a constant phase."""
         angle = Phase.of(self.rate / (2 * pi()), ZERO)
         skew = -self.theta.skew if self.opposite else self.theta.skew

@@ -16,7 +16,7 @@ from omegadot.reference_impl.system import Array
 
 
 def phases_of(
-    top: Top, n: Nutation, clock: Clock, courses: list[Callable[[Times, Frame], Array]]
+    top: Top, n: Nutation, clock: Clock, trajectories: list[Callable[[Times, Frame], Array]]
 ) -> list[complex]:
     """The constant phases of the three factors, from their values at time zero.
 
@@ -25,7 +25,7 @@ def phases_of(
     """
     zero = Times(np.zeros(1))
     known = [complex(*map(float, pair)) for pair in (top.alpha, top.beta, top.across)]
-    found = [complex(c(zero, clock.read(zero))[0]) for c in courses]
+    found = [complex(c(zero, clock.read(zero))[0]) for c in trajectories]
     greatest = [1.0, 1.0, float((n.strength * (n.height - n.roots[0])).sqrt())]
     sizes = [abs(x) / size for x, size in zip(known, greatest, strict=True)]
     phases = [x * y.conjugate() / (abs(x * y) or 1.0) for x, y in zip(known, found, strict=True)]
@@ -34,7 +34,7 @@ def phases_of(
         return phases
     argument, bracket = _midway(n)
     away = Times(np.array([float((argument - n.start) / n.rate)]))
-    alpha, beta, across = (complex(c(away, clock.read(away))[0]) for c in courses)
+    alpha, beta, across = (complex(c(away, clock.read(away))[0]) for c in trajectories)
     relation = across * (beta * alpha.conjugate() * bracket).conjugate()
     relation /= abs(relation)
     a, b, c = phases

@@ -41,7 +41,7 @@ from omegadot.reference_impl.closed_forms.lagrange_phases import phases_of
 from omegadot.reference_impl.closed_forms.problem import (
     IDENTITY,
     UPRIGHT,
-    Course,
+    MeasuredRun,
     Motion,
     Placed,
     Problem,
@@ -91,22 +91,22 @@ def _solve(numbers: Row) -> Motion:
         if nutation is None:
             return place(uniform(numbers[9:12]), IDENTITY, UPRIGHT, numbers[12:16])
         placing = placing_of(top.world, top.body)
-        return Placed(_course(top, nutation), np.array(top.axes, float), placing)
+        return Placed(_trajectory(top, nutation), np.array(top.axes, float), placing)
 
 
-def _course(top: Top, n: Nutation) -> Course:
+def _trajectory(top: Top, n: Nutation) -> MeasuredRun:
     clock = Clock.of(n.modulus, n.rate, n.start)
-    courses = [factor.course() for factor in factors_of(top, n)]
-    phases = phases_of(top, n, clock, courses)
+    trajectories = [factor.trajectory() for factor in factors_of(top, n)]
+    phases = phases_of(top, n, clock, trajectories)
     spin = float(top.spin)
 
-    def course(times: Times, w: Array, q: Array) -> None:
+    def trajectory(times: Times, w: Array, q: Array) -> None:
         frame = clock.read(times)
         alpha, beta, across = (
-            phase * factor(times, frame) for phase, factor in zip(phases, courses, strict=True)
+            phase * factor(times, frame) for phase, factor in zip(phases, trajectories, strict=True)
         )
         w[0], w[1], w[2] = across.real, across.imag, spin
         q[0], q[1], q[2], q[3] = alpha.real, beta.real, beta.imag, alpha.imag
         q /= np.sqrt(np.add.reduce(q * q, 0))
 
-    return course
+    return trajectory

@@ -17,7 +17,7 @@ Motion: TypeAlias = Callable[[Array], tuple[Array, Array]]
 
 # The same in a frame of its own, ready to be placed: a vector and a quaternion, written to the
 # given arrays (3, n) and (4, n). The second one's transpose is contiguous.
-Course: TypeAlias = Callable[[Times, Array, Array], None]
+MeasuredRun: TypeAlias = Callable[[Times, Array, Array], None]
 
 _LARGE_PAGE = 2**21  # bytes, on Linux
 _CHUNK = (
@@ -46,7 +46,7 @@ class Placed:
     of its quaternion to the attitude.
     """
 
-    course: Course
+    trajectory: MeasuredRun
     turning: Array
     placing: Array
 
@@ -58,7 +58,7 @@ class Placed:
         vectors, quaternions = np.empty((3, _CHUNK)), np.empty((_CHUNK, 4))
         for part, moments in chunks(times, _CHUNK):
             w, q = vectors[:, : moments.value.size], quaternions[: moments.value.size]
-            self.course(moments, w, q.T)
+            self.trajectory(moments, w, q.T)
             np.matmul(w.T, self.turning, out=angular_velocity[part])
             np.matmul(q, self.placing, out=orientation[part])
         return orientation, angular_velocity
@@ -77,18 +77,18 @@ def _block(size: int) -> Array:
     return room[first : first + size]
 
 
-def place(course: Course, turning: Matrix, frame: Row, orientation: Row) -> Placed:
+def place(trajectory: MeasuredRun, turning: Matrix, frame: Row, orientation: Row) -> Placed:
     """The course with the given attitude at time zero.
 
     frame: the quaternion of frame-from-body.  Attitudes are ``W q(t) frame``, with the constant W
     such that the first one is ``orientation``.
     """
     q = np.empty((1, 4)).T
-    course(Times(np.zeros(1)), np.empty((3, 1)), q)
+    trajectory(Times(np.zeros(1)), np.empty((3, 1)), q)
     body = product(exact(q), frame)
     start = [x / dot(orientation, orientation).sqrt() for x in orientation]
     world = product(start, [body[0], -body[1], -body[2], -body[3]])
-    return Placed(course, np.array(turning, float), placing_of(world, frame))
+    return Placed(trajectory, np.array(turning, float), placing_of(world, frame))
 
 
 def placing_of(world: Row, frame: Row) -> Array:

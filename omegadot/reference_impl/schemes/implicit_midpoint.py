@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from omegadot.reference_impl.rotations import normalize, quaternion_product
-from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian, inverse_of_one_minus
+from omegadot.reference_impl.schemes.jacobian import (
+    acceleration_and_jacobian,
+    inverse_of_one_minus,
+)
 from omegadot.reference_impl.schemes.newton import mean_velocity_of
 from omegadot.reference_impl.schemes.scheme import (
     AccelerationOf,

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from omegadot.reference_impl.rotations import turn_in_body
-from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian, solve_one_minus
+from omegadot.reference_impl.schemes.jacobian import (
+    acceleration_and_jacobian,
+    solve_one_minus,
+)
 from omegadot.reference_impl.schemes.scheme import (
     AccelerationOf,
     Scheme,

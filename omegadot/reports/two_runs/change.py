@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from omegadot.reports.numbers import knob, plain, short
-from omegadot.reports.tables import CHANNEL_NAMES
+from omegadot.reports.page.tables import CHANNEL_NAMES
+from omegadot.reports.text.numbers import knob, plain, short
 from omegadot.reports.two_runs.sides import RunKey
 
 
@@ -88,16 +88,16 @@ def _times(factor: float) -> str:
 
 def from_to(change: Change) -> str:
     """What it was and is: verdicts or outcomes where they differ, and the figures."""
-    said = f"{change.was} → {change.now}" if change.was != change.now else ""
+    message = f"{change.was} → {change.now}" if change.was != change.now else ""
     measure = change.measure
     if measure is None:
-        return said
+        return message
     unit = "" if measure.unit == "1" else f" {measure.unit}"
     was, now = (short(value, 3) for value in (measure.was, measure.now))
     figures = f"{was} → {now}{unit}"
     if change.moved:
         figures += f" ({of_factor(measure)}; rounding allows {short(measure.band)}{unit})"
-    return f"{said}: {figures}" if said else figures
+    return f"{message}: {figures}" if message else figures
 
 
 def place(change: Change) -> str:

@@ -8,14 +8,20 @@ from dataclasses import dataclass
 
 import polars as pl
 
-from omegadot.reports.numbers import listed, times
-from omegadot.reports.record import Record
+from omegadot.reports.record.record import Record
+from omegadot.reports.text.numbers import listed, times
 from omegadot.reports.two_runs.change import Change, name_of
 from omegadot.reports.two_runs.cost import Cost, costs
 from omegadot.reports.two_runs.figures import changed_figures, paired
 from omegadot.reports.two_runs.runs import changed_runs, pair_runs, without_repetition
 from omegadot.reports.two_runs.settings import Difference, differences
-from omegadot.reports.two_runs.sides import Side, Task, redefined, several_versions, tasks_of
+from omegadot.reports.two_runs.sides import (
+    Side,
+    Task,
+    redefined,
+    several_versions,
+    tasks_of,
+)
 
 _NAMED = 4
 
@@ -50,18 +56,18 @@ class Comparison:
         """What got worse, better, vanished and appeared, and how much was compared."""
         if not self.runs:
             return "Nothing to compare: the two records have no run in common."
-        said = [
-            f"{word}: {_who(changes)}."
-            for changes, word in ((self.worse, "Worse"), (self.better, "Better"))
+        message = [
+            f"{term}: {_who(changes)}."
+            for changes, term in ((self.worse, "Worse"), (self.better, "Better"))
             if changes
         ]
-        for tasks, word in ((self.vanished, "vanished"), (self.appeared, "appeared")):
+        for tasks, term in ((self.vanished, "vanished"), (self.appeared, "appeared")):
             if tasks:
-                said.append(f"{times(len(tasks), 'run')} {word}.")
+                message.append(f"{times(len(tasks), 'run')} {term}.")
         if not self.worse and not self.better:
-            said.insert(0, "No change.")
+            message.insert(0, "No change.")
         compared = f"{times(self.runs, 'run')} and {times(self.figures, 'figure')} compared."
-        return " ".join([*said, compared])
+        return " ".join([*message, compared])
 
 
 def _who(changes: Iterable[Change]) -> str:

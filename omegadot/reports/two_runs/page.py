@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from omegadot.reports import matrix
-from omegadot.reports.numbers import times
-from omegadot.reports.summary import Cell, Column, Summary, summarise
-from omegadot.reports.templating import asset, environment
-from omegadot.reports.two_runs import telling
+from omegadot.reports.page.templating import asset, environment
+from omegadot.reports.summary import matrix
+from omegadot.reports.summary.summary import Cell, Column, Summary, summarise
+from omegadot.reports.text.numbers import times
+from omegadot.reports.two_runs import listing as listing
 from omegadot.reports.two_runs.change import Change
 from omegadot.reports.two_runs.comparison import Comparison
 from omegadot.reports.two_runs.sides import RunKey, Side, several_versions
@@ -49,7 +49,7 @@ class Part:
     anchor: str
     title: str
     heads: tuple[str, ...]
-    rows: telling.Rows
+    rows: listing.Rows
     hidden: int
 
 
@@ -62,7 +62,7 @@ def draw_two_runs(comparison: Comparison) -> str:
         .get_template("two_runs.html.j2")
         .render(
             comparison=comparison,
-            remarks=telling.remarks(comparison),
+            remarks=listing.remarks(comparison),
             sides=[_facts(side) for side in (comparison.was, comparison.now)],
             columns=columns,
             matrix=_matrix(comparison, summaries, columns),
@@ -156,39 +156,39 @@ def _cell(was: Cell | None, now: Cell | None, changes: Iterable[Change]) -> Pair
     if one is _ABSENT or other is _ABSENT:
         mood = "" if one is other else "appeared" if one is _ABSENT else "vanished"
         return PairCell(one, other, (one if other is _ABSENT else other).status, mood, mood)
-    said = [f"{count} {word}" for count, word in ((worse, "worse"), (better, "better")) if count]
+    message = [f"{count} {term}" for count, term in ((worse, "worse"), (better, "better")) if count]
     mood = "mixed" if worse and better else "worse" if worse else "better" if better else "same"
-    return PairCell(one, other, other.status, mood, ", ".join(said) or "no change")
+    return PairCell(one, other, other.status, mood, ", ".join(message) or "no change")
 
 
 def _parts(comparison: Comparison) -> list[Part]:
     """The tables below the matrix; one without rows is left out."""
     found = (
-        ("worse", "Worse", telling.CHANGE_HEADS, telling.change_rows(comparison.worse)),
-        ("better", "Better", telling.CHANGE_HEADS, telling.change_rows(comparison.better)),
+        ("worse", "Worse", listing.CHANGE_HEADS, listing.change_rows(comparison.worse)),
+        ("better", "Better", listing.CHANGE_HEADS, listing.change_rows(comparison.better)),
         (
             "vanished",
             "Vanished: in the first record alone",
-            telling.PRESENCE_HEADS,
-            telling.presence_rows(comparison.vanished),
+            listing.PRESENCE_HEADS,
+            listing.presence_rows(comparison.vanished),
         ),
         (
             "appeared",
             "Appeared: in the second record alone",
-            telling.PRESENCE_HEADS,
-            telling.presence_rows(comparison.appeared),
+            listing.PRESENCE_HEADS,
+            listing.presence_rows(comparison.appeared),
         ),
         (
             "settings",
             "Made otherwise",
-            ("what", *telling.SETTING_HEADS[1:]),
-            telling.setting_rows(comparison),
+            ("what", *listing.SETTING_HEADS[1:]),
+            listing.setting_rows(comparison),
         ),
         (
             "cost",
             "Time per step, second over first",
-            telling.COST_HEADS,
-            telling.cost_rows(comparison),
+            listing.COST_HEADS,
+            listing.cost_rows(comparison),
         ),
     )
     return [

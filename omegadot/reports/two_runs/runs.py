@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from omegadot.reports.summary import STATUSES
+from omegadot.reports.summary.summary import STATUSES
 from omegadot.reports.two_runs.change import Change
 from omegadot.reports.two_runs.figures import VERDICT_RANK
 from omegadot.reports.two_runs.sides import RunKey, Task
@@ -99,9 +99,9 @@ def without_repetition(gates: Iterable[Change], figures: Iterable[Change]) -> li
 
     A figure of model or equation is one of the engine, and speaks for all its runs.
     """
-    told = list(figures)
+    reported = list(figures)
     spoken = {
-        (change.key, change.gate, change.worse) for change in told if change.was != change.now
+        (change.key, change.gate, change.worse) for change in reported if change.was != change.now
     }
     whole = [
         change
@@ -109,7 +109,7 @@ def without_repetition(gates: Iterable[Change], figures: Iterable[Change]) -> li
         if not {(k, change.gate, change.worse) for k in (change.key, engine_key(change.key))}
         & spoken
     ]
-    return whole + told
+    return whole + reported
 
 
 def engine_key(key: RunKey) -> RunKey:

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from omegadot.reports.numbers import plain
-from omegadot.reports.summary import summarise
+from omegadot.reports.summary.summary import summarise
+from omegadot.reports.text.numbers import plain
 from omegadot.reports.two_runs.sides import Side, definition_of
 
 _OF_AN_ENGINE = ("version", "precision", "conventions", "switched_off", "features")
@@ -78,8 +78,8 @@ def _integrators(name: str, was: Mapping[str, Any], now: Mapping[str, Any]) -> I
             yield Difference(f"{name} integrator {key}", *there)
             continue
         for field in ("scheme", "orders"):
-            said = f"{name} {key}, declared {field}"
-            yield from _plain(said, then[key].get(field), today[key].get(field))
+            message = f"{name} {key}, declared {field}"
+            yield from _plain(message, then[key].get(field), today[key].get(field))
 
 
 def _scenarios(was: Side, now: Side) -> Iterator[Difference]:

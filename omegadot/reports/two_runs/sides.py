@@ -7,11 +7,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from omegadot.reports.record import Record
-from omegadot.reports.summary import task_status, worst
+from omegadot.reports.record.record import Record
+from omegadot.reports.summary.summary import task_status, worst
 
 # Scenario keys that change no number: what is told of it, and which steps it is run with.
-TOLD_OR_STEPS = {"schema", "name", "title", "shows", "source"}
+REPORTED_OR_STEPS = {"schema", "name", "title", "shows", "source"}
 
 
 class RunKey(NamedTuple):
@@ -57,7 +57,7 @@ class Side:
     @property
     def command(self) -> str:
         """The command that made it, as one would type it."""
-        return shlex.join(str(word) for word in self.run.get("command") or ())
+        return shlex.join(str(text) for text in self.run.get("command") or ())
 
     @property
     def complete(self) -> bool:
@@ -107,7 +107,7 @@ def tasks_of(side: Side, versioned: set[str]) -> dict[RunKey, Task]:
 def definition_of(entry: Mapping[str, Any]) -> dict[str, Any]:
     """What of a scenario decides its numbers: all but its words and its set of steps."""
     whole = entry.get("definition") or {}
-    found = {key: value for key, value in whole.items() if key not in TOLD_OR_STEPS}
+    found = {key: value for key, value in whole.items() if key not in REPORTED_OR_STEPS}
     if isinstance(found.get("run"), Mapping):
         found["run"] = {k: v for k, v in found["run"].items() if k != "timesteps"}
     return found

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any
 
-from omegadot.reports.markdown_text import COMMENT, code, escape, folded, table
-from omegadot.reports.numbers import times
-from omegadot.reports.two_runs import telling
+from omegadot.reports.text.markdown_text import COMMENT, code, escape, folded, table
+from omegadot.reports.text.numbers import times
+from omegadot.reports.two_runs import listing as listing
 from omegadot.reports.two_runs.change import Change
 from omegadot.reports.two_runs.comparison import Comparison
 from omegadot.reports.two_runs.sides import Side, Task
@@ -19,11 +19,11 @@ _ROWS_SHOWN = 12
 
 def as_text(comparison: Comparison) -> str:
     """What changed, the largest change first, and the verdict in the last line."""
-    lines = [f"{side.label}: {telling.side_facts(side)}" for side in _sides(comparison)]
+    lines = [f"{side.label}: {listing.side_facts(side)}" for side in _sides(comparison)]
     for title, rows in _sections(comparison):
         if rows:
             lines += ["", title, *_paragraphs(rows)]
-    lines += ["", comparison.headline, *telling.remarks(comparison)]
+    lines += ["", comparison.headline, *listing.remarks(comparison)]
     return "\n".join(" ".join(_printable(line).split(" ")) for line in lines)
 
 
@@ -36,29 +36,29 @@ def _sides(comparison: Comparison) -> tuple[Side, Side]:
     return comparison.was, comparison.now
 
 
-def _sections(comparison: Comparison) -> list[tuple[str, telling.Rows]]:
+def _sections(comparison: Comparison) -> list[tuple[str, listing.Rows]]:
     return [
-        ("Worse", telling.change_rows(comparison.worse)),
-        ("Better", telling.change_rows(comparison.better)),
-        ("Vanished", telling.presence_rows(comparison.vanished)),
-        ("Appeared", telling.presence_rows(comparison.appeared)),
+        ("Worse", listing.change_rows(comparison.worse)),
+        ("Better", listing.change_rows(comparison.better)),
+        ("Vanished", listing.presence_rows(comparison.vanished)),
+        ("Appeared", listing.presence_rows(comparison.appeared)),
         ("Made otherwise", [(f"{a}:", f"{b} → {c}") for a, b, c in _settings(comparison)]),
-        (telling.COST_NOTE, _costs(comparison)),
+        (listing.COST_NOTE, _costs(comparison)),
     ]
 
 
-def _settings(comparison: Comparison) -> telling.Rows:
-    return telling.setting_rows(comparison)
+def _settings(comparison: Comparison) -> listing.Rows:
+    return listing.setting_rows(comparison)
 
 
-def _costs(comparison: Comparison) -> telling.Rows:
-    rows = telling.cost_rows(comparison)
+def _costs(comparison: Comparison) -> listing.Rows:
+    rows = listing.cost_rows(comparison)
     return [
         (e, i, f"{median} times ({span}), {times(int(n), 'run')}") for e, i, median, span, n in rows
     ]
 
 
-def _paragraphs(rows: telling.Rows) -> list[str]:
+def _paragraphs(rows: listing.Rows) -> list[str]:
     shown = ["  " + "  ".join(filter(None, row)) for row in rows[:_ROWS_SHOWN]]
     left = len(rows) - _ROWS_SHOWN
     return [*shown, f"  and {left} more; --format json has them all"] if left > 0 else shown
@@ -68,23 +68,23 @@ def as_markdown(comparison: Comparison) -> str:
     """A comment for a pull request, below the length that one may have."""
     mark = "❌ " if comparison.regressed else ""
     lines = [f"### {mark}{escape(comparison.headline, 1000)}", ""]
-    lines += [f"{escape(said, 1000)}\n" for said in telling.remarks(comparison)]
+    lines += [f"{escape(message, 1000)}\n" for message in listing.remarks(comparison)]
     for name, side in zip(("First", "Second"), _sides(comparison), strict=True):
-        lines.append(f"- {name}: {code(side.label, 300)}, {escape(telling.side_facts(side), 600)}")
+        lines.append(f"- {name}: {code(side.label, 300)}, {escape(listing.side_facts(side), 600)}")
     parts = (
-        ("Worse", telling.CHANGE_HEADS, telling.change_rows(comparison.worse)),
-        ("Better", telling.CHANGE_HEADS, telling.change_rows(comparison.better)),
-        ("Vanished", telling.PRESENCE_HEADS, telling.presence_rows(comparison.vanished)),
-        ("Appeared", telling.PRESENCE_HEADS, telling.presence_rows(comparison.appeared)),
+        ("Worse", listing.CHANGE_HEADS, listing.change_rows(comparison.worse)),
+        ("Better", listing.CHANGE_HEADS, listing.change_rows(comparison.better)),
+        ("Vanished", listing.PRESENCE_HEADS, listing.presence_rows(comparison.vanished)),
+        ("Appeared", listing.PRESENCE_HEADS, listing.presence_rows(comparison.appeared)),
     )
     for title, heads, rows in parts:
         if rows:
             lines += ["", f"**{title}**", "", *table(heads, rows, COMMENT // 6)]
-    if rows := telling.setting_rows(comparison):
-        lines += folded("Made otherwise", table(telling.SETTING_HEADS, rows, COMMENT // 8))
-    if rows := telling.cost_rows(comparison):
-        told = table(telling.COST_HEADS, rows, COMMENT // 8)
-        lines += folded(telling.COST_NOTE, told)
+    if rows := listing.setting_rows(comparison):
+        lines += folded("Made otherwise", table(listing.SETTING_HEADS, rows, COMMENT // 8))
+    if rows := listing.cost_rows(comparison):
+        reported = table(listing.COST_HEADS, rows, COMMENT // 8)
+        lines += folded(listing.COST_NOTE, reported)
     return "\n".join(lines) + "\n"
 
 

@@ -38,11 +38,11 @@ class NamedBody:
         return plain or "body"
 
 
-def body_of_word(word: str) -> NamedBody:
+def body_of_word(term: str) -> NamedBody:
     """The body in ``FILE.toml`` or ``FILE#LINK``. Raises ScenarioError, one sentence."""
-    path, separator, link = word.rpartition("#")
+    path, separator, link = term.rpartition("#")
     if not separator:
-        path, link = word, ""
+        path, link = term, ""
     file = printable(path)
     if path.lower().endswith(".toml"):
         return _of_toml(path, file)

@@ -34,7 +34,7 @@ class Place:
         if "${" in text or "$(" in text:
             self.refuse(describe(text.strip()), "expand the file with xacro first")
         try:
-            values = [float(word) for word in text.split()]
+            values = [float(term) for term in text.split()]
         except ValueError:
             values = []
         if len(values) not in counts or not all(math.isfinite(v) for v in values):

@@ -1,0 +1,5 @@
+"""DART behind the protocol."""
+
+from omegadot.adapters.dart.adapter import DartAdapter
+
+__all__ = ["DartAdapter"]

@@ -1,0 +1,156 @@
+"""DART behind the protocol: its forward and inverse dynamics and its own stepper.
+
+`dart_model` builds the world, `dart_joint` talks to the body in it. The stepper is semi-implicit
+Euler: accelerations, then velocities, then positions with the new velocities.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.adapters.dart.joint import DartJoint
+from omegadot.adapters.dart.model import SWITCHED_OFF, DartModel
+from omegadot.adapters.protocol import (
+    Description,
+    Integrator,
+    Setup,
+    Trajectory,
+    UnsupportedError,
+)
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import kept_steps, stack
+from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
+
+SEMI_IMPLICIT = Integrator(
+    "semi-implicit",
+    "semi-implicit-euler-short-turns",
+    dict(SCHEMES["semi-implicit-euler-short-turns"].orders),
+    note="World.step",
+    steps_origin=True,
+)
+CONVENTIONS = (
+    "FreeJoint velocities are in body axes up to 6.16 and in world axes from 6.17; BallJoint "
+    "velocities are in body axes: the adapter asks for named frames or goes through the Jacobian",
+    "orientation is kept as the rotation vector from the joint's frame",
+    "spatial vectors are (angular, linear), at the body origin",
+    "DART's joint damping is implicit in the step: here -damping * omega is an external torque at "
+    "the start of each step, as the applied torques are",
+    "rotations of less than 1e-3 rad, those of a step included, are expanded to second order: they "
+    "turn by angle**3 / 6 too far",
+    "from 6.16.6 a non-finite acceleration is replaced by zero, and from 6.17 a non-finite "
+    "transform by the identity: where DART's own coordinates are not finite, the adapter gives NaN",
+)
+FEATURES = frozenset(
+    {
+        *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
+        *("forward_dynamics", "inverse_dynamics"),
+    }
+)
+LINKS = (
+    "https://github.com/dartsim/dart",
+    "https://github.com/dartsim/dart/blob/main/CHANGELOG.md",
+    "https://docs.dartsim.org/",
+)
+
+
+class DartAdapter:
+    """dartpy 6.16.2 and later."""
+
+    def __init__(self, setup: Setup = "physics") -> None:
+        import dartpy
+
+        self._engine = dartpy
+        self._setup = setup
+        self._joint: DartJoint | None = None
+
+    @property
+    def description(self) -> Description:
+        """DART as it is installed."""
+        return Description(
+            name="dart",
+            version=str(self._engine.__version__),
+            integrators=(SEMI_IMPLICIT,),
+            conventions=CONVENTIONS,
+            switched_off=SWITCHED_OFF if self._setup == "physics" else (),
+            features=FEATURES,
+            licence="BSD-2-Clause",
+            links=LINKS,
+        )
+
+    def load(self, system: System) -> None:
+        """Build a world with one body. Raises UnsupportedError for several bodies."""
+        if len(system.bodies) != 1:
+            raise UnsupportedError(f"dart takes one body here, not {len(system.bodies)}.")
+        model = DartModel(self._engine, system, physics=self._setup == "physics")
+        self._joint = DartJoint(model, system)
+
+    def model(self) -> tuple[Body, ...]:
+        """The body node's inertia, read back."""
+        return (self._loaded().model.body(),)
+
+    def set_state(self, state: State) -> None:
+        """Put the joint in the state."""
+        self._loaded().set_state(state)
+
+    def get_state(self) -> State:
+        """The body node's state in the project's frames."""
+        return self._loaded().get_state()
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """`Skeleton.computeForwardDynamics` at n states."""
+        joint = self._loaded()
+        angular = np.empty_like(states.angular_velocity, dtype=float)
+        linear = np.empty_like(angular)
+        for n in range(len(angular)):
+            joint.set_state(_row(states, n))
+            angular[n], linear[n] = joint.forward()
+        return Acceleration(angular, linear)
+
+    def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
+        """`Skeleton.computeInverseDynamics` at n states."""
+        joint = self._loaded()
+        torque = np.empty_like(states.angular_velocity, dtype=float)
+        for n in range(len(torque)):
+            state = _row(states, n)
+            joint.set_state(state)
+            wanted = Acceleration(acceleration.angular[n], acceleration.linear[n])
+            torque[n] = joint.inverse(state, wanted)
+        return torque
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        """`World.step`, the state read at samples alone. Raises UnsupportedError for other names.
+
+        A run that is no longer finite is not stepped on: its later samples are NaN.
+        """
+        if integrator != SEMI_IMPLICIT.name:
+            raise UnsupportedError(f"dart has no integrator {integrator!r}.")
+        joint, kept = self._loaded(), kept_steps(steps, every)
+        joint.start(initial, timestep)
+        rows = [joint.get_state()]
+        for count in np.diff(kept).tolist():
+            if joint.is_finite():
+                joint.step(count)
+            rows.append(joint.get_state())
+        return Trajectory(np.multiply(kept, timestep), stack(rows))
+
+    def native(self) -> dict[str, dict[str, str]]:
+        """Conventions as measured of the engine itself, and its defaults."""
+        from omegadot.adapters.dart.native import native
+
+        return native(self._engine)
+
+    def _loaded(self) -> DartJoint:
+        if self._joint is None:
+            raise RuntimeError("no system is loaded: call load() first")
+        return self._joint
+
+
+def _row(states: State, n: int) -> State:
+    return State(
+        states.orientation[n],
+        states.angular_velocity[n],
+        states.position[n],
+        states.linear_velocity[n],
+    )

@@ -1,0 +1,110 @@
+"""What the installed DART itself does and comes with, asked of it, not of its documents."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from omegadot.adapters.native_axes import GIVEN, TURNED, axes_observed, described
+from omegadot.reference_impl.system import Array
+
+SMALL_TURN = 5e-4  # rad, below the 1e-3 rad where some versions expand a turn
+
+
+def native(dart: ModuleType) -> dict[str, dict[str, str]]:
+    """Conventions as measured, and defaults as they come, name to value."""
+    return {"conventions": _conventions(dart), "defaults": _defaults(dart)}
+
+
+def _body(dart: Any, kind: str) -> tuple[Any, Any, Any]:
+    skeleton = dart.dynamics.Skeleton()
+    joint, node = getattr(skeleton, f"create{kind}AndBodyNodePair")()
+    return skeleton, joint, node
+
+
+def _turned(dart: Any, kind: str) -> tuple[Any, Any, Any]:
+    skeleton, joint, node = _body(dart, kind)
+    if kind == "FreeJoint":
+        joint.setPositions(joint.convertToPositions(dart.math.Isometry3(TURNED, np.zeros(3))))
+    else:
+        joint.setPositions(joint.convertToPositions(TURNED))
+    return skeleton, joint, node
+
+
+def _seen(dart: Any, kind: str, first: int) -> tuple[Array, Array]:
+    """Angular and linear velocity in world axes where the joint's velocities from `first` on are
+    ``GIVEN``.
+    """
+    _skeleton, joint, node = _turned(dart, kind)  # the skeleton must outlive its parts
+    velocities = np.zeros(joint.getNumDofs())
+    velocities[first : first + 3] = GIVEN
+    joint.setVelocities(velocities)
+    world = dart.dynamics.Frame.World()
+    return node.getAngularVelocity(world, world), node.getLinearVelocity(world, world)
+
+
+def _order(dart: Any) -> str:
+    angular, linear = _seen(dart, "FreeJoint", 0)
+    return "angular, linear" if np.any(angular) and not np.any(linear) else "linear, angular"
+
+
+def _conventions(dart: Any) -> dict[str, str]:
+    order = _order(dart)
+    turning = 0 if order == "angular, linear" else 3
+    return {
+        "FreeJoint velocity order": order,
+        "FreeJoint velocity frame": axes_observed(_seen(dart, "FreeJoint", turning)[0]),
+        "FreeJoint linear velocity frame": axes_observed(_seen(dart, "FreeJoint", 3 - turning)[1]),
+        "BallJoint velocity frame": axes_observed(_seen(dart, "BallJoint", 0)[0]),
+        "turns below 1e-3 rad": _small_turn(dart),
+        "acceleration at a velocity that is not finite": _after_overflow(dart),
+    }
+
+
+def _small_turn(dart: Any) -> str:
+    """Whether a turn r is taken as ``1 + [r] + [r]^2 / 2``, off by r^3 / 6, or as it is."""
+    _skeleton, joint, node = _body(dart, "BallJoint")
+    joint.setPositions(SMALL_TURN * GIVEN)
+    rotation = node.getTransform().rotation()
+    off = abs(float(rotation[2, 1]) - np.sin(SMALL_TURN))
+    return "exact" if off <= 64 * np.finfo(float).eps else "expanded to second order"
+
+
+def _after_overflow(dart: Any) -> str:
+    skeleton, joint, _ = _body(dart, "BallJoint")
+    joint.setVelocities(np.full(3, np.inf))
+    skeleton.computeForwardDynamics()
+    found = joint.getAccelerations()
+    return "not finite" if not np.all(np.isfinite(found)) else described(found)
+
+
+def _defaults(dart: Any) -> dict[str, str]:
+    world = dart.simulation.World()
+    _skeleton, joint, node = _body(dart, "FreeJoint")
+    inertia = node.getInertia()
+    return {
+        "World time step": described(world.getTimeStep()),
+        "World gravity": described(world.getGravity()),
+        "deactivation of slow bodies": _deactivation(world),
+        "joint limits enforced": _answer(joint, "areLimitsEnforced", "isPositionLimitEnforced"),
+        "constraint solver": type(world.getConstraintSolver()).__name__,
+        "BodyNode mass": described(inertia.getMass()),
+        "BodyNode inertia": described(inertia.getMoment()),
+    }
+
+
+def _answer(owner: Any, *names: str) -> str:
+    """What the first of these calls that there is answers; versions name some anew."""
+    name = next((name for name in names if hasattr(owner, name)), None)
+    return "no such setting" if name is None else described(getattr(owner, name)())
+
+
+def _deactivation(world: Any) -> str:
+    if not hasattr(world, "getDeactivationOptions"):
+        return "no such setting"
+    options = world.getDeactivationOptions()
+    names = [name for name in dir(options) if name.startswith("m") and name != "mEnabled"]
+    values = ", ".join(f"{name} {described(getattr(options, name))}" for name in sorted(names))
+    return f"{'on' if options.mEnabled else 'off'} ({values})"

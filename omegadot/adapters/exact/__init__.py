@@ -1,0 +1,5 @@
+"""The exact solution as an engine."""
+
+from omegadot.adapters.exact.adapter import ExactAdapter
+
+__all__ = ["ExactAdapter"]

@@ -1,0 +1,5 @@
+"""MuJoCo behind the protocol."""
+
+from omegadot.adapters.mujoco.adapter import MujocoAdapter
+
+__all__ = ["MujocoAdapter"]

@@ -1,0 +1,173 @@
+"""MuJoCo behind the protocol: one body on a free joint or hung on a ball joint."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+import numpy as np
+
+from omegadot.adapters.mujoco.coordinates import Coordinates
+from omegadot.adapters.mujoco.integrators import (
+    Case,
+    declared_integrators,
+    integrator_flag,
+    version_of,
+)
+from omegadot.adapters.mujoco.model import (
+    BODY,
+    apply_setup,
+    body_of,
+    build_model,
+    switched_off,
+)
+from omegadot.adapters.mujoco.stepping import Stepper
+from omegadot.adapters.protocol import Description, Setup, Trajectory, UnsupportedError
+from omegadot.reference_impl.stepping import kept_steps
+from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
+
+_CONVENTIONS = (
+    "quaternions are (w, x, y, z), world-from-body",
+    "a free joint's position and linear velocity are those of the body's origin, in world axes",
+    "angular velocity and acceleration are in body axes",
+    "with the centre of mass off the origin, steps are taken in the origin's velocity",
+    "qfrc_applied is in the joint's axes, xfrc_applied in world axes at the centre of mass",
+)
+_FEATURES = frozenset(
+    {
+        *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
+        *("forward_dynamics", "inverse_dynamics"),
+    }
+)
+_LINKS = (
+    "https://mujoco.readthedocs.io/en/stable/computation/index.html#numerical-integration",
+    "https://mujoco.readthedocs.io/en/stable/changelog.html",
+    "https://github.com/google-deepmind/mujoco",
+)
+
+
+class MujocoAdapter:
+    """MuJoCo 3.6 and later. Raises ImportError when MuJoCo is not installed."""
+
+    def __init__(self, setup: Setup = "physics") -> None:
+        self._mujoco: Any = importlib.import_module("mujoco")
+        self._setup: Setup = setup
+        self._load = Load()
+        self._model: Any = None
+
+    @property
+    def description(self) -> Description:
+        """The engine; once a system is loaded, its integrators as they act on that system."""
+        mujoco = self._mujoco
+        return Description(
+            name="mujoco",
+            version=mujoco.__version__,
+            integrators=declared_integrators(mujoco, self._case()),
+            conventions=_CONVENTIONS,
+            switched_off=switched_off(mujoco) if self._setup == "physics" else (),
+            features=_FEATURES,
+            licence="Apache-2.0",
+            links=_LINKS,
+        )
+
+    def _case(self) -> Case:
+        load, pivoted = self._load, self._load.pivot is not None
+        offset = self._model is not None and bool(np.any(self._model.body_ipos[BODY]))
+        return Case(
+            version=version_of(self._mujoco.__version__),
+            pivoted=pivoted,
+            offset=offset and not pivoted,
+            falls=bool(np.any(load.gravity)),
+            damped=bool(np.any(load.damping)),
+            euler_damps=self._setup == "as-shipped",
+            turns_torque=bool(np.any(load.torque_world) or (pivoted and np.any(load.gravity))),
+        )
+
+    def load(self, system: System) -> None:
+        """Build the model, forgetting any earlier one. Raises what `build_model` raises."""
+        mujoco = self._mujoco
+        self._model, self._load = None, Load()  # a refused system leaves nothing behind either
+        self._model = build_model(mujoco, system)
+        apply_setup(mujoco, self._model, self._setup)
+        self._load = system.load
+        self._data = mujoco.MjData(self._model)
+        self._stepper = Stepper(mujoco, self._model, self._data)
+        pivot = system.load.pivot
+        center = self._model.body_ipos[BODY].copy()
+        self._coordinates = Coordinates(
+            center if pivot is None else center - pivot, pivot is not None
+        )
+        self._reset()
+
+    def _reset(self, integrator: str = "Euler") -> None:
+        """A clean slate: no memory of earlier calls, the loads acting."""
+        self._mujoco.mj_resetData(self._model, self._data)
+        self._data.qfrc_applied[-3:] = self._load.torque_body
+        self._data.xfrc_applied[BODY, 3:] = self._load.torque_world
+        flag = integrator_flag(self._mujoco, integrator)
+        if flag is None:
+            raise UnsupportedError(f"MuJoCo {self._mujoco.__version__} has no {integrator!r}.")
+        self._model.opt.integrator = flag
+
+    def native(self) -> dict[str, dict[str, str]]:
+        """Conventions as measured of the engine itself, and its defaults."""
+        from omegadot.adapters.mujoco.native import native
+
+        return native(self._mujoco)
+
+    def model(self) -> tuple[Body, ...]:
+        """Mass, centre of mass and inertia, read back from the compiled model."""
+        return (body_of(self._model),)
+
+    def set_state(self, state: State) -> None:
+        """Put MuJoCo in a state, its clock at zero."""
+        self._reset()
+        self._data.qpos[:], self._data.qvel[:] = self._coordinates.of_state(state)
+
+    def get_state(self) -> State:
+        """MuJoCo's present state."""
+        return self._coordinates.to_state(self._data.qpos, self._data.qvel)
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """``qacc`` of ``mj_forward`` at n states, as ω̇ and the centre of mass's acceleration.
+
+        The integrator is set to Euler: under ``discrete`` qacc is a step's difference quotient.
+        """
+        self._reset()
+        model, data, forward = self._model, self._data, self._mujoco.mj_forward
+        qpos, qvel, qacc = data.qpos, data.qvel, data.qacc
+        positions, velocities = self._coordinates.of_state(states)
+        found = np.empty(velocities.shape)
+        for row in range(len(found)):
+            qpos[:] = positions[row]
+            qvel[:] = velocities[row]
+            forward(model, data)
+            found[row] = qacc
+        return self._coordinates.to_acceleration(states, found)
+
+    def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
+        """Torque (n, 3) of ``mj_inverse``, to which MuJoCo's passive (damping) forces are added."""
+        self._reset()
+        model, data, inverse = self._model, self._data, self._mujoco.mj_inverse
+        positions, velocities = self._coordinates.of_state(states)
+        accelerations = self._coordinates.of_acceleration(states, acceleration)
+        found = np.empty(velocities.shape)
+        for row in range(len(found)):
+            data.qpos[:], data.qvel[:] = positions[row], velocities[row]
+            data.qacc[:] = accelerations[row]
+            inverse(model, data)
+            found[row] = data.qfrc_inverse + data.qfrc_passive
+        return self._coordinates.to_torque(states, found)
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        """Step natively. Raises UnsupportedError for an integrator this version lacks."""
+        self._reset(integrator)
+        self._model.opt.timestep = timestep
+        places = self._model.nq
+        with np.errstate(over="ignore", invalid="ignore"):  # a diverged run is shown as it is
+            self._data.qpos[:], self._data.qvel[:] = self._coordinates.of_state(initial)
+            rows = self._stepper.run(steps, every)
+            state = self._coordinates.to_state(rows[:, :places], rows[:, places:])
+        return Trajectory(time=np.array(kept_steps(steps, every)) * timestep, state=state)

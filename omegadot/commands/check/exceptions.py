@@ -1,0 +1,130 @@
+"""Declared exceptions: known failures of an engine, each with its reason and link, held strictly.
+
+A check that an exception matches must fail: one that passes again, and an exception that matches no
+check at all, fail the run. A crash or a time-out is never excused.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import tomllib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from omegadot.adapters.registry import BUILT_IN
+from omegadot.commands.check.result import Check, Result
+from omegadot.harness.plan import EngineChoice
+from omegadot.harness.usage import UsageError, nearest
+
+OWN_FOLDER = Path(__file__).with_name("known")
+SUFFIX = ".exceptions.toml"
+KEYS = ("check", "reason", "link")
+
+
+@dataclass(frozen=True)
+class DeclaredException:
+    """A known failure. check: a pattern of check ids, with * for any characters."""
+
+    engine: str
+    check: str
+    reason: str
+    link: str
+    source: str
+
+    def matches(self, check: Check) -> bool:
+        """Whether it speaks of this check."""
+        return check.engine == self.engine and fnmatchcase(check.id, self.check)
+
+
+def _refuse_unknown(table: dict[str, Any], known: Sequence[str], where: str) -> None:
+    for key in table:
+        if key not in known:
+            raise UsageError(f"{where}: unknown key {key!r}; {nearest(key, known)}.")
+
+
+def read_exceptions(path: Path) -> list[DeclaredException]:
+    """The exceptions of one file: ``engine``, and ``[[exception]]`` with check, reason and link.
+
+    Raises UsageError.
+    """
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as problem:
+        raise UsageError(f"{path}: cannot be read: {problem.strerror}; check the path.") from None
+    except ValueError as problem:
+        raise UsageError(f"{path}: not a TOML file: {problem}.") from None
+    _refuse_unknown(data, ("engine", "exception"), str(path))
+    engine, entries = data.get("engine"), data.get("exception", [])
+    if not isinstance(engine, str) or not isinstance(entries, list):
+        raise UsageError(f'{path}: give engine = "NAME" and its [[exception]] tables.')
+    found = []
+    for number, entry in enumerate(entries, 1):
+        where = f"{path}: exception {number}"
+        _refuse_unknown(entry, KEYS, where)
+        for key in KEYS:
+            if not isinstance(entry.get(key), str) or not entry[key].strip():
+                raise UsageError(f"{where}: {key} is missing or empty; give it as a string.")
+        found.append(DeclaredException(engine, **entry, source=str(path)))
+    return found
+
+
+def _beside(target: str) -> Path | None:
+    """Where an adapter's own exceptions stand: module.exceptions.toml beside module.py."""
+    module = target.rpartition(":")[0]
+    if module.endswith(".py"):
+        return Path(module).with_suffix(SUFFIX)
+    package, *rest = module.split(".")
+    spec = importlib.util.find_spec(package)  # the package alone: nothing of it is imported
+    if spec is None or spec.origin is None:
+        return None
+    folder = Path(spec.origin).parent
+    return folder.joinpath(*(rest or [package])).with_suffix(SUFFIX)
+
+
+def exceptions_of(
+    choices: Iterable[EngineChoice], files: Iterable[Path]
+) -> list[DeclaredException]:
+    """The exceptions of some engines: the project's own, those beside an adapter, those of files.
+
+    Raises UsageError.
+    """
+    found: list[DeclaredException] = []
+    names = set()
+    for choice in choices:
+        names.add(choice.name)
+        built_in = BUILT_IN.get(choice.name) == choice.target
+        path = OWN_FOLDER / f"{choice.name}.toml" if built_in else _beside(choice.target)
+        if path is not None and path.is_file():
+            found += read_exceptions(path)
+    for path in files:
+        found += read_exceptions(path)
+    return [exception for exception in found if exception.engine in names]
+
+
+def no_longer_fails(exception: DeclaredException) -> str:
+    """What is said of a declared exception whose check passes."""
+    return (
+        f"passes, though {exception.source} declares that it fails ({exception.reason}): "
+        "take the exception out, or narrow its pattern."
+    )
+
+
+def matches_nothing(exception: DeclaredException) -> str:
+    """What is said of a declared exception that speaks of no check."""
+    return f"{exception.source}: {exception.check!r} matches no check; mend it or take it out."
+
+
+def with_exceptions(
+    check: Check, result: Result, exceptions: Iterable[DeclaredException]
+) -> Result:
+    """A failure that is declared becomes "declared"; a pass that is declared to fail fails."""
+    exception = next((e for e in exceptions if e.matches(check)), None)
+    if exception is None:
+        return result
+    if result.verdict == "fail":
+        text = f"{exception.reason} ({exception.link}): {result.message}"
+        return Result("declared", text, result.outcome)
+    return Result("fail", no_longer_fails(exception)) if result.verdict == "pass" else result

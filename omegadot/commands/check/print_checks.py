@@ -1,0 +1,80 @@
+"""The checks as a table, scenario by gate, and below it what failed and why."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from omegadot.commands.check.result import Check, Result, Verdict
+from omegadot.reports.text.numbers import times
+
+ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
+STYLES = {"error": "bold magenta", "fail": "bold red", "declared": "yellow", "skip": "dim"}
+WIDTH_WHEN_PIPED = 200
+
+
+def _cell(verdicts: Counter[Verdict]) -> Text:
+    """The worst verdict, with how many checks share it where there are several kinds."""
+    if not verdicts:
+        return Text("-", "dim")
+    worst = next(verdict for verdict in ORDER if verdicts[verdict])
+    total = sum(verdicts.values())
+    sentence = worst if verdicts[worst] == total else f"{worst} {verdicts[worst]}/{total}"
+    return Text(sentence, STYLES.get(worst, "green"))
+
+
+def _table(results: Mapping[Check, Result]) -> Table:
+    scenarios = list(dict.fromkeys(check.scenario for check in results if check.scenario))
+    gates = list(dict.fromkeys(check.gate for check in results if check.scenario))
+    cells: dict[tuple[str, str], Counter[Verdict]] = {}
+    for check, result in results.items():
+        cells.setdefault((check.scenario, check.gate), Counter())[result.verdict] += 1
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
+    for name in ("scenario", *gates):
+        table.add_column(name, no_wrap=True)
+    for scenario in scenarios:
+        row = [_cell(cells.get((scenario, gate), Counter())) for gate in gates]
+        table.add_row(Text(scenario), *row)
+    return table
+
+
+def _grouped(results: Mapping[Check, Result], verdict: str) -> dict[str, list[Check]]:
+    """The checks of one verdict by their message."""
+    found: dict[str, list[Check]] = {}
+    for check, result in results.items():
+        if result.verdict == verdict:
+            found.setdefault(result.message, []).append(check)
+    return found
+
+
+def _counts(results: Mapping[Check, Result]) -> str:
+    counts = Counter(result.verdict for result in results.values())
+    parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
+    return f"{times(len(results), 'check')}: {parts}." if parts else "There is nothing to check."
+
+
+def print_checks(
+    heads: Iterable[str], results: Mapping[Check, Result], closing: Sequence[str]
+) -> None:
+    """Print the table, then every error, failure and declared exception, then why some are left."""
+    width = None if sys.stdout.isatty() else WIDTH_WHEN_PIPED
+    console = Console(width=width, highlight=False, soft_wrap=True)
+    for line in heads:
+        console.print(Text(line, "bold"))
+    if any(check.scenario for check in results):
+        console.print(_table(results))
+    for verdict in ("error", "fail", "declared"):
+        for message, checks in _grouped(results, verdict).items():
+            for check in checks:
+                console.print(Text(f"{verdict.upper()}  {check.id}", STYLES[verdict]))
+            console.print(Text(f"    {message}"))
+    for reason, checks in _grouped(results, "skip").items():
+        console.print(Text(f"skip  {times(len(checks), 'check')}: {reason}", "dim"))
+    for line in closing:
+        console.print(Text(line))
+    console.print(Text(_counts(results), "bold"))

@@ -1,0 +1,78 @@
+"""A choice as plain tables, lists and numbers: what is printed, drawn and stored."""
+
+from __future__ import annotations
+
+from omegadot.commands.choose.case_document import CaseDocument
+from omegadot.commands.choose.chooser import Choice
+from omegadot.commands.choose.eligible import python_note
+from omegadot.commands.choose.ranking import ranked
+from omegadot.commands.choose.requirements import ACCURACY, Requirements
+from omegadot.commands.choose.spread import total
+from omegadot.commands.choose.trial_rows import Row, spread_row
+
+SCHEMA = 1
+
+
+def requirements_row(wanted: Requirements) -> Row:
+    """What was asked for, limits in SI beside the words they were given in."""
+    limits = [
+        {
+            "requirement": key,
+            "limit": limit,
+            "unit": ACCURACY[key][1],
+            "asked": wanted.requested[key],
+        }
+        for key, limit in wanted.limits.items()
+    ]
+    rest = {k: v for k, v in vars(wanted).items() if k not in ("limits", "asked")}
+    return {"accuracy": limits, **rest}
+
+
+def engine_rows(choice: Choice, wanted: Requirements) -> list[Row]:
+    """Every engine: what it is, or why it did not start."""
+    rows: list[Row] = []
+    for engine in choice.engines:
+        own = engine.description
+        rows.append(
+            {"name": engine.name, "installed": True, "version": own.version}
+            | {"licence": own.licence, "precision": own.precision, "reason": ""}
+            | {"integrators": [vars(integrator) for integrator in own.integrators]}
+            | {"refused": choice.refused.get(engine.name, [])}
+            | {"note": python_note(engine.name, wanted.python)}
+            | {"memory": choice.memory.get(engine.name)}
+        )
+    for missing, answer in choice.missing:
+        rows.append(
+            {"name": missing.name, "installed": False, "version": "", "integrators": []}
+            | {"outcome": answer.outcome, "reason": answer.reason, "refused": [], "note": ""}
+        )
+    return rows
+
+
+def document(choice: Choice, wanted: Requirements) -> Row:
+    """The whole choice: requirements, engines, cases, and who qualifies in every case."""
+    cases = [CaseDocument(choice, found, wanted) for found in choice.cases]
+    return {
+        "schema": SCHEMA,
+        "kind": "choice",
+        "requirements": requirements_row(wanted),
+        "engines": engine_rows(choice, wanted),
+        "scenarios": [case.row() for case in cases],
+        "everywhere": _everywhere(cases),
+        "worker_deaths": [{"engine": name, "how": how} for name, how in choice.deaths],
+    }
+
+
+def _everywhere(cases: list[CaseDocument]) -> list[Row]:
+    """Of several cases: the candidates that qualify in all, by the time they take for all."""
+    if len(cases) < 2:
+        return []
+    costs = [case.qualified() for case in cases]
+    names = [name for name in costs[0] if all(name in own for own in costs)]
+    totals = {name: total([own[name] for own in costs]) for name in names}
+    return [
+        {"candidate": place.key, "rank": place.rank, "tied": place.tied}
+        | {"seconds": spread_row(totals[place.key])}
+        | {"timesteps": [case.timestep(place.key) for case in cases]}
+        for place in ranked(totals)
+    ]

@@ -1,0 +1,86 @@
+"""What is to be simulated: scenarios by name or path, or a body of one's own set in motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from omegadot.gates.case import Case
+from omegadot.harness.arguments import case_of, scenarios_of
+from omegadot.harness.usage import UsageError
+from omegadot.scenarios import Scenario, scenario_of
+from omegadot.scenarios.links import body_of_word
+
+STEPS_TO_BEGIN = (500, 1000, 2000)  # a horizon, where no scenario says which steps are usual
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The words of the command line that say what moves and how.
+
+    body: ``FILE#LINK`` or a TOML file.  duration: s, over the scenarios' own.
+    """
+
+    scenarios: Sequence[str] = ()
+    body: str | None = None
+    angular_velocity: tuple[float, float, float] | None = None
+    orientation: tuple[float, float, float, float] | None = None
+    duration: float | None = None
+
+
+def cases_of(motion: Motion) -> list[Case]:
+    """The cases to choose for. Raises UsageError and ScenarioError."""
+    return [case_of(scenario, ()) for scenario in _scenarios(motion)]
+
+
+def _scenarios(motion: Motion) -> list[Scenario]:
+    if motion.scenarios:
+        chosen = [scenario.to_dict() for scenario in scenarios_of(motion.scenarios)]
+    elif motion.body is not None:
+        chosen = [_bare(motion)]
+    else:
+        raise UsageError("nothing to simulate; give a SCENARIO or --body FILE#LINK.")
+    return [_changed(data, motion) for data in chosen]
+
+
+def _bare(motion: Motion) -> dict[str, Any]:
+    """A free body that is thrown, with nothing acting on it."""
+    for given, option in (
+        (motion.angular_velocity, "--angular-velocity X Y Z"),
+        (motion.duration, "--duration S"),
+    ):
+        if given is None:
+            raise UsageError(f"--body: no scenario says how it moves; give one, or {option}.")
+    return {"schema": 1, "name": "body", "initial": {}, "run": {}}
+
+
+def _changed(data: dict[str, Any], motion: Motion) -> Scenario:
+    """The scenario with the body, the start and the horizon that were given."""
+    where = str(data["name"])
+    if motion.body is not None:
+        where = motion.body
+        named = body_of_word(motion.body)
+        own = f"{named.name} in {data['name']}" if motion.scenarios else named.name
+        data = {**data, "body": named.body, "title": own, "shows": None, "source": None}
+        data = {key: value for key, value in data.items() if value is not None}
+        if not motion.scenarios:
+            data["name"] = named.kebab
+    if motion.angular_velocity is not None:
+        given = list(motion.angular_velocity)
+        data = {**data, "initial": {**data["initial"], "angular_velocity": given}}
+    if motion.orientation is not None:
+        given = list(motion.orientation)
+        data = {**data, "initial": {**data["initial"], "orientation": given}}
+    if motion.duration is not None:
+        data = {**data, "run": _run_of(data["run"], motion.duration)}
+    return scenario_of(data, where)
+
+
+def _run_of(run: dict[str, Any], duration: float) -> dict[str, Any]:
+    steps = [step for step in run.get("timesteps", ()) if step <= duration]
+    return {
+        "duration": duration,
+        "timesteps": steps or [duration / count for count in STEPS_TO_BEGIN],
+        "sample": min(run.get("sample", duration / STEPS_TO_BEGIN[0]), duration),
+    }

@@ -1,0 +1,143 @@
+"""What is asked of an engine: how exact, how fast, and what it must be."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Literal
+
+from omegadot.commands.choose.units import quantity
+from omegadot.harness.usage import UsageError, nearest
+
+Precision = Literal["double", "single"]
+# Requirement: the kind of its quantity, and the unit in which it is kept and shown.
+ACCURACY: dict[str, tuple[str, str]] = {
+    "attitude": ("angle", "rad"),
+    "omega": ("rate", "rad/s"),
+    "energy-drift": ("ratio", "1"),
+    "momentum-drift": ("ratio", "1"),
+    "linear-momentum-drift": ("ratio", "1"),
+    "flip-time": ("time", "s"),
+}
+FEATURES = (
+    *("free", "pivot", "gravity", "damping", "torque", "full-inertia", "offset-com"),
+    *("forward-dynamics", "inverse-dynamics", "batch"),
+)
+OTHERS = ("real-time-factor", "precision", "feature", "licence", "python", "duration")
+KEYS = (*ACCURACY, *OTHERS)
+PRECISIONS: dict[str, Precision] = {
+    "double": "double", "float64": "double", "single": "single", "float32": "single"
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """limits: the greatest error by requirement, SI.  duration: s, None for the scenario's own.
+
+    asked: every limit as it was written.  licences: those allowed, any when empty.
+    """
+
+    limits: dict[str, float]
+    requested: dict[str, str]
+    real_time_factor: float | None = None
+    precision: Precision | None = None
+    features: tuple[str, ...] = ()
+    licences: tuple[str, ...] = ()
+    python: str | None = None
+    duration: float | None = None
+
+    def scaled(self, key: str, factor: float) -> Requirements:
+        """The same with one limit multiplied."""
+        return replace(self, limits={**self.limits, key: self.limits[key] * factor})
+
+
+def _texts(value: object, where: str) -> list[str]:
+    items = value if isinstance(value, list | tuple) else [value]
+    if not all(isinstance(item, str) for item in items):
+        raise UsageError(f"{where} is {value!r}; give a text or a list of texts.")
+    return [str(item) for item in items]
+
+
+def _features(value: object, where: str) -> tuple[str, ...]:
+    found = [text.strip().replace("_", "-") for text in _texts(value, where)]
+    for name in found:
+        if name not in FEATURES:
+            raise UsageError(f"{where}: there is no feature {name!r}; {nearest(name, FEATURES)}.")
+    return tuple(dict.fromkeys(found))
+
+
+def _precision(value: object, where: str) -> Precision:
+    found = PRECISIONS.get(str(value))
+    if found is None:
+        raise UsageError(f"{where}: {value!r} is no precision; write double or single.")
+    return found
+
+
+def _python(value: object, where: str) -> str:
+    if not isinstance(value, str) or not re.fullmatch(r"3\.\d{1,2}", value.strip()):
+        raise UsageError(f'{where}: {value!r} is no Python version; write it as "3.12".')
+    return value.strip()
+
+
+def _licences(value: object, where: str) -> tuple[str, ...]:
+    found = _texts(value, where)
+    if not all(text.strip() for text in found):
+        raise UsageError(f"{where}: an empty name; give one such as Apache-2.0.")
+    return tuple(dict.fromkeys(text.strip() for text in found))
+
+
+def requirements_of(given: Mapping[str, Any], places: Mapping[str, str]) -> Requirements:
+    """The requirements of keys and values as they were written.
+
+    places: where each key stands, for errors.  Raises UsageError, also where none asks for an
+    accuracy: without one every step is good enough, and the largest is no answer.
+    """
+    limits, requested = {}, {}
+    for key, (kind, _) in ACCURACY.items():
+        if key in given:
+            limits[key] = quantity(given[key], kind, places[key])
+            requested[key] = str(given[key])
+    if not limits:
+        named = ", ".join(f"--{key}" for key in ACCURACY)
+        raise UsageError(f"nothing is asked of the accuracy; give at least one of {named}.")
+    read: dict[str, tuple[str, Callable[[Any, str], Any]]] = {
+        "real_time_factor": ("real-time-factor", partial(_quantity, "factor")),
+        "precision": ("precision", _precision),
+        "features": ("feature", _features),
+        "licences": ("licence", _licences),
+        "python": ("python", _python),
+        "duration": ("duration", partial(_quantity, "time")),
+    }
+    rest: dict[str, Any] = {
+        field: reader(given[key], places[key])
+        for field, (key, reader) in read.items()
+        if key in given
+    }
+    return Requirements(limits, requested, **rest)
+
+
+def _quantity(kind: str, value: object, where: str) -> float:
+    return quantity(value, kind, where)
+
+
+def known_key(argument: str, where: str) -> str:
+    """The requirement that a key of a file names. Raises UsageError with the nearest name."""
+    aliases = {"features": "feature", "licences": "licence", "license": "licence"}
+    key = argument.replace("_", "-")
+    key = aliases.get(key, key)
+    if key not in KEYS:
+        raise UsageError(f"{where}: there is no requirement {argument!r}; {nearest(key, KEYS)}.")
+    return key
+
+
+def merged(file: Mapping[str, Any], line: Mapping[str, Any], path: str) -> Requirements:
+    """The file's requirements with those of the command line over them. Raises UsageError."""
+    given = {key: value for key, value in line.items() if not _is_empty(value)}
+    places = {key: f"{path}: {key}" for key in file} | {key: f"--{key}" for key in given}
+    return requirements_of({**file, **given}, places)
+
+
+def _is_empty(value: object) -> bool:
+    return value is None or (isinstance(value, Sequence) and not value)

@@ -1,0 +1,164 @@
+"""The largest step that meets the limits, sought over whole numbers of steps a horizon.
+
+Observed orders say where to look next; only runs decide. With `steps` counting the steps of the
+horizon, more of them are a smaller step. An error need not rise with the step, so what is found is
+the largest step of which this holds: it passes, every smaller one that was tried passes, and the
+next larger one that was tried fails.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from omegadot.commands.choose.trial import Trial
+
+EDGE = 1.05  # how far apart a passing step and a failing larger one may be left
+ASIDE = 1.015  # how far beside the edge that the order predicts to look
+LEAP = 32.0  # the order of two coarse runs is not trusted any further
+BLIND = 4.0  # the leap where no order shows
+WORTH = 1.25  # how much finer a last run must be that shows the nearest an integrator comes
+SATURATED = 0.5  # an error of lower order than this has nothing to do with the step
+STEEPEST = 8.0
+MOST_RUNS = 32
+CONFIRMED = (1 / 1.1, 1.1, 1.5)  # steps a horizon, over those found, that are tried besides
+
+
+@dataclass(frozen=True)
+class Range:
+    """Fewest and most steps a horizon that may be tried; the most may depend on the last run."""
+
+    fewest: int
+    most: Callable[[], int]
+
+
+@dataclass(frozen=True)
+class Edge:
+    """passing: the run found, None where there is none.  failing: the next larger step tried.
+
+    again: a still larger step that passes, though `failing` does not.
+    """
+
+    passing: Trial | None
+    failing: Trial | None
+    again: Trial | None = None
+
+
+Trials = dict[int, Trial]
+Evaluate = Callable[[int], Trial]
+Seeking = Callable[[Trials, Evaluate, Mapping[str, float], Range, float], Edge]
+
+
+def edge_of(trials: Mapping[int, Trial], limits: Mapping[str, float]) -> Edge:
+    """What the runs that were made so far show."""
+    failing = [n for n, trial in trials.items() if not trial.passes(limits)]
+    finest = max(failing, default=0)
+    passing = [n for n in trials if n > finest]
+    beyond = [n for n in trials if n < finest and trials[n].passes(limits)]
+    return Edge(
+        trials[min(passing)] if passing else None,
+        trials[finest] if failing else None,
+        trials[min(beyond)] if beyond else None,
+    )
+
+
+def order_between(one: Trial, other: Trial, limits: Mapping[str, float]) -> float | None:
+    """The order of the ratio between a coarser run and a finer; None where it shows none."""
+    coarse, fine = one.ratio(limits), other.ratio(limits)
+    if not (math.isfinite(coarse) and math.isfinite(fine) and coarse > 0.0 and fine > 0.0):
+        return None
+    order = math.log(coarse / fine) / math.log(other.steps / one.steps)
+    return None if order < SATURATED else min(order, STEEPEST)
+
+
+def _outward(trials: Trials, limits: Mapping[str, float], known: Trial, declared: float) -> int:
+    """Steps a horizon at which the limits are predicted to be just met, from one side only."""
+    others = sorted((t for t in trials.values() if t is not known), key=lambda t: t.steps)
+    near = min(others, key=lambda t: abs(math.log(t.steps / known.steps)), default=None)
+    ratio = known.ratio(limits)
+    order: float | None = declared
+    if near is not None:
+        coarse, fine = sorted((near, known), key=lambda t: t.steps)
+        order = order_between(coarse, fine, limits)
+    if order is None or not 0.0 < ratio < math.inf:
+        leap = BLIND if ratio > 1.0 else 1.0 / BLIND
+    else:
+        leap = min(max(ratio ** (1.0 / order), 1.0 / LEAP), LEAP)
+    aside = ASIDE if ratio > 1.0 else 1.0 / ASIDE
+    return round(known.steps * leap * aside)
+
+
+def _inward(edge: tuple[Trial, Trial], limits: Mapping[str, float], blindly: bool) -> int:
+    """Steps between a failing and a passing run: beside the predicted edge, or in the middle."""
+    failing, passing = edge
+    order = order_between(failing, passing, limits)
+    if blindly or order is None:
+        return round(math.sqrt(failing.steps * passing.steps))
+    predicted = float(failing.steps * failing.ratio(limits) ** (1.0 / order))
+    if passing.steps / predicted > EDGE / ASIDE:
+        return math.ceil(predicted * ASIDE)
+    return math.floor(predicted / ASIDE)
+
+
+def _next(
+    trials: Trials, limits: Mapping[str, float], among: Range, declared: float, blindly: bool
+) -> int | None:
+    """Where to run next; None where the edge is known well enough or out of reach."""
+    edge = edge_of(trials, limits)
+    failing, passing = edge.failing, edge.passing
+    if failing is not None and passing is not None:
+        if passing.steps <= max(EDGE * failing.steps, failing.steps + 1):
+            return None
+        wanted = _inward((failing, passing), limits, blindly)
+        return min(max(wanted, failing.steps + 1), passing.steps - 1)
+    if failing is not None:
+        wanted = max(_outward(trials, limits, failing, declared), failing.steps + 1)
+        most = among.most()
+        if wanted <= most:
+            return wanted
+        return most if most > WORTH * failing.steps else None
+    assert passing is not None  # the first run has been made
+    if passing.steps <= among.fewest:
+        return None
+    wanted = _outward(trials, limits, passing, declared)
+    return max(min(wanted, passing.steps - 1), among.fewest)
+
+
+def largest_step(
+    trials: Trials, evaluate: Evaluate, limits: Mapping[str, float], among: Range, declared: float
+) -> Edge:
+    """Seek from the runs in `trials`, of which there is one at least; every new one goes there.
+
+    declared: the order to begin with.
+    """
+    for count in range(MOST_RUNS):
+        wanted = _next(trials, limits, among, declared, blindly=count > MOST_RUNS // 4)
+        if wanted is None:
+            break
+        trials[wanted] = evaluate(wanted)
+    return edge_of(trials, limits)
+
+
+def confirmed(
+    trials: Trials, evaluate: Evaluate, limits: Mapping[str, float], among: Range, declared: float
+) -> Edge:
+    """As `largest_step`, and then runs beside the edge that could prove it wrong, until none does.
+
+    A step of a tenth more is tried, and steps of a tenth and a third less.
+    """
+    edge = largest_step(trials, evaluate, limits, among, declared)
+    for _ in range(MOST_RUNS):
+        found = edge.passing
+        if found is None:
+            break
+        beside = [math.floor(found.steps * f) if f < 1 else math.ceil(found.steps * f)
+                  for f in CONFIRMED]  # fmt: skip
+        inside = [n for n in beside if among.fewest <= n <= max(among.most(), found.steps)]
+        for steps in inside:
+            if steps not in trials:
+                trials[steps] = evaluate(steps)
+        edge = largest_step(trials, evaluate, limits, among, declared)
+        if edge.passing is not None and edge.passing.steps == found.steps:
+            break
+    return edge

@@ -1,0 +1,1 @@
+"""``omegadot compare``: what changed from one record to another."""

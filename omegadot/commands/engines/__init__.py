@@ -1,0 +1,1 @@
+"""``omegadot engines``: what is installed and how each engine is set up."""

@@ -1,0 +1,22 @@
+"""The words of ``omegadot engines``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from omegadot.commands.options import Format
+
+
+def engines(
+    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+    adapter: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
+    ] = None,
+) -> None:
+    """List the engines: installed or not, versions, integrators, conventions, what is off."""
+    from omegadot.commands.engines.engines import print_engines
+
+    print_engines(adapter or [], as_json=output is Format.json)

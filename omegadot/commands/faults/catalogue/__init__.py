@@ -1,0 +1,1 @@
+"""The faults, a file a kind; `every` has all of them."""

@@ -1,0 +1,120 @@
+"""Faults of the equation of motion itself: the gyroscopic term, and what is told of omega-dot."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.commands.faults.catalogue.load import ExtraTorque
+from omegadot.commands.faults.fault import Spoiled, fault
+from omegadot.diagnosis.restep import on_rows
+from omegadot.gates.scales import norm
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.rotations import rotate
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.symmetric import apply
+from omegadot.reference_impl.system import Acceleration, Array, State
+
+
+class Gyroscopic(ExtraTorque):
+    """The gyroscopic term ``omega x I omega`` times `factor`."""
+
+    factor = 1.0
+
+    def torque(self, state: State) -> Array:
+        """What the term has too little."""
+        w = state.angular_velocity
+        return (1.0 - self.factor) * cross(w, apply(moving_inertia(self.system), w))
+
+
+@fault("equation", "equation", "asymmetric")
+class GyroscopicDropped(Gyroscopic):
+    """The gyroscopic term is missing."""
+
+    factor = 0.0
+
+
+@fault("equation", "equation", "asymmetric")
+class GyroscopicReversed(Gyroscopic):
+    """The gyroscopic term has the wrong sign, as equation (9) is printed."""
+
+    factor = -1.0
+
+
+@fault("equation", "equation", "asymmetric")
+class GyroscopicDoubled(Gyroscopic):
+    """The gyroscopic term counts twice."""
+
+    factor = 2.0
+
+
+@fault("equation", "equation", "asymmetric")
+class GyroscopicOnePercentOff(Gyroscopic):
+    """The gyroscopic term is 1 % too large."""
+
+    factor = 1.01
+
+
+@fault("equation", "equation", "asymmetric")
+class GyroscopicSlightlyOff(Gyroscopic):
+    """The gyroscopic term is 0.01 % too large."""
+
+    factor = 1.0001
+
+
+@fault("equation", "equation", "asymmetric")
+class OmegaDotInWorld(Spoiled):
+    """omega-dot is right and told in world axes."""
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """Turned into the world."""
+        found = super().forward_dynamics(states)
+        return Acceleration(rotate(states.orientation, found.angular), found.linear)
+
+
+@fault("equation", "equation", "asymmetric")
+class OmegaDotConstant(Spoiled):
+    """omega-dot is that of the first state asked for, whatever comes after."""
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """The first for all."""
+        found = super().forward_dynamics(states)
+        return Acceleration(np.broadcast_to(found.angular[:1], found.angular.shape), found.linear)
+
+
+@fault("equation", "equation", "asymmetric")
+class OmegaDotByDifference(Spoiled):
+    """omega-dot is a difference quotient over a short step, passed off as exact."""
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """``(omega(t + h) - omega(t)) / h`` with h a ten-thousandth of a radian's time."""
+        found = super().forward_dynamics(states)
+        h = 1e-4 / np.max(norm(states.angular_velocity))
+        moved = SCHEMES["lie-rk4"].step(on_rows(super().forward_dynamics), states, float(h))
+        placed = place_on_pivot(self.system, moved)
+        quotient = (placed.angular_velocity - states.angular_velocity) / h
+        return Acceleration(quotient, found.linear)
+
+
+@fault("equation", "equation", "offset")
+class AccelerationOfOrigin(Spoiled):
+    """The linear acceleration told is that of the body's origin."""
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """Back along the lever to the origin."""
+        found, w = super().forward_dynamics(states), states.angular_velocity
+        c = self.system.body.center_of_mass
+        lever = cross(found.angular, c) + cross(w, cross(w, c))
+        return Acceleration(found.angular, found.linear - rotate(states.orientation, lever))
+
+
+@fault("equation", "equation", "asymmetric")
+class InverseWithoutGyroscopic(Spoiled):
+    """Inverse dynamics leaves out the gyroscopic term; all else is sound."""
+
+    def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
+        """The torque less ``omega x I omega``."""
+        w = states.angular_velocity
+        term = cross(w, apply(moving_inertia(self.system), w))
+        return super().inverse_dynamics(states, acceleration) - term

@@ -1,0 +1,76 @@
+"""One engine, sound or not, on one random case: which gates fail, and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.adapters.protocol import Adapter, Integrator
+from omegadot.commands.faults.prepared import Pool, Prepared
+from omegadot.gates.rows import Row
+from omegadot.gates.verdicts import UNDECIDED
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.in_process import driver_of
+from omegadot.harness.judge import JudgedRun, judge_case, shared_rows
+from omegadot.harness.unknown_schemes import probe_unknown_schemes
+
+GATES = ("model", "equation", "scheme", "invariants", "trajectory")
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """failed: the gates that fail.  broken: what could not be asked at all, in words."""
+
+    failed: frozenset[str]
+    broken: str
+    rows: tuple[Row, ...]
+    result: CaseResult
+    runs: tuple[JudgedRun, ...]
+
+
+def chosen_integrators(integrators: tuple[Integrator, ...]) -> tuple[Integrator, ...]:
+    """The first integrator of order 1 and the first of order 4, whichever there are."""
+    picked: dict[int, Integrator] = {}
+    for integrator in integrators:
+        if integrator.scheme is not None:
+            picked.setdefault(integrator.orders["attitude"], integrator)
+    return tuple(picked[order] for order in (1, 4) if order in picked)
+
+
+def _fails(row: Row) -> bool:
+    """A failure that no finer step could lift."""
+    return row.verdict == "fail" and not row.note.startswith(UNDECIDED)
+
+
+def judge(
+    pool: Pool,
+    prepared: Prepared,
+    name: str,
+    adapter: Adapter,
+    integrators: tuple[Integrator, ...] = (),
+) -> Judgement:
+    """Put an engine through the gates, with one integrator of order 1 and one of order 4.
+
+    integrators: those to run instead.
+
+    The adapter may have seen other cases: what it keeps of them shows, as it does in any run. No
+    refinement is run, and what one could still decide does not count as failed.
+    """
+    case = prepared.case
+    chosen = integrators or chosen_integrators(adapter.description.integrators)
+    driver = driver_of(name, adapter, chosen)
+    result = driver.evaluate_equations(case, prepared.evaluation)
+    pool.step_beside(prepared, result.integrators)
+    result.runs.update(driver.run_all(case, lambda: None))
+    probe_unknown_schemes(driver, case, prepared.evaluation, result)
+    with np.errstate(all="ignore"):  # a wrong engine may give any numbers
+        shared = shared_rows(case, prepared.evaluation, result)
+        runs = judge_case(prepared.truth, case, result, {})
+    rows = (*shared, *(row for run in runs for row in run.rows))
+    failure = result.first_failure()
+    answers = [failure] if failure else []
+    answers += [a for a in result.runs.values() if a.outcome not in ("ok", "unsupported")]
+    broken = f"{answers[0].outcome}: {answers[0].reason}" if answers else ""
+    failed = frozenset(row.gate for row in rows if _fails(row))
+    return Judgement(failed, broken, rows, result, tuple(runs))

@@ -1,0 +1,161 @@
+"""The detection matrix in words: tables for the terminal and the page, plain values for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from omegadot.commands.faults.detect import GATES
+from omegadot.commands.faults.matrix import Detection, EngineMatrix
+from omegadot.commands.faults.published_checks import PUBLISHED
+
+HEADS = (
+    "fault",
+    *GATES,
+    "any gate",
+    "cause named",
+    "no scheme",
+    *(check.name for check in PUBLISHED),
+)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """engines, bodies and seed as they were asked for."""
+
+    engines: tuple[str, ...]
+    bodies: int
+    seed: int
+
+    @property
+    def command(self) -> str:
+        """The command that gives this page."""
+        named = " ".join(f"--engine {name}" for name in self.engines)
+        return (
+            f"omegadot faults {named} --bodies {self.bodies} --seed {self.seed} --format markdown"
+        )
+
+
+def share(value: float | None) -> str:
+    """A share in per cent; a dash where there is none to tell."""
+    return "–" if value is None else f"{100 * value:.0f}"
+
+
+def line_of(row: Detection) -> tuple[str, ...]:
+    """One fault's line."""
+    gates = (share(row.gates[gate]) for gate in GATES)
+    published = (share(row.published[check.name]) for check in PUBLISHED)
+    return (
+        row.fault.name,
+        *gates,
+        share(row.any),
+        share(row.named),
+        share(row.no_scheme),
+        *published,
+    )
+
+
+def summary_of(matrix: EngineMatrix) -> list[str]:
+    """What the table comes to, a sentence a line."""
+    rows = matrix.rows
+    missed = [row.fault.name for row in rows if row.judged and row.any < 1.0]
+    unseen = [row.fault.name for row in rows if row.judged and row.no_scheme < 1.0]
+    named = sum(row.judged > 0 and row.named == 1.0 for row in rows)
+    integrators = " and ".join(matrix.integrators)
+    lines = [
+        f"{matrix.engine} {matrix.version}, {integrators}: {len(rows)} faults, of which "
+        f"{len(rows) - len(missed)} were caught on every body"
+        + (f"; not always: {', '.join(missed)}." if missed else "."),
+        f"The cause was named on every body for {named} of them.",
+        f"Without a declared scheme, {len(rows) - len(unseen)} were caught on every body"
+        + (f"; not always: {', '.join(unseen)}." if unseen else "."),
+        f"Without a fault, {matrix.accused} of {matrix.sound} bodies were accused, and without a "
+        f"declared scheme {matrix.accused_nameless}.",
+    ]
+    if matrix.skipped:
+        lines.append(f"Not tried, for want of an integrator: {', '.join(matrix.skipped)}.")
+    refused = [row.fault.name for row in rows if row.broken]
+    if refused:
+        lines.append(f"On some bodies the engine gave no answer: {', '.join(refused)}.")
+    if matrix.published_accuse:
+        lines.append(f"Accused without a fault by: {', '.join(matrix.published_accuse)}.")
+    return lines
+
+
+def plain(settings: Settings, matrices: Sequence[EngineMatrix]) -> dict[str, Any]:
+    """Everything, for machines."""
+    return {
+        "bodies": settings.bodies,
+        "seed": settings.seed,
+        "published": [
+            {"name": check.name, "bound": check.bound, "source": check.source}
+            for check in PUBLISHED
+        ],
+        "engines": [_plain_engine(matrix) for matrix in matrices],
+    }
+
+
+def _plain_engine(matrix: EngineMatrix) -> dict[str, Any]:
+    kept = {k: v for k, v in vars(matrix).items() if k != "rows"}
+    return {**kept, "faults": [_plain_row(row) for row in matrix.rows]}
+
+
+def _plain_row(row: Detection) -> dict[str, Any]:
+    fault = row.fault
+    reported = {k: v for k, v in vars(row).items() if k != "fault"}
+    return {
+        "name": fault.name,
+        "sentence": fault.sentence,
+        "kind": fault.kind,
+        "needs": sorted(fault.needs),
+        "expected": list(fault.gates),
+        **reported,
+    }
+
+
+HEAD = """\
+# Wrong engines, and what catches them
+
+<!-- Made by a command. Do not edit; run it again:
+{command} > docs/faults.md -->
+
+This page is the output of `{command}`.
+
+**How to read it.** Every fault is put into a sound engine, and the engine through the gates on
+{bodies} random bodies that have what the fault needs to show at all: masses and rates over two
+decades, sizes over one, tensors in any axes, centres of mass off the origin or on it, free, driven,
+damped and hung. A number is the share of these bodies, in per cent, on which a gate fails;
+*any gate* is what decides. What a finer step could still decide is not counted. *Cause named* is
+the share on which `omegadot` says in words what is wrong, and is right. *No scheme* is *any gate*
+again, of the same engine with integrators that declare their orders only, so that there is no run
+of the reference to hold them against; a fault that makes another scheme of the same order is none
+then (`PositionByFirstVelocity` of an engine of order 1). Each engine runs with one integrator of
+order 1 and, where it has one, one of order 4.
+
+**The published checks** beside them are tests that engines ship with, put to the same faulty
+engines as they stand: the same body, rates, step, length and bounds, from {bodies} random
+attitudes. A dash says that the check's scenarios, or the engine's integrators, lack what the fault
+needs. The facts of Drake's check were read in its repository (`free_body.h` beside the test gives
+the moments); its own integrator is of order 3 with error control and integrates from one attitude,
+and here one of order 4 takes its largest step.
+"""
+
+
+def markdown(settings: Settings, matrices: Sequence[EngineMatrix]) -> str:
+    """The page."""
+    parts = [HEAD.format(command=settings.command, bodies=settings.bodies)]
+    parts.append("\n".join(f"- **{c.name}**: {c.bound} (`{c.source}`)." for c in PUBLISHED) + "\n")
+    for matrix in matrices:
+        parts.append(f"## Over {matrix.engine}\n")
+        parts.append("\n".join(summary_of(matrix)) + "\n")
+        lines = [HEADS, ("---", *("---:",) * (len(HEADS) - 1)), *map(line_of, matrix.rows)]
+        parts.append("\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n")
+    parts.append("## The faults\n")
+    faults = {row.fault.name: row.fault for matrix in matrices for row in matrix.rows}
+    described = [("fault", "what is wrong", "kind", "needs"), ("---",) * 4]
+    for fault in faults.values():
+        needs = ", ".join(sorted(fault.needs)) or "nothing"
+        described.append((fault.name, fault.sentence, fault.kind, needs))
+    parts.append("\n".join(f"| {' | '.join(line)} |" for line in described) + "\n")
+    return "\n".join(parts)

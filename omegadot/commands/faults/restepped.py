@@ -1,0 +1,63 @@
+"""Faults in the dynamics, the scheme or the step: the engine's own dynamics, stepped again."""
+
+from __future__ import annotations
+
+from omegadot.adapters.protocol import Integrator, Trajectory
+from omegadot.adapters.reference.adapter import ReferenceAdapter
+from omegadot.commands.faults.fault import Spoiled
+from omegadot.diagnosis.restep import on_rows, step_anew
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.schemes import SCHEMES, AccelerationOf, Scheme
+from omegadot.reference_impl.system import Acceleration, State
+
+
+class Restepped(Spoiled):
+    """The engine's own forward dynamics, stepped by the scheme that its integrator declares.
+
+    An integrator that declares none is stepped by semi-implicit Euler.
+    """
+
+    def sound_acceleration(self) -> AccelerationOf:
+        """The engine's forward dynamics; the reference's without forming its constants anew."""
+        if isinstance(self.inner, ReferenceAdapter):
+            return acceleration_of(self.inner.system)
+        return on_rows(self.inner.forward_dynamics)
+
+    def acceleration(self) -> AccelerationOf:
+        """What is stepped."""
+        return self.sound_acceleration()
+
+    def scheme(self, declared: Scheme) -> Scheme:
+        """The scheme that is stepped."""
+        return declared
+
+    def integrator(self, name: str) -> Integrator:
+        """The integrator as the sound engine declares it for the loaded system."""
+        return next(i for i in self.inner.description.integrators if i.name == name)
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        """As `Adapter.run`, by the reference's stepping."""
+        declared = self.integrator(integrator)
+        scheme = self.scheme(SCHEMES[declared.scheme or "semi-implicit-euler"])
+        how = (self.loaded(self.system), self.acceleration(), scheme, declared.steps_origin)
+        plan = (timestep, steps, every)
+        return self.logged(Trajectory(*step_anew(*how, self.into(initial), plan)))
+
+
+class Accelerated(Restepped):
+    """A fault in the dynamics: both what is told of the acceleration and what is stepped."""
+
+    def changed(self, state: State, sound: Acceleration) -> Acceleration:
+        """The wrong acceleration in place of a sound one."""
+        return sound
+
+    def acceleration(self) -> AccelerationOf:
+        """The wrong acceleration."""
+        sound = self.sound_acceleration()
+        return lambda state: self.changed(state, sound(state))
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """As `Adapter.forward_dynamics`, with the fault."""
+        return self.changed(states, super().forward_dynamics(states))

@@ -1,0 +1,44 @@
+"""An engine in another Python: the worker's command, with this omegadot lent to it."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+
+import omegadot
+from omegadot.harness.usage import UsageError, nearest
+
+# The package alone is lent. Were its parent put on the path, the engine that is installed beside
+# it could be taken for the other one's.
+_SERVE = """\
+import importlib.util, sys
+spec = importlib.util.spec_from_file_location("omegadot", {init!r})
+sys.modules["omegadot"] = module = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(module)
+from omegadot.adapters.worker import main
+main()
+"""
+
+
+def worker_command(python: str) -> list[str]:
+    """The command that serves an adapter under another interpreter, with NumPy, SciPy there."""
+    return [python, "-c", _SERVE.format(init=omegadot.__file__)]
+
+
+def interpreters(arguments: Sequence[str], engines: Sequence[str]) -> dict[str, str]:
+    """The interpreters of ``NAME=PATH`` words, by engine. Raises UsageError."""
+    found: dict[str, str] = {}
+    for argument in arguments:
+        name, separator, path = argument.partition("=")
+        if not separator or not path:
+            raise UsageError(f"--python {argument}: give NAME=PATH, an engine and its interpreter.")
+        if name not in engines:
+            raise UsageError(
+                f"--python {argument}: {name!r} is not among the engines; {nearest(name, engines)}."
+            )
+        if shutil.which(path) is None:
+            raise UsageError(
+                f"--python {argument}: {path} is no program; give a Python interpreter."
+            )
+        found[name] = path
+    return found

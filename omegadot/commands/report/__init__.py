@@ -1,0 +1,1 @@
+"""``omegadot report``: a stored run drawn again."""

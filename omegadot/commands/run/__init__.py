@@ -1,0 +1,1 @@
+"""``omegadot run``: scenarios on engines, judged, with a record and its report."""

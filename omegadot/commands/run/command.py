@@ -1,0 +1,78 @@
+"""The words of ``omegadot run``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from omegadot.commands.options import Format, Setup
+
+
+def run(
+    scenarios: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[SCENARIO]...", help="Built-in names or paths; default: all."),
+    ] = None,
+    engine: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME[:INTEGRATOR]", help="An engine; repeat for more. Default: all."),
+    ] = None,
+    timestep: Annotated[
+        list[float] | None,
+        typer.Option(metavar="S", help="A time step in s, instead of the scenario's; repeatable."),
+    ] = None,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the record goes.")] = Path(
+        "omegadot-run"
+    ),
+    setup: Annotated[Setup, typer.Option(help="How engines are configured.")] = Setup.physics,
+    adapter: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
+    ] = None,
+    exceptions: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FILE", help="Known failures, declared in TOML; repeatable."),
+    ] = None,
+    timeout: Annotated[
+        float, typer.Option(metavar="S", min=0.1, help="Limit for one request to an engine.")
+    ] = 60.0,
+    jobs: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=1, help="Engines at the same time. Default: cores."),
+    ] = None,
+    memory: Annotated[
+        float | None,
+        typer.Option(metavar="GIB", min=0.1, help="Limit for one engine. Default: half of it all."),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="For the random states.")] = 0,
+    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+) -> None:
+    """Run scenarios on engines, judge them, and write a record with its report.
+
+    Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
+    hung or could not be started.
+    """
+    import os
+
+    from omegadot.commands.check.exceptions import exceptions_of
+    from omegadot.commands.run.print_run import print_json, print_text
+    from omegadot.commands.run.run import run_and_write
+    from omegadot.harness.arguments import case_of, engine_choices, scenarios_of
+    from omegadot.harness.outcome import RunRequest
+    from omegadot.reports.record.record import check_folder
+
+    choices = engine_choices(engine or [], adapter or [])
+    cases = [case_of(scenario, timestep or []) for scenario in scenarios_of(scenarios or [])]
+    known = exceptions_of(choices, exceptions or [])
+    check_folder(out)
+    jobs = jobs or os.cpu_count() or 1
+    request = RunRequest(cases, choices, setup.value, seed, timeout, jobs, memory)
+    record, code = run_and_write(request, out, ["omegadot", *sys.argv[1:]], known)
+    if output is Format.json:
+        print_json(record, out, code)
+    else:
+        print_text(record, out)
+    raise typer.Exit(code)

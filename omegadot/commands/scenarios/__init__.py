@@ -1,0 +1,1 @@
+"""``omegadot scenarios``: what is built in."""

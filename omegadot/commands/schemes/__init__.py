@@ -1,0 +1,1 @@
+"""``omegadot schemes``: the scheme of every integrator, from its steps."""

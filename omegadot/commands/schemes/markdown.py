@@ -1,0 +1,63 @@
+"""The page of the study: docs/schemes.md is this text."""
+
+from __future__ import annotations
+
+from omegadot.commands.schemes.table import Table, remarks_of, tables_of
+from omegadot.diagnosis.scheme_study.orders import COARSEST
+from omegadot.diagnosis.scheme_study.record import Record
+from omegadot.gates.verdicts import ORDER_TOLERANCE
+
+_HEAD = """\
+# Which scheme each integrator steps
+
+<!-- Made by a command. Do not edit; run it again:
+omegadot schemes --format markdown > docs/schemes.md -->
+
+This page is the output of `omegadot schemes --format markdown > docs/schemes.md`.
+
+**How to read it.** Every scheme of the reference is stepped beside the engine from the same start,
+on these systems:
+
+{probes}
+
+A scheme is named where the engine's whole trajectory equals the scheme's within what rounding may
+have grown to, in every channel; what the engine declares plays no part in that. *To 1e-13 over
+1000 steps* bounds the largest distance in attitude (rad) and in angular velocity (relative), over
+all systems. An integrator may change its scheme with the system: the first name then holds unless
+another is given for a kind. *Stepped at* says whether the position of a free body's centre of mass
+or of its origin is stepped, which is another computation where the one lies off the other.
+
+An order is given as *declared (observed)*; orders that differ between systems are a range.
+The observed order is the slope of log error over log step, against the exact solution, from a step
+of {coarsest} rad downwards, halved until the slope has settled or the error has sunk into rounding.
+It is held to the declared order within {tolerance}. A channel that is *conserved* has no error but
+rounding. The one-step defect is what a single step from an exact state does wrong, the root mean
+square over several such states, the largest over the systems: in rad for the attitude, m for the
+position, relative for the others. Its order is one more than that of the accumulated error, or
+higher still in a channel whose error comes from others.
+"""
+
+
+def markdown_of(record: Record) -> str:
+    """The page; it has no dates and no timings, so the same engines give the same page."""
+    probes = "\n".join(f"- *{probe['kind']}*: {probe['shows']}" for probe in record["probes"])
+    head = _HEAD.format(
+        probes=probes,
+        coarsest=f"{COARSEST:g}",
+        tolerance=f"{ORDER_TOLERANCE:g}",
+    )
+    parts = [head, *map(_table, tables_of(record))]
+    remarks = remarks_of(record)
+    if remarks:
+        parts.append("## Remarks\n\n" + "\n".join(f"- {line}" for line in remarks) + "\n")
+    return "\n".join(parts)
+
+
+def _table(table: Table) -> str:
+    rule = ("---",) * len(table.heads)
+    lines = [_line(row) for row in (table.heads, rule, *table.rows)]
+    return f"## {table.title}\n\n" + "\n".join(lines) + "\n"
+
+
+def _line(cells: tuple[str, ...]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"

@@ -1,0 +1,68 @@
+"""Quaternions, Euler angles and matrices to unit quaternions ``(w, x, y, z)``."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from omegadot.commands.score.columns import GROUPS
+from omegadot.commands.score.table import Column, Table, TraceError
+from omegadot.gates.scales import norm
+from omegadot.reference_impl.system import Array
+
+# Farther from a rotation than this it was misread; nearer, it has drifted, and that is measured.
+MOST_OFF = 0.1
+Angles = tuple[Array, Array]
+"""(n, 4) quaternions as the trace has them, and (n,) rad, what its digits leave open."""
+
+
+def _wxyz(rotation: Rotation) -> Array:
+    found: Array = np.roll(rotation.as_quat(), 1, axis=-1)
+    return found
+
+
+def from_quaternions(table: Table, parts: list[Column]) -> Angles:
+    """As they are: a length that drifts is an error of the simulator's. Raises TraceError."""
+    q = np.stack([part.values for part in parts], axis=-1)
+    off = np.abs(norm(q) - 1.0)
+    worst = int(np.argmax(off))
+    if off[worst] > MOST_OFF:
+        raise TraceError(
+            f"{table.file}: {table.place(worst)}: |q| is {norm(q)[worst]:.6g}, not 1; these are no "
+            "unit quaternions."
+        )
+    return q, 2.0 * norm(np.stack([part.open for part in parts], axis=-1))
+
+
+def from_euler(parts: list[Column], sequence: str, unit: float) -> Angles:
+    """Three angles in the order of their sequence; their openings add up."""
+    angles = unit * np.stack([part.values for part in parts], axis=-1)
+    opening = unit * np.sum([part.open for part in parts], axis=0)
+    return _wxyz(Rotation.from_euler(sequence, angles)), np.asarray(opening)
+
+
+def from_matrices(table: Table, parts: list[Column]) -> Angles:
+    """The nearest rotations, by singular values.
+
+    A matrix that is off by d in norm has its nearest rotation off by at most ``sqrt(2) d`` rad.
+    Raises TraceError where a matrix is no rotation.
+    """
+    given = np.stack([part.values for part in parts], axis=-1).reshape(-1, 3, 3)
+    gram = np.abs(np.swapaxes(given, -1, -2) @ given - np.eye(3))
+    off = np.maximum(np.max(gram, axis=(-1, -2)), np.where(np.linalg.det(given) > 0.0, 0.0, 2.0))
+    worst = int(np.argmax(off))
+    if off[worst] > MOST_OFF:
+        raise TraceError(
+            f"{table.file}: {table.place(worst)}: the nine numbers are no rotation matrix "
+            f"(its columns are off unit length or right angles by {off[worst]:.2g})."
+        )
+    left, _, right = np.linalg.svd(given)
+    opening = np.sqrt(2.0) * norm(np.stack([part.open for part in parts], axis=-1))
+    return _wxyz(Rotation.from_matrix(left @ right)), opening
+
+
+def group_of(table: Table, columns: dict[str, str], group: str) -> list[Column]:
+    """The columns of one group, in the order of its roles; none where it is not given."""
+    if GROUPS[group][0] not in columns:
+        return []
+    return [table.column(columns[role]) for role in GROUPS[group]]

@@ -1,0 +1,140 @@
+"""Which column holds what: from words like ``wx=omega_x`` or ``q=q1,q2,q3,q0``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from omegadot.commands.score.table import Table, TraceError, find_column
+from omegadot.harness.usage import UsageError, nearest
+
+GROUPS: Mapping[str, tuple[str, ...]] = {
+    "t": ("t",),
+    "w": ("wx", "wy", "wz"),
+    "q": ("qw", "qx", "qy", "qz"),
+    "e": ("e1", "e2", "e3"),
+    "r": ("r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"),
+    "p": ("px", "py", "pz"),
+    "v": ("vx", "vy", "vz"),
+    "a": ("ax", "ay", "az"),
+}
+MEANING = {
+    "t": "time",
+    "w": "angular velocity",
+    "q": "quaternion",
+    "e": "Euler angles, in the order of their sequence",
+    "r": "rotation matrix, row by row",
+    "p": "position",
+    "v": "velocity",
+    "a": "omega-dot",
+}
+TURNS = {"yaw": "z", "pitch": "y", "roll": "x"}
+QUATERNIONS = {"wxyz": "wxyz", "xyzw": "xyzw"}
+# Found without being named. Not ax, ay, az: in most logs these are a linear acceleration.
+KNOWN = {r: r for group in ("t", "w", "q", "e", "r", "p", "v") for r in GROUPS[group]}
+KNOWN |= {"time": "t", **{name: name for name in TURNS}}
+ROLES = (*GROUPS, *KNOWN, *GROUPS["a"])
+Columns = dict[str, str]
+"""The name of a column by the role that it has."""
+
+
+def _turn_role(argument: str, euler: str) -> str:
+    """e1, e2 or e3 for yaw, pitch or roll: its place in the sequence. Raises UsageError."""
+    place = euler.lower().find(TURNS[argument])
+    if len(set(euler.lower())) < 3:
+        raise UsageError(f"--euler {euler}: has no {argument}; name the angles e1, e2 and e3.")
+    return f"e{place + 1}"
+
+
+def _roles_of(argument: str, count: int, order: str, euler: str) -> tuple[str, ...]:
+    """The roles that one word of the user's stands for. Raises UsageError."""
+    key = argument.lower()
+    if key == "time":
+        key = "t"
+    if key in TURNS:
+        key = _turn_role(key, euler)
+    if key in GROUPS and count == len(GROUPS[key]):
+        return tuple("q" + part for part in order) if key == "q" else GROUPS[key]
+    roles = [role for group in GROUPS.values() for role in group]
+    if key in roles and count == 1:
+        return (key,)
+    if key in GROUPS:
+        raise UsageError(
+            f"--column {argument}: {count} given, {len(GROUPS[key])} columns were expected "
+            f"({MEANING[key]})."
+        )
+    if key in roles:
+        raise UsageError(f"--column {argument}: {count} given, one column was expected.")
+    raise UsageError(f"--column {argument}: there is no such role; {nearest(key, ROLES)}.")
+
+
+def columns_of(
+    table: Table, arguments: Sequence[tuple[str, Sequence[str]]], order: str, euler: str
+) -> Columns:
+    """Every role that is mapped, or named so in the file, with its column.
+
+    words: pairs of a role, or a group of roles, and the names of its columns.
+    order: wxyz or xyzw, of a quaternion's four columns.
+    Raises UsageError for unknown roles, TraceError for missing columns and half groups.
+    """
+    if order not in QUATERNIONS:
+        raise UsageError(f"--quaternion {order}: no such order; {nearest(order, QUATERNIONS)}.")
+    found: Columns = {}
+    for argument, names in arguments:
+        for role, name in zip(_roles_of(argument, len(names), order, euler), names, strict=True):
+            if role in found:
+                raise UsageError(f"--column {argument}: {role} is given twice; give it once.")
+            found[role] = find_column(table, name, role)
+    named = {group for group, roles in GROUPS.items() if any(role in found for role in roles)}
+    attitude = named & {"q", "e", "r"}
+    for name in table.names:
+        role = KNOWN.get(name.casefold(), "")
+        if role in TURNS and len(set(euler.lower())) == 3:
+            role = _turn_role(name.casefold(), euler)
+        group = role[:1]
+        if role in GROUPS.get(group, ()) and group not in named and role not in found:
+            if group in "qer" and attitude:
+                continue
+            found[role] = name
+    return _whole(table, found, bool(arguments))
+
+
+def _whole(table: Table, found: Columns, mapped: bool) -> Columns:
+    """The columns, if there is a time and every group is whole. Raises TraceError."""
+    if "t" not in found:
+        raise TraceError(
+            f"{table.file}: no column is the time; name it with --column t=NAME "
+            f"(the columns are {', '.join(map(repr, table.names[:20]))})."
+        )
+    for group, roles in GROUPS.items():
+        missing = [role for role in roles if role not in found]
+        if missing and len(missing) < len(roles):
+            raise TraceError(
+                f"{table.file}: no column is {missing[0]} ({MEANING[group]}); name it with "
+                f"--column {missing[0]}=NAME."
+            )
+    attitudes = [group for group in "qer" if GROUPS[group][0] in found]
+    if len(attitudes) > 1:
+        raise UsageError(
+            f"{table.file}: the attitude is given as {MEANING[attitudes[0]]} and as "
+            f"{MEANING[attitudes[1]]}; map only one of them."
+        )
+    if not any(GROUPS[group][0] in found for group in "wqerp"):
+        advice = "" if mapped else ", or --detect to have it guessed"
+        raise TraceError(
+            f"{table.file}: no column is an angular velocity, an attitude or a position; map them, "
+            f"like --column wx=NAME{advice}."
+        )
+    return found
+
+
+def arguments_of(options: Sequence[str]) -> list[tuple[str, list[str]]]:
+    """``ROLE=NAME`` and ``GROUP=NAME,NAME,...`` taken apart. Raises UsageError."""
+    found = []
+    for option in options:
+        role, equals, names = option.partition("=")
+        if not equals or not role.strip() or not names.strip():
+            raise UsageError(f"--column {option}: write ROLE=NAME, like wx=omega_x.")
+        group = GROUPS.get(role.strip().lower(), ())
+        parts = [name.strip() for name in names.split(",")] if len(group) > 1 else [names.strip()]
+        found.append((role.strip(), parts))
+    return found

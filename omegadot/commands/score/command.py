@@ -1,0 +1,142 @@
+"""The words of ``omegadot score``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from omegadot.commands.options import Format
+
+
+def score(
+    trace: Annotated[Path, typer.Argument(metavar="TRACE", help="A CSV or Parquet file.")],
+    scenario: Annotated[
+        str, typer.Option(metavar="SCENARIO", help="What it is a motion of: a name or a path.")
+    ],
+    column: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="ROLE=NAME",
+            help="Which column is what: t, wx.., qw.., e1.. (or yaw, pitch, roll), r11.., px.., "
+            "vx.., ax.. (omega-dot), or a whole group, like w=A,B,C; #3 is the third. Repeatable.",
+        ),
+    ] = None,
+    map_file: Annotated[
+        Path | None, typer.Option("--map", metavar="FILE", help="Columns and units in TOML.")
+    ] = None,
+    time_unit: Annotated[str | None, typer.Option(help="s, ms, us, ns, min or h.")] = None,
+    angle_unit: Annotated[str | None, typer.Option(help="rad, deg, mrad or rev.")] = None,
+    rate_unit: Annotated[str | None, typer.Option(help="rad/s, deg/s, rpm, ...")] = None,
+    length_unit: Annotated[str | None, typer.Option(help="m, ft, in, cm, mm or km.")] = None,
+    omega_frame: Annotated[str | None, typer.Option(help="body or world.")] = None,
+    attitude_is: Annotated[
+        str | None, typer.Option(help="world-from-body or body-from-world.")
+    ] = None,
+    euler: Annotated[
+        str | None,
+        typer.Option(metavar="ZYX", help="Sequence of the angles: capitals intrinsic, else not."),
+    ] = None,
+    quaternion: Annotated[
+        str | None, typer.Option(help="Order of the four columns of q: wxyz or xyzw.")
+    ] = None,
+    point: Annotated[
+        str | None, typer.Option(help="Whose position it is: center-of-mass or origin.")
+    ] = None,
+    world_axes: Annotated[
+        str | None,
+        typer.Option(metavar="x,-y,-z", help="Which of the trace's world axes the scenario's are."),
+    ] = None,
+    body_axes: Annotated[
+        str | None, typer.Option(metavar="x,-y,-z", help="The same for the body's.")
+    ] = None,
+    time_offset: Annotated[
+        float | None, typer.Option(metavar="S", help="The trace's time at the scenario's start.")
+    ] = None,
+    integrator_scheme: Annotated[
+        str | None, typer.Option(metavar="NAME", help="The scheme that it was stepped with.")
+    ] = None,
+    timestep: Annotated[
+        float | None, typer.Option(metavar="S", help="The step that it was stepped with.")
+    ] = None,
+    attitude: Annotated[
+        str | None, typer.Option(metavar="0.1deg", help="Required: the largest attitude error.")
+    ] = None,
+    omega: Annotated[
+        str | None, typer.Option(metavar="1e-3deg/s", help="Required: the largest omega error.")
+    ] = None,
+    position: Annotated[
+        str | None, typer.Option(metavar="1mm", help="Required: the largest position error.")
+    ] = None,
+    energy: Annotated[
+        str | None, typer.Option(metavar="1e-6", help="Required: the largest relative error.")
+    ] = None,
+    momentum: Annotated[
+        str | None, typer.Option(metavar="1e-6", help="Required: of angular momentum, relative.")
+    ] = None,
+    flip_time: Annotated[
+        str | None, typer.Option(metavar="1ms", help="Required: the largest error of a flip.")
+    ] = None,
+    name: Annotated[str, typer.Option(help="What the trace is called in the report.")] = "trace",
+    with_engine: Annotated[
+        list[str] | None,
+        typer.Option("--with", metavar="NAME[:INTEGRATOR]", help="An engine to run beside it."),
+    ] = None,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the record goes.")] = Path(
+        "omegadot-score"
+    ),
+    detect: Annotated[
+        bool, typer.Option("--detect", help="Say which conventions fit, and write nothing.")
+    ] = False,
+    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+) -> None:
+    """Score a trajectory of any simulator against the exact solution of a scenario.
+
+    Exit codes: 0 nothing fails, 1 a requirement is missed, a declared scheme is not the one that
+    was stepped, or (--detect) no single convention fits, 2 wrong usage or input, 3 an engine run
+    beside it crashed, hung or could not be started.
+    """
+    from omegadot.commands.score.score import Arguments, score
+
+    settings = {
+        "time-unit": time_unit,
+        "angle-unit": angle_unit,
+        "rate-unit": rate_unit,
+        "length-unit": length_unit,
+        "omega-frame": omega_frame,
+        "attitude-is": attitude_is,
+        "euler": euler,
+        "quaternion": quaternion,
+        "point": point,
+        "world-axes": world_axes,
+        "body-axes": body_axes,
+        "time-offset": time_offset,
+    }
+    required = {
+        "attitude": attitude,
+        "omega": omega,
+        "position": position,
+        "energy": energy,
+        "momentum": momentum,
+        "flip-time": flip_time,
+    }
+    arguments = Arguments(
+        trace,
+        scenario,
+        column or [],
+        map_file,
+        settings,
+        integrator_scheme,
+        timestep,
+        required,
+        name,
+        with_engine or [],
+        out,
+    )
+    as_json = output is Format.json
+    if detect:
+        from omegadot.commands.score.detection.detect import detect_conventions
+
+        raise typer.Exit(detect_conventions(arguments, as_json))
+    raise typer.Exit(score(arguments, as_json))

@@ -1,0 +1,116 @@
+"""A trace's columns as numbers, and everything that they may be as rotations."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from omegadot.commands.score.units import ANGLE
+from omegadot.gates.scales import norm
+from omegadot.reference_impl.rotations import attitude_angle, normalize
+from omegadot.reference_impl.system import Array
+
+SEQUENCES = tuple(
+    "".join(axes)
+    for axes in itertools.product("ZYX", repeat=3)
+    if axes[0] != axes[1] and axes[1] != axes[2]
+)
+
+
+def _turns() -> Array:
+    """(24, 3, 3): the rotations that take axes to axes, the identity first."""
+    found = []
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1.0, -1.0), repeat=3):
+            matrix = np.diag(signs)[:, order]
+            if np.linalg.det(matrix) > 0.0:
+                found.append(matrix)
+    return np.array(sorted(found, key=lambda m: -np.trace(m)))
+
+
+AXES = _turns()
+AXES_Q = np.roll(Rotation.from_matrix(AXES).as_quat(), 1, axis=-1)
+SAME = 0
+
+
+@dataclass(frozen=True)
+class Rotated:
+    """Columns read as rotations. q: (n, 4), whatever it turns into what."""
+
+    columns: tuple[str, ...]
+    kind: str
+    unit: str
+    q: Array
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """A trace's columns and the exact course at its samples. turn: rad, how far it turns."""
+
+    columns: dict[str, Array]
+    orientation: Array
+    angular_velocity: Array
+    rotations: Sequence[Rotated] = ()
+
+    @property
+    def rate(self) -> float:
+        """rad/s, the greatest |omega|; one where the body never turns."""
+        return float(np.max(norm(self.angular_velocity))) or 1.0
+
+    @property
+    def turn(self) -> float:
+        """rad, the farthest turn from the first sample, one at most."""
+        angles = attitude_angle(self.orientation[:1], self.orientation)
+        return min(1.0, float(np.max(angles)))
+
+
+def stacked(columns: dict[str, Array], names: Sequence[str]) -> Array:
+    """(n, k) of some columns."""
+    return np.asarray(np.stack([columns[name] for name in names], axis=-1))
+
+
+def runs(names: Sequence[str], length: int) -> Iterator[tuple[str, ...]]:
+    """So many neighbouring columns, wherever they begin."""
+    for start in range(len(names) - length + 1):
+        yield tuple(names[start : start + length])
+
+
+def rotation_of(columns: dict[str, Array], names: Sequence[str], kind: str, unit: str) -> Array:
+    """(n, 4): what these columns are, read so."""
+    values = stacked(columns, names)
+    if kind == "quaternion wxyz":
+        return normalize(values)
+    if kind == "quaternion xyzw":
+        return normalize(np.roll(values, 1, axis=-1))
+    if kind == "matrix":
+        turned = Rotation.from_matrix(values.reshape(-1, 3, 3))
+    else:
+        turned = Rotation.from_euler(kind, ANGLE[unit] * values)
+    return np.asarray(np.roll(turned.as_quat(), 1, axis=-1))
+
+
+def _kinds(columns: dict[str, Array]) -> Iterator[tuple[tuple[str, ...], str, str]]:
+    names = list(columns)
+    for four in runs(names, 4):
+        if np.all(np.abs(norm(stacked(columns, four)) - 1.0) < 0.1):
+            yield four, "quaternion wxyz", "rad"
+            yield four, "quaternion xyzw", "rad"
+    for nine in runs(names, 9):
+        m = stacked(columns, nine).reshape(-1, 3, 3)
+        gram = np.abs(np.swapaxes(m, -1, -2) @ m - np.eye(3))
+        if np.all(gram < 0.1) and np.all(np.linalg.det(m) > 0.0):
+            yield nine, "matrix", "rad"
+    for three in runs(names, 3):
+        for order in itertools.permutations(three):
+            for unit in ("rad", "deg"):
+                for sequence in SEQUENCES:
+                    yield order, sequence, unit
+
+
+def rotations(columns: dict[str, Array]) -> list[Rotated]:
+    """Everything that neighbouring columns may be as a rotation."""
+    return [Rotated(*kind, rotation_of(columns, *kind)) for kind in _kinds(columns)]

@@ -1,0 +1,119 @@
+"""A whole way to read a trace, and the options that ask for it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.commands.score.convention import spoken_axes
+from omegadot.commands.score.detection.numbers import AXES, SAME
+from omegadot.commands.score.detection.parts import Attitude, Omega
+from omegadot.reference_impl.rotations import rotation_matrix
+from omegadot.reference_impl.system import Array
+
+PROBES = 8
+
+
+@dataclass(frozen=True)
+class Clock:
+    """How the time stamps are read. offset: s, the trace's time at the scenario's start."""
+
+    column: str
+    unit: str
+    offset: float
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Clock, attitude and omega, as far as the trace has them."""
+
+    clock: Clock
+    attitude: Attitude | None
+    omega: Omega | None
+
+    @property
+    def misfit(self) -> float:
+        """The larger of the two."""
+        return max(part.misfit for part in (self.attitude, self.omega) if part is not None)
+
+    @property
+    def parts(self) -> int:
+        """How much of a motion it reads."""
+        return (self.attitude is not None) + (self.omega is not None)
+
+    @property
+    def plainness(self) -> tuple[object, ...]:
+        """For ordering readings that fit alike."""
+        own = self.attitude.plainness if self.attitude else ()
+        return (self.clock.unit != "s", self.clock.offset != 0.0, own, self._omega_plainness())
+
+    def _omega_plainness(self) -> tuple[object, ...]:
+        return self.omega.plainness if self.omega else ()
+
+    def options(self) -> list[str]:
+        """The options to pass to have the trace read so."""
+        judgement = [f"--column 't={self.clock.column}'"]
+        if self.clock.unit != "s":
+            judgement.append(f"--time-unit {self.clock.unit}")
+        if self.clock.offset:
+            judgement.append(f"--time-offset {self.clock.offset!r}")
+        world = body = SAME
+        if self.omega is not None:
+            judgement.append(f"--column 'w={','.join(self.omega.columns)}'")
+            judgement += [f"--rate-unit {self.omega.unit}"] * (self.omega.unit != "rad/s")
+            judgement += ["--omega-frame world"] * (self.omega.frame == "world")
+            body = self.omega.axes if self.omega.frame == "body" else SAME
+        if self.attitude is not None:
+            judgement += _attitude_options(self.attitude)
+            world, body = self.attitude.world, self.attitude.body
+        for name, axes in (("world", world), ("body", body)):
+            judgement += [f"--{name}-axes={spoken_axes(AXES[axes])}"] * (axes != SAME)
+        return judgement
+
+
+def _attitude_options(found: Attitude) -> list[str]:
+    names, judgement = ",".join(found.columns), []
+    if found.kind.startswith("quaternion"):
+        judgement = [f"--column 'q={names}'", f"--quaternion {found.kind.split()[1]}"]
+    elif found.kind == "matrix":
+        judgement = [f"--column 'r={names}'"]
+    else:
+        judgement = [f"--column 'e={names}'", f"--euler {found.kind}"]
+        judgement += [f"--angle-unit {found.unit}"] * (found.unit != "rad")
+    return judgement + [f"--attitude-is {found.direction}"] * (found.direction != "world-from-body")
+
+
+def unlike(readings: Sequence[Reading]) -> list[Reading]:
+    """The plainest of those that are the same reading in other words.
+
+    They are if they read any numbers alike: random ones are put into the columns, and read.
+    """
+    random, kept = np.random.default_rng(0), dict[tuple[object, ...], Reading]()
+    names = sorted({name for reading in readings for name in _names(reading)})
+    probe: dict[str, Array] = {name: random.uniform(-50.0, 50.0, PROBES) for name in names}
+    for reading in readings:
+        kept.setdefault((reading.clock, *_read(reading, probe)), reading)
+    return list(kept.values())
+
+
+def _names(reading: Reading) -> set[str]:
+    parts = [part.columns for part in (reading.attitude, reading.omega) if part is not None]
+    return {name for names in parts for name in names}
+
+
+def _read(reading: Reading, probe: dict[str, Array]) -> list[object]:
+    """What a reading makes of random numbers, coarse enough for roundings to agree."""
+    judgement: list[object] = []
+    q = None
+    attitude = reading.attitude
+    if attitude is not None and attitude.kind == "matrix":  # random numbers are none
+        judgement = [attitude.columns, attitude.direction, attitude.world, attitude.body]
+    elif attitude is not None:
+        q = attitude.read(probe)
+        judgement = [tuple(np.round(rotation_matrix(q), 6).ravel() + 0.0)]
+    if reading.omega is not None:
+        judgement.append(tuple(np.round(reading.omega.read(probe, q), 6).ravel() + 0.0))
+        judgement.append(reading.omega.frame if q is None else "")
+    return judgement

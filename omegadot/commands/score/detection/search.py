@@ -1,0 +1,157 @@
+"""Which convention a trace comes in: all that are plausible are tried, and the fits are told apart.
+
+A reading is chosen only where it fits ten times better than any other; else all that fit as well
+are named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from omegadot.commands.score.beside import exact_trajectory
+from omegadot.commands.score.detection.candidates import attitudes, omegas
+from omegadot.commands.score.detection.numbers import AXES, SAME, Numbers, rotations
+from omegadot.commands.score.detection.reading import Clock, Reading, unlike
+from omegadot.commands.score.table import Table, TraceError
+from omegadot.commands.score.units import TIME
+from omegadot.gates.case import Case
+from omegadot.reference_impl.system import Array
+
+MOST_SAMPLES = 60
+BETTER = 10.0
+LONGEST = 20.0  # times the scenario's duration
+# Below this a misfit is rounding, of a median over a chain of them.
+ROUNDING = 1024 * float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class Detected:
+    """fitting: the readings that fit best and alike, the plainest first.
+
+    others: the next best, worse by more than ten times, the nearest first.  turn: rad, how far the
+    body turns, one at most.
+    """
+
+    fitting: list[Reading]
+    others: list[Reading]
+    turn: float
+
+
+def time_column(table: Table, wanted: str | None) -> str:
+    """The column of the time: the one named, one called so, or the only one that rises.
+
+    Raises TraceError.
+    """
+    if wanted is not None:
+        return wanted
+    for name in table.names:
+        argument = name.casefold().strip()
+        if (
+            argument == "t"
+            or argument.startswith("time")
+            or argument.startswith("t ")
+            or argument == "sec"
+        ):
+            return name
+    rising = [name for name in table.names if np.all(np.diff(table.column(name).values) > 0.0)]
+    if not rising:
+        raise TraceError(f"{table.file}: no column rises from sample to sample like a time.")
+    return rising[0]
+
+
+def _clocks(raw: Array, column: str, duration: float) -> list[Clock]:
+    found = []
+    for unit, scale in TIME.items():
+        span, first = scale * float(raw[-1] - raw[0]), scale * float(raw[0])
+        if not 0.0 < span <= LONGEST * duration:
+            continue
+        offsets = [0.0] if 0.0 <= first <= LONGEST * duration else []
+        offsets += [first] if first != 0.0 else []
+        found += [Clock(column, unit, offset) for offset in offsets]
+    return found
+
+
+def _beside(
+    case: Case, table: Table, column: str, names: Sequence[str]
+) -> list[tuple[Clock, Numbers]]:
+    """The trace's numbers beside the exact course, once for every clock."""
+    raw = table.column(column).values
+    if len(raw) < 3 or np.any(np.diff(raw) <= 0.0):
+        raise TraceError(f"{table.file}: fewer than three samples, or their time does not rise.")
+    rows = np.unique(np.linspace(0, len(raw) - 1, MOST_SAMPLES).round().astype(int))
+    values = {n: _numbers(table, n) for n in names if n != column}
+    columns = {n: v[rows] for n, v in values.items() if v is not None}
+    trajectory, turned = exact_trajectory(case.system, case.initial), rotations(columns)
+    found = []
+    for clock in _clocks(raw, column, case.scenario.run.duration):
+        exact = trajectory(np.maximum(TIME[clock.unit] * raw[rows] - clock.offset, 0.0))
+        found.append((clock, Numbers(columns, exact.orientation, exact.angular_velocity, turned)))
+    return found
+
+
+def _found(beside: list[tuple[Clock, Numbers]]) -> list[Reading]:
+    """Every reading that is not far off.
+
+    Turned axes are tried only where the trace cannot be read whole without.
+    """
+    found: list[Reading] = []
+    for axes in (SAME + 1, len(AXES)):
+        found = [reading for pair in beside for reading in _readings(*pair, axes)]
+        if any(reading.parts == 2 for reading in found):
+            break
+    return found
+
+
+def _numbers(table: Table, name: str) -> Array | None:
+    """A column's numbers; one of texts or with gaps is passed over."""
+    try:
+        return table.column(name).values
+    except TraceError:
+        return None
+
+
+def _readings(clock: Clock, numbers: Numbers, axes: int) -> list[Reading]:
+    turned = attitudes(numbers, axes)
+    if turned:
+        best = min(one.misfit for one in turned)
+        turned = [one for one in turned if one.misfit <= BETTER * BETTER * max(best, ROUNDING)]
+    found = []
+    for attitude in turned:
+        spins = omegas(numbers, attitude, axes)
+        free = [o for o in spins if not set(o.columns) & set(attitude.columns)]
+        found += [Reading(clock, attitude, omega) for omega in free]
+        found += [] if free else [Reading(clock, attitude, None)]
+    if not turned:
+        found = [Reading(clock, None, omega) for omega in omegas(numbers, None, axes)]
+    return found
+
+
+def detect(case: Case, table: Table, column: str, names: Sequence[str]) -> Detected:
+    """Try every reading of the columns named and tell the fits apart. column: the time's."""
+    beside = _beside(case, table, column, names)
+    found = _found(beside)
+    turn = beside[0][1].turn if beside else 0.0
+    if not found:
+        return Detected([], [], turn)
+    most = max(reading.parts for reading in found)
+    whole = [reading for reading in found if reading.parts == most]
+    limit = BETTER * max(min(reading.misfit for reading in whole), ROUNDING)
+    fitting = unlike(sorted((r for r in whole if r.misfit <= limit), key=lambda r: r.plainness))
+    others = [r for r in whole if r.misfit > limit] + _next_best(fitting[0], dict(beside))
+    others = [reading for reading in others if reading.misfit > limit]
+    return Detected(fitting, sorted(others, key=lambda r: r.misfit), turn)
+
+
+def _next_best(best: Reading, beside: dict[Clock, Numbers]) -> list[Reading]:
+    """The same with another attitude or another omega, however far off, in the plain axes."""
+    numbers, far = beside[best.clock], float("inf")
+    found = []
+    if best.attitude is not None:
+        found += [replace(best, attitude=one) for one in attitudes(numbers, SAME + 1, far)]
+    if best.omega is not None:
+        spins = omegas(numbers, best.attitude, SAME + 1, far)
+        found += [replace(best, omega=one) for one in spins]
+    return found

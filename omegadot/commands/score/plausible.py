@@ -1,0 +1,104 @@
+"""Units that were declared wrongly, told from the numbers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from omegadot.commands.score.columns import GROUPS, Columns
+from omegadot.commands.score.convention import OPTIONS, Convention
+from omegadot.commands.score.table import Table, TraceError
+from omegadot.commands.score.trace import Trace, trace_of
+from omegadot.commands.score.units import ANGLE, LENGTH, RATE, TIME
+from omegadot.gates.scales import norm
+from omegadot.gates.truth import Truth
+from omegadot.reference_impl.rotations import attitude_angle, normalize
+from omegadot.reference_impl.system import System
+
+# Wrong beyond doubt: a twentieth of the motion's size off, and twenty times nearer otherwise.
+GROSS = 0.05
+NEARER = 20.0
+LONGEST = 20.0  # times the scenario's duration
+# The motion has moved by then, and an error of the simulator's has not grown large.
+FIRST = 0.25
+
+
+def check_duration(table: Table, trace: Trace, how: Convention, duration: float) -> None:
+    """Raise TraceError where the time stamps run far from the scenario's."""
+    first, end = float(trace.times[0]), float(trace.times[-1])
+    if first < 0.0:
+        raise TraceError(
+            f"{table.file}: {table.place(0)}: starts {-first:g} s before the scenario does; give "
+            f"--time-offset {first + how.time_offset:g} if the motion begins there."
+        )
+    if end <= LONGEST * duration:
+        return
+    unit = how.scale_of("time")
+    spans = {u: end * s / unit for u, s in TIME.items() if end * s / unit <= 1.5 * duration}
+    # The longest that does not outlast the scenario; far shorter, and it is any unit's guess.
+    best = max(spans, key=lambda u: spans[u], default=None)
+    fits = best is not None and spans[best] > 0.01 * duration
+    judgement = f"looks like {best}; give --time-unit {best}" if fits else ""
+    raise TraceError(
+        f"{table.file}: runs until {end:g} s, the scenario lasts {duration:g} s; "
+        f"{judgement or 'declare the unit with --time-unit, or score it by a longer scenario'}."
+    )
+
+
+def check_units(
+    table: Table, columns: Columns, how: Convention, system: System, trace: Trace, truth: Truth
+) -> None:
+    """Raise TraceError where another unit than the declared one fits, and that one does not."""
+    for kind, group, units in (
+        ("rate", "w", RATE), ("angle", "e", ANGLE), ("length", "p", LENGTH)
+    ):  # fmt: skip
+        if GROUPS[group][0] not in columns:
+            continue
+        declared = _misfit(kind, trace, truth)
+        if declared <= GROSS:
+            continue
+        for unit in units:
+            other = with_unit(how, kind, unit)
+            misfit = _misfit(kind, trace_of(table, columns, other, system), truth)
+            if misfit * NEARER < declared and misfit < GROSS:
+                option, given = OPTIONS[f"{kind}_unit"], getattr(how, f"{kind}_unit")
+                raise TraceError(
+                    f"{table.file}: {_WHAT[kind]} {_times(units[given] / units[unit])} what "
+                    f"{given} would give here, and looks like {unit}; give {option} {unit}."
+                )
+
+
+def with_unit(how: Convention, kind: str, unit: str) -> Convention:
+    """The convention with another unit of ``time``, ``angle``, ``rate`` or ``length``."""
+    changed: dict[str, Any] = {f"{kind}_unit": unit}
+    return replace(how, **changed)
+
+
+_WHAT = {
+    "rate": "the angular velocity is",
+    "angle": "the angles are",
+    "length": "the positions are",
+}
+
+
+def _times(factor: float) -> str:
+    return f"{factor:.3g} times" if factor >= 1.0 else f"1/{1.0 / factor:.3g} of"
+
+
+def _misfit(kind: str, trace: Trace, truth: Truth) -> float:
+    """The median error over the first part, relative to the motion's size (an angle to 1 rad)."""
+    rows = slice(0, max(3, int(FIRST * len(trace.times))))
+    exact = truth.state
+    if kind == "rate" and trace.angular_velocity is not None:
+        gap = norm(trace.angular_velocity[rows] - exact.angular_velocity[rows])
+        return float(np.median(gap)) / truth.yardstick.rate
+    if kind == "angle" and trace.orientation is not None:
+        own = normalize(trace.orientation[rows])
+        return float(np.median(attitude_angle(own, exact.orientation[rows])))
+    if kind == "length" and trace.position is not None:
+        gap = norm(trace.position[rows] - exact.position[rows])
+        size = float(np.median(norm(exact.position[rows])))
+        return float(np.median(gap)) / size if size > 0.0 else 0.0
+    return 0.0

@@ -1,0 +1,149 @@
+"""A scored trace as a record: it stands where engines stand, and beside them if some are run."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from omegadot.commands.run.run import progress_bar, record_of
+from omegadot.commands.score.convention import Convention, spoken_axes
+from omegadot.commands.score.judged import Judged
+from omegadot.commands.score.sentences import largest
+from omegadot.commands.score.trace_tables import labels_of, metrics_of, trajectories_of
+from omegadot.gates.rows import Row, worst
+from omegadot.harness.outcome import JudgedCase, Outcome, RunRequest
+from omegadot.harness.plan import EngineChoice
+from omegadot.harness.runner import Runner
+from omegadot.reports.record import schema
+from omegadot.reports.record.record import Record
+from omegadot.reports.summary.headline import headline
+from omegadot.reports.summary.summary import summarise
+
+
+def scored_record(
+    found: Judged, rows: list[Row], name: str, choices: Sequence[EngineChoice], command: list[str]
+) -> Record:
+    """The record of the trace and of the engines that are run beside it."""
+    started = time.perf_counter()
+    request = RunRequest([found.case], list(choices))
+    outcome = _beside(request) if choices else _alone(found)
+    base = record_of(outcome, request, command, time.perf_counter() - started)
+    base.run["engines"].append(_engine(found, name))
+    base.run["tasks"].append(_task(found, rows, name))
+    labels = labels_of(found, name)
+    record = Record(
+        base.run,
+        pl.concat([base.metrics, metrics_of(labels, version_of(found), rows)]),
+        trajectories_of(base.trajectories, found, labels),
+    )
+    beside = [headline(summarise(record))] if choices else []
+    record.run["headline"] = " ".join([sentence_of(found, rows, name), *beside])
+    return record
+
+
+def _beside(request: RunRequest) -> Outcome:
+    runner = Runner(request)
+    with progress_bar(runner, request.cases):
+        return runner.execute()
+
+
+def _alone(found: Judged) -> Outcome:
+    return Outcome([], [], [JudgedCase(found.case, found.truth, "", [])], False, [])
+
+
+def version_of(found: Judged) -> str:
+    """The beginning of the file's SHA-256: traces of one name are told apart by it."""
+    return hashlib.sha256(Path(found.reading.table.file).read_bytes()).hexdigest()[:8]
+
+
+def conventions_of(how: Convention) -> list[str]:
+    """How the trace was read, one clause each."""
+    judgement = [
+        f"time in {how.time_unit}, angles in {how.angle_unit}, rates in {how.rate_unit}, "
+        f"lengths in {how.length_unit}",
+        f"omega in {how.omega_frame} axes, attitude {how.attitude}",
+    ]
+    for kind, axes in (("world", how.world), ("body", how.body)):
+        if not np.array_equal(axes, np.eye(3)):
+            exact = bool(np.all(np.isin(axes, (-1.0, 0.0, 1.0))))
+            judgement.append(f"{kind} axes turned" + (f": {spoken_axes(axes)}" if exact else ""))
+    return judgement
+
+
+def _engine(found: Judged, name: str) -> dict[str, Any]:
+    labels = labels_of(found, name)
+    scheme = found.declared.scheme if found.declared else None
+    note = "a trace from outside; its scheme is " + ("declared" if scheme else "not declared")
+    integrator = {
+        "name": labels["integrator"], "scheme": scheme, "orders": {}, "knob": "timestep",
+        "note": note, "steps_origin": False,
+    }  # fmt: skip
+    return {
+        "name": name,
+        "version": version_of(found),
+        "installed": True,
+        "reason": "",
+        "integrators": [integrator],
+        "precision": "float64",
+        "conventions": conventions_of(found.reading.how),
+        "switched_off": [],
+        "features": [],
+        "licence": "",
+        "links": [],
+        "trace": {
+            "file": found.reading.table.file,
+            "columns": found.reading.columns,
+            "samples": len(found.trace.times),
+        },
+    }
+
+
+def gates_of(rows: list[Row]) -> dict[str, str]:
+    """The worst verdict of every gate that has a row."""
+    verdicts = {g: worst(row.verdict for row in rows if row.gate == g) for g in schema.GATES}
+    return {gate: verdict for gate, verdict in verdicts.items() if verdict is not None}
+
+
+def why_of(found: Judged, rows: list[Row]) -> str:
+    """One reason for the whole trace: a failure's, that it is late, or its worst channel's."""
+    failed = [row for row in rows if row.verdict == "fail"]
+    if failed:
+        return f"{failed[0].channel}: {failed[0].note}"
+    if found.shift is not None and found.shift.explains:
+        return found.shift.spoken
+    unlike = [
+        (c, judgement) for c, judgement in found.judgement.items() if judgement.kind != "round-off"
+    ]
+    return f"{unlike[0][0]}: {unlike[0][1].note}" if unlike else "within digits and rounding"
+
+
+def sentence_of(found: Judged, rows: list[Row], name: str) -> str:
+    """The trace in one sentence, for the top of the page."""
+    failed = [row for row in rows if row.verdict == "fail"]
+    if failed:
+        return f"{name} fails on {found.case.name}: {failed[0].channel}, {failed[0].note}."
+    parts = [
+        f"{channel.replace('_', ' ')} by {largest(found, channel)}"
+        for channel in found.measured.error
+    ]
+    late = found.shift is not None and found.shift.explains
+    why = f" It is {found.shift.spoken}, and that is its error." if late and found.shift else ""
+    return f"{name} on {found.case.name} is off at most: {', '.join(parts[:3])}.{why}"
+
+
+def _task(found: Judged, rows: list[Row], name: str) -> dict[str, Any]:
+    return {
+        **labels_of(found, name),
+        "engine_version": version_of(found),
+        "outcome": "ok",
+        "reason": "",
+        "gates": gates_of(rows),
+        "why": why_of(found, rows),
+        "scheme": found.declared.scheme if found.declared else None,
+    }

@@ -1,0 +1,82 @@
+"""How good a trace must be, where somebody says so."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.commands.score.measured import Measured
+from omegadot.commands.score.units import ANGLE, LENGTH, NUMBER, RATE, TIME, quantity
+from omegadot.commands.score.verdicts import GATES
+from omegadot.gates.rows import Row
+from omegadot.harness.usage import UsageError
+
+UNITS: Mapping[str, dict[str, float]] = {
+    "attitude": ANGLE,
+    "omega": RATE,
+    "position": LENGTH,
+    "energy": NUMBER,
+    "momentum": NUMBER,
+    "flip-time": TIME,
+}
+CHANNEL = {"momentum": "angular_momentum", "flip-time": "time"}
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """The largest error allowed. limit: SI, relative for energy and momentum."""
+
+    name: str
+    text: str
+    limit: float
+
+    @property
+    def channel(self) -> str:
+        """The channel that it is about."""
+        return CHANNEL.get(self.name, self.name)
+
+    def spoken(self, value: float) -> str:
+        """A value in the unit that the requirement is written in."""
+        unit = self.text.lstrip("+-.0123456789 ")
+        unit = unit[1:].lstrip("+-.0123456789 ") if unit[:1] in ("e", "E") else unit
+        return f"{value / UNITS[self.name][unit.strip()]:.4g}{unit.strip()}"
+
+
+def requirements_of(arguments: Mapping[str, str | None]) -> list[Requirement]:
+    """By option name, without the dashes. Raises UsageError."""
+    return [
+        Requirement(name, text, quantity(UNITS[name], text, f"--{name}"))
+        for name, text in arguments.items()
+        if text is not None
+    ]
+
+
+def requirement_rows(
+    wanted: list[Requirement], measured: Measured, rate: float, flips: list[Row]
+) -> list[Row]:
+    """One row a requirement, pass or fail. Raises UsageError where the trace cannot tell.
+
+    rate: rad/s, which omega's errors are relative to.  flips: the row of the flips' error, if any.
+    """
+    found = []
+    for one in wanted:
+        channel = one.channel
+        if channel == "time":
+            if not flips:
+                raise UsageError(
+                    f"--flip-time {one.text}: the motion does not flip about its middle axis, or "
+                    "omega is not given; leave it out."
+                )
+            value, unit, gate = flips[0].value, "s", "trajectory"
+        else:
+            if channel in measured.absent:
+                raise UsageError(f"--{one.name} {one.text}: {measured.absent[channel]}.")
+            factor = rate if channel == "omega" else 1.0
+            value, gate = factor * float(np.max(measured.error[channel])), GATES[channel]
+            unit = {"omega": "rad/s", "attitude": "rad", "position": "m"}.get(channel, "1")
+        verdict = "pass" if value <= one.limit else "fail"
+        note = f"required: at most {one.text}, found {one.spoken(value)}"
+        found.append(Row(gate, channel, "requirement", value, unit, one.limit, verdict, note))
+    return found

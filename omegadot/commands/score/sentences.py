@@ -1,0 +1,131 @@
+"""A scored trace in sentences, in the trace's own units."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from omegadot.commands.score.judged import Judged
+from omegadot.commands.score.shift import scatter
+from omegadot.commands.score.units import ANGLE, LENGTH, RATE
+from omegadot.gates.rows import Row
+
+
+def factor_of(found: Judged, channel: str) -> tuple[float, str]:
+    """From the yardstick's unit to the one that people read here, the trace's own, and its name."""
+    how = found.reading.how
+    if channel == "omega":
+        unit = how.rate_unit
+        return found.truth.yardstick.rate / RATE[unit], unit
+    if channel == "attitude":
+        unit = how.angle_unit if "e1" in found.reading.columns else "rad"
+        return 1.0 / ANGLE[unit], unit
+    if channel == "position":
+        return 1.0 / LENGTH[how.length_unit], how.length_unit
+    return 1.0, "relative"
+
+
+def largest(found: Judged, channel: str) -> str:
+    """The largest error of a channel with its unit: ``0.003 deg/s``."""
+    factor, unit = factor_of(found, channel)
+    value = factor * float(np.max(found.measured.error[channel]))
+    return f"{value:.3g}" + ("" if unit == "relative" else f" {unit}")
+
+
+def sentences(found: Judged, rows: list[Row]) -> list[str]:
+    """What the table does not say."""
+    parts: list[Callable[[], list[str]]] = [
+        lambda: _late(found),
+        lambda: _start(found),
+        lambda: _notes(rows),
+        lambda: _digits(found),
+        lambda: _absent(found),
+    ]
+    return [sentence for part in parts for sentence in part()]
+
+
+def _late(found: Judged) -> list[str]:
+    shift, judgement = found.shift, []
+    if shift is None:
+        return []
+    spins = shift.of == "omega"
+    factor = 1.0 / (RATE[found.reading.how.rate_unit] if spins else 1.0)
+    unit, what = (found.reading.how.rate_unit, "omega") if spins else ("rad", "the attitude")
+    before, after = f"{factor * shift.before:.3g} {unit}", f"{factor * shift.after:.3g} {unit}"
+    if shift.explains:
+        judgement.append(
+            f"The trace is {shift.spoken}, and that is its error: {what} is off by {before} as it "
+            f"stands and by {after} after the shift."
+        )
+    elif shift.seen:
+        judgement.append(
+            f"The shift in time that fits best is {shift.spoken}, but it is not all: {what} is off "
+            f"by {before} as it stands and by {after} after the shift."
+        )
+    noise = scatter(shift)
+    if noise is not None:
+        judgement.append(
+            f"What is left of {what} looks like noise: neighbouring samples are uncorrelated, "
+            f"{factor * noise:.3g} {unit} (standard deviation, each axis)."
+        )
+    return judgement
+
+
+def _start(found: Judged) -> list[str]:
+    judgement = []
+    if found.trace.times[0] > 0.0:
+        judgement.append(
+            f"The first sample is {found.trace.times[0]:g} s after the scenario's start."
+        )
+    for channel in ("attitude", "omega", "position"):
+        error = found.measured.error.get(channel)
+        if error is not None and error[0] > found.bound[channel][0]:
+            factor, unit = factor_of(found, channel)
+            judgement.append(
+                f"The first sample is not the scenario's state: {channel} is off by "
+                f"{factor * float(error[0]):.3g} {unit}, of which digits and rounding leave open "
+                f"{factor * float(found.bound[channel][0]):.2g}."
+            )
+    return judgement
+
+
+def _notes(rows: list[Row]) -> list[str]:
+    judgement = []
+    for row in rows:
+        if row.gate == "scheme":
+            judgement.append(f"Scheme: {row.note}.")
+        elif row.gate == "equation" and row.channel == "omega_dot":
+            judgement.append(
+                f"omega-dot against the equation at the trace's own states: {row.value:.2e} "
+                f"(bound {row.bound:.1e}), {row.note or 'within it'}."
+            )
+        elif row.metric == "flip_time_error":
+            judgement.append(f"Flip times: off by at most {row.value:.3g} s ({row.note}).")
+        elif row.metric == "requirement":
+            name = "flip time" if row.channel == "time" else row.channel.replace("_", " ")
+            verb = "met" if row.verdict == "pass" else "missed"
+            judgement.append(f"Requirement {verb}: {name}, {row.note.removeprefix('required: ')}.")
+    return judgement
+
+
+def _digits(found: Judged) -> list[str]:
+    parts = []
+    for channel in ("omega", "attitude", "position"):
+        if channel in found.measured.error:
+            factor, unit = factor_of(found, channel)
+            opened = factor * float(np.max(found.digits[channel]))
+            parts.append(f"{opened:.1g} {unit} of {channel}")
+    return [f"The digits that the trace is written in leave open {', '.join(parts)}."] * bool(parts)
+
+
+def _absent(found: Judged) -> list[str]:
+    judgement = []
+    if found.measured.absent:
+        names = ", ".join(name.replace("_", " ") for name in found.measured.absent)
+        judgement.append(f"Not given, so not judged: {names}.")
+    lacking = [] if found.trace.omega_dot is not None else ["equation (no omega-dot)"]
+    if found.declared is None:
+        lacking.append("scheme (declare --integrator-scheme and --timestep)")
+    lacking.append("model and cost (a trace has none)")
+    return [*judgement, f"Gates without a word: {', '.join(lacking)}."]

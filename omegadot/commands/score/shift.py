@@ -1,0 +1,153 @@
+"""Right but late: the shift in time that fits a trace best, found on the exact course itself.
+
+The exact course can be had at any time, so nothing is interpolated and samples may stand anywhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.commands.score.beside import ExactTrajectory
+from omegadot.commands.score.trace import Trace
+from omegadot.gates.phase import FARTHEST, MOST_ITERATIONS
+from omegadot.gates.scales import EPS, norm
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import attitude_angle, normalize, rotation_between
+from omegadot.reference_impl.system import Array, System
+
+MOST_COMPARED = 400  # samples, and as many shifts to either side, when a first shift is sought
+# A shift that leaves a tenth of the error or less is what was wrong; more left, and more was.
+EXPLAINS = 0.1
+
+
+@dataclass(frozen=True)
+class Shift:
+    """The trace at t is nearest to the exact course at t + seconds; negative is late.
+
+    open: s, what digits and rounding leave open of it.  before, after: the largest error, rad/s of
+    omega, or rad of attitude where no omega is given.  left: (m, 3), what is left at the samples.
+    attitude_after: rad, the largest attitude error that is left; None where it is not given.
+    bound: what digits and rounding account for of `after`.  of: "omega" or "attitude".
+    """
+
+    of: str
+    seconds: float
+    open: float
+    before: float
+    after: float
+    bound: float
+    left: Array
+    attitude_after: float | None
+
+    @property
+    def seen(self) -> bool:
+        """Whether it is more than digits and rounding leave open."""
+        return abs(self.seconds) > self.open
+
+    @property
+    def explains(self) -> bool:
+        """Whether the error is that of being late or early, and little else."""
+        return self.seen and self.after <= max(EXPLAINS * self.before, self.bound)
+
+    @property
+    def spoken(self) -> str:
+        """``late by 3.20e-04 s``."""
+        return f"{'late' if self.seconds < 0.0 else 'early'} by {abs(self.seconds):.3e} s"
+
+
+def _residual(
+    system: System, trajectory: ExactTrajectory, trace: Trace, shift: float
+) -> tuple[Array, Array]:
+    """(m, 3): trace minus exact at the samples that a shift leaves inside, and the rate of change.
+
+    Of omega where it is given, else of the attitude as a rotation vector in body axes.
+    """
+    inside = trace.times + shift >= 0.0
+    exact = trajectory(trace.times[inside] + shift)
+    if trace.angular_velocity is not None:
+        slope = forward_dynamics(system, exact).angular
+        return trace.angular_velocity[inside] - exact.angular_velocity, slope
+    assert trace.orientation is not None
+    own = normalize(trace.orientation[inside])
+    return rotation_between(exact.orientation, own), exact.angular_velocity
+
+
+def _start(trajectory: ExactTrajectory, trace: Trace, open_gap: float) -> float:
+    """A shift to begin with: the smallest that fits as well as any, half a gap allowed for."""
+    omega = trace.angular_velocity
+    if omega is None:
+        return 0.0
+    rows = np.unique(np.linspace(0, len(trace.times) - 1, MOST_COMPARED).round().astype(int))
+    times, duration = trace.times[rows], float(trace.times[-1])
+    gap = max(FARTHEST * duration / MOST_COMPARED, open_gap)
+    shifts = gap * np.arange(-MOST_COMPARED, MOST_COMPARED + 1)
+    grid = gap * np.arange(int(np.ceil(1.25 * duration / gap)) + 2)
+    exact = trajectory(grid).angular_velocity
+    wanted = times[None, :] + shifts[:, None]
+    inside = wanted >= 0.0
+    place = np.clip(wanted / gap, 0.0, len(grid) - 2.0)
+    left = place.astype(int)
+    share = (place - left)[..., None]
+    value = (1.0 - share) * exact[left] + share * exact[left + 1]
+    gaps = np.sum((omega[rows] - value) ** 2, axis=-1)
+    counts = np.maximum(np.sum(inside, axis=1), 1)
+    squares = np.sum(np.where(inside, gaps, 0.0), axis=1) / counts
+    rates = np.diff(exact, axis=0) / gap
+    allowed = 0.25 * gap**2 * float(np.mean(np.sum(rates * rates, axis=-1)))
+    fitting = shifts[squares <= float(np.min(squares)) + allowed]
+    return float(fitting[np.argmin(np.abs(fitting))])
+
+
+def best_shift(
+    system: System, trajectory: ExactTrajectory, trace: Trace, bound: Array, rate: float
+) -> Shift | None:
+    """The shift that minimises the squares, by Gauss-Newton; None where nothing changes in time.
+
+    bound: (n,), what rounding and digits leave open of omega relative to `rate`, or of the
+    attitude in rad.
+    """
+    unit = rate if trace.angular_velocity is not None else 1.0
+    limit = unit * float(np.max(bound))
+    before, slope = _residual(system, trajectory, trace, 0.0)
+    change = float(np.sqrt(np.mean(np.sum(slope * slope, axis=-1))))
+    duration = float(trace.times[-1])
+    if not change * duration > limit or len(trace.times) < 3:
+        return None
+    shift, farthest = _start(trajectory, trace, EPS * duration), FARTHEST * duration
+    step = farthest / MOST_COMPARED
+    for _ in range(2 * MOST_ITERATIONS):
+        residual, slope = _residual(system, trajectory, trace, shift)
+        found = float(np.sum(residual * slope) / np.sum(slope * slope))
+        found = float(np.clip(found, -step, step))
+        if not abs(shift + found) <= farthest or abs(found) <= EPS * duration:
+            break
+        shift += found
+    left, slope = _residual(system, trajectory, trace, shift)
+    # What is left moves the fit as well: four standard errors of it.
+    spread = 4.0 * float(np.sqrt(np.mean(left * left) / np.sum(slope * slope)))
+    attitude = None
+    if trace.orientation is not None:
+        inside = trace.times + shift >= 0.0
+        exact = trajectory(trace.times[inside] + shift).orientation
+        attitude = float(np.max(attitude_angle(exact, normalize(trace.orientation[inside]))))
+    largest, after = float(np.max(norm(before))), float(np.max(norm(left)))
+    of = "omega" if trace.angular_velocity is not None else "attitude"
+    return Shift(of, shift, limit / change + spread, largest, after, limit, left, attitude)
+
+
+def scatter(shift: Shift) -> float | None:
+    """The standard deviation of what is left, per axis, if it looks like noise; else None.
+
+    Noise has no memory: the correlation of neighbours is within four standard errors of zero,
+    ``4 / sqrt(n)``, and what is left stands above its bound.
+    """
+    left = shift.left
+    if len(left) < 32 or shift.after <= shift.bound:
+        return None
+    total = float(np.sum(left * left))
+    memory = float(np.sum(left[1:] * left[:-1])) / total
+    if abs(memory) > 4.0 / np.sqrt(left.size):
+        return None
+    return float(np.sqrt(total / left.size))

@@ -1,0 +1,120 @@
+"""What is asked of every version: the metrics, by name, before any is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from omegadot.adapters.protocol import Description
+from omegadot.commands.versions.metric import RATIO, Name
+from omegadot.diagnosis.scheme_study.probes import PROBES
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.measured_run import CHANNELS
+from omegadot.harness.arguments import case_of
+from omegadot.harness.usage import UsageError, nearest
+from omegadot.reports.text.numbers import plain
+from omegadot.scenarios import Scenario, builtin_names, find_scenario, load_scenario
+
+# On a free body, one with an offset, with damping, on a pivot and under a torque that turns with
+# it, integrators may step different schemes; a flip multiplies what they differ by.
+DEFAULT = ("box", "t-handle", "offset-com", "damped-tumble", "heavy-top", "driven-world")
+BOX = "box"
+BOX_FILE = Path(__file__).with_name("box.toml")
+SAMPLES = 50
+
+
+@dataclass(frozen=True)
+class Aims:
+    """The cases that are run, each with a single step, and the integrators (all where none is)."""
+
+    cases: tuple[Case, ...]
+    integrators: tuple[str, ...] = ()
+
+    def chosen(self, description: Description) -> list[str]:
+        """The integrators of a version that are looked at."""
+        names = [integrator.name for integrator in description.integrators]
+        return [name for name in names if not self.integrators or name in self.integrators]
+
+
+def scenario_named(argument: str) -> Scenario:
+    """A built-in's name, a path, or the box that is kept here. Raises ScenarioError."""
+    return load_scenario(BOX_FILE) if argument == BOX else find_scenario(argument)
+
+
+def case_for(argument: str, timestep: float | None) -> Case:
+    """A scenario at one step, its own middle one where none is given, with samples enough.
+
+    Raises ScenarioError and UsageError.
+    """
+    case = case_of(scenario_named(argument), () if timestep is None else (timestep,))
+    sweep = case.sweeps[len(case.sweeps) // 2]
+    thinned = Sweep(sweep.timestep, sweep.steps, max(1, sweep.steps // SAMPLES))
+    return Case(case.scenario, case.system, case.initial, (thinned,))
+
+
+def aims_of(terms: Sequence[str], integrators: Sequence[str], timestep: float | None) -> Aims:
+    """What the command line asks for. Raises ScenarioError and UsageError."""
+    cases = tuple(case_for(argument, timestep) for argument in dict.fromkeys(terms or DEFAULT))
+    return Aims(cases, tuple(dict.fromkeys(integrators)))
+
+
+def check_integrators(aims: Aims, known: Sequence[str], engine: str) -> None:
+    """Raise UsageError where an integrator is asked for that no version has."""
+    for name in aims.integrators:
+        if known and name not in known:
+            raise UsageError(
+                f"--integrator {name}: no version of {engine} here has it; {nearest(name, known)}."
+            )
+
+
+def conserves_kinetic_energy(case: Case) -> bool:
+    """Whether the energy is kinetic alone and stays, so that E/E0 says something."""
+    load = case.system.load
+    torques = load.torque_body.any() or load.torque_world.any()
+    return not (load.gravity.any() or float(load.damping) or torques or load.pivot is not None)
+
+
+def step_name(case: Case) -> str:
+    """The step of a case as it stands in names."""
+    return plain(case.sweeps[0].timestep)
+
+
+def drift_names(case: Case, integrator: str) -> list[Name]:
+    """One for each channel, and E/E0 at the end where that says something."""
+    start = ("drift", case.name, integrator, step_name(case))
+    ratio: list[Name] = [(*start, RATIO)] if conserves_kinetic_energy(case) else []
+    return ratio + [(*start, channel) for channel in CHANNELS]
+
+
+def equation_names(case: Case) -> list[Name]:
+    """Forward and inverse dynamics at random states."""
+    channels = ("omega_dot", "linear_momentum", "torque")
+    return [("equation", case.name, channel) for channel in channels]
+
+
+def scheme_name(integrator: str, kind: str) -> Name:
+    """Which scheme an integrator steps on a probe."""
+    return ("scheme", integrator, kind)
+
+
+def order_names(integrator: str, kind: str) -> list[Name]:
+    """The observed orders of an integrator on a probe."""
+    return [("order", integrator, kind, channel) for channel in CHANNELS]
+
+
+def names_of(aims: Aims, description: Description) -> Iterator[Name]:
+    """Every name that needs steps or calls; what an engine says of itself has other names."""
+    for case in aims.cases:
+        yield from equation_names(case)
+    for integrator in aims.chosen(description):
+        for probe in PROBES:
+            yield scheme_name(integrator, probe.kind)
+            yield from order_names(integrator, probe.kind)
+        for case in aims.cases:
+            yield from drift_names(case, integrator)
+
+
+def scenarios_known() -> list[str]:
+    """The names that a scenario may have on the command line, besides paths."""
+    return [BOX, *builtin_names()]

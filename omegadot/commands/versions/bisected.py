@@ -1,0 +1,89 @@
+"""A metric's name in words, followed through the releases to where it changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+from omegadot.commands.versions.bisection import Bisection, bisect
+from omegadot.commands.versions.changes import Change, changes_between
+from omegadot.commands.versions.figures import Wanted
+from omegadot.commands.versions.gallery import Gallery
+from omegadot.commands.versions.measure import Portrait
+from omegadot.commands.versions.metric import (
+    KINDS,
+    Name,
+    arguments_of,
+    matching,
+    title,
+    unknown_metric,
+)
+from omegadot.commands.versions.product import Product
+from omegadot.commands.versions.record import Record, bisection_record
+from omegadot.commands.versions.release import key_of
+from omegadot.diagnosis.scheme_study.probes import PROBES
+from omegadot.gates.measured_run import CHANNELS
+from omegadot.harness.usage import UsageError, nearest
+
+
+def bisect_metric(
+    arguments: str,
+    product: Product,
+    gallery: Gallery,
+    versions: Sequence[str],
+    seen: Callable[[Portrait], object],
+) -> tuple[list[Portrait], Record]:
+    """The versions looked at, rising, and the releases in which a metric changed.
+
+    Raises UsageError where no metric has all of these words.
+    """
+    known: dict[Name, None] = {}
+
+    def is_meant(name: Name) -> bool:
+        return bool(matching(arguments, [name], product.engine))
+
+    def choose(names: list[Name]) -> Wanted:
+        if not known:  # the lower end names what there is, the upper end may add to it
+            first.extend(names)
+        known.update(dict.fromkeys(filter(is_meant, names)))
+        return is_meant
+
+    def look(version: str) -> Portrait:
+        portrait = gallery.look(version, choose)
+        if portrait.ok and known and not _reported(portrait, known):
+            portrait.outcome = "raised"
+            portrait.reason = portrait.troubles[0] if portrait.troubles else "it could not be told"
+        seen(portrait)
+        return portrait
+
+    def compare(one: Portrait, other: Portrait) -> list[Change]:
+        if not known:
+            raise UsageError(_no_such(arguments, first))
+        return changes_between(one, other, is_meant)
+
+    first: list[Name] = []
+    found: Bisection = bisect(versions, look, compare)
+    portraits = sorted(found.looked_at, key=lambda p: key_of(p.version) or ((0,), 0, 0))
+    return portraits, bisection_record(arguments, list(known), found)
+
+
+def _reported(portrait: Portrait, names: Iterable[Name]) -> bool:
+    """Whether a version tells any of the metrics, be it that it does not have them."""
+    figures = [portrait.figures.get(name) for name in names if name[0] not in portrait.untold]
+    return any(figure is None or figure.value is not None for figure in figures)
+
+
+def _no_such(arguments: str, names: Sequence[Name]) -> str:
+    """Which word is in no metric's name, and what metrics are called."""
+    there = {argument for name in names for argument in arguments_of(title(name))}
+    unknown = unknown_metric(arguments, names)
+    kinds = ", ".join(kind for kind in KINDS if any(name[0] == kind for name in names))
+    what = f"no metric has the word {unknown[0]!r}" if unknown else "no metric has all these words"
+    hint = nearest(unknown[0], there) if unknown else ""
+    close = f"; {hint}" if hint.startswith("write") else ""
+    example = next((title(n) for n in names if n[0] == "order"), title(names[0]) if names else "")
+    systems = ", ".join(probe.kind for probe in PROBES)
+    return (
+        f"--bisect {arguments}: {what}{close}; give words of a name such as {example}: a kind "
+        f"({kinds}), an integrator, a system ({systems}) or a scenario, "
+        f"a channel ({', '.join(channel.replace('_', ' ') for channel in CHANNELS)})."
+    )

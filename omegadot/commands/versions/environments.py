@@ -1,0 +1,135 @@
+"""The environments of releases: made once, kept in a cache, never those of the user.
+
+An environment is a folder of its own, made under a name that nobody else uses. It counts from the
+moment that a small file that names it is renamed into place: what was broken off is never taken
+for whole, and two that make the same one at the same time both get one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import secrets
+import shutil
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from omegadot.commands.other_python import worker_command
+from omegadot.commands.versions.installer import Installer, InstallError, python_of
+from omegadot.commands.versions.product import Product
+from omegadot.commands.versions.release import Span
+from omegadot.harness.usage import UsageError
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a release is served: the worker's command, and where its interpreter came from."""
+
+    command: Sequence[str]
+    origin: str
+
+
+@dataclass(frozen=True)
+class Absent:
+    """Why there is no such place."""
+
+    reason: str
+
+
+def default_cache() -> Path:
+    """The user's folder for what can be made again, as the platform has it."""
+    home = Path.home()
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = home / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
+    return base / "omegadot" / "versions"
+
+
+def _suffix() -> str:
+    """What an environment depends on besides its release: this Python and this machine's kind."""
+    return f"-{sys.implementation.cache_tag}-{sys.platform}-{platform.machine()}"
+
+
+class Environments:
+    """The cache, and the installer that fills it; none where nothing may be fetched."""
+
+    def __init__(self, cache: Path, product: Product, installer: Installer | None) -> None:
+        self._cache, self._product, self._installer = cache, product, installer
+
+    def cached(self) -> list[str]:
+        """The releases of the product whose environments are whole."""
+        start, end = f"{self._product.package}-", f"{_suffix()}.json"
+        names = [file.name for file in self._cache.glob(f"{start}*{end}")]
+        versions = [name.removeprefix(start).removesuffix(end) for name in names]
+        return [version for version in versions if self._known(version) is not None]
+
+    def releases(self, span: Span) -> list[str]:
+        """Those that there are in a span; without an installer those in the cache.
+
+        Raises UsageError.
+        """
+        if self._installer is None:
+            return span.of(self.cached())
+        try:
+            return self._installer.releases(self._product.package, span)
+        except InstallError as error:
+            raise UsageError(
+                f"the releases of {self._product.package} cannot be listed "
+                f"({self._installer.name}: {error}); name versions instead of a range, "
+                "or work from the cache with --offline."
+            ) from error
+
+    def place(self, version: str) -> Place | Absent:
+        """A whole environment with this release, made now where there is none yet."""
+        python = self._known(version)
+        if python is None and self._installer is None:
+            return Absent("not in the cache, and nothing may be fetched while offline")
+        if python is not None:
+            return Place(worker_command(str(python)), "the cache")
+        assert self._installer is not None
+        try:
+            return Place(worker_command(str(self._made(version))), self._installer.name)
+        except InstallError as error:
+            ours = ".".join(map(str, sys.version_info[:2]))
+            return Absent(f"{self._installer.name}, for Python {ours}: {error}")
+        except OSError as error:
+            raise UsageError(
+                f"--cache {self._cache}: an environment cannot be made there ({error.strerror})."
+            ) from error
+
+    def _marker(self, version: str) -> Path:
+        return self._cache / f"{self._product.package}-{version}{_suffix()}.json"
+
+    def _known(self, version: str) -> Path | None:
+        """The interpreter of a whole environment; None where the Python it leads to is gone."""
+        try:
+            reported = json.loads(self._marker(version).read_text(encoding="utf-8"))
+            same = reported["requirements"] == self._product.requirements(version)
+            python = python_of(self._cache / str(reported["folder"]))
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+        return python if same and python.exists() else None
+
+    def _made(self, version: str) -> Path:
+        assert self._installer is not None
+        requirements = self._product.requirements(version)
+        marker = self._marker(version)
+        folder = self._cache / f"{marker.stem}-{secrets.token_hex(4)}"
+        self._cache.mkdir(parents=True, exist_ok=True)
+        try:
+            self._installer.create(folder)
+            self._installer.install(folder, requirements)
+        except BaseException:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        text = json.dumps({"folder": folder.name, "requirements": requirements})
+        fresh = self._cache / f".{folder.name}.json"
+        fresh.write_text(text, encoding="utf-8")
+        os.replace(fresh, marker)
+        return python_of(folder)

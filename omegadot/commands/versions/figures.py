@@ -1,0 +1,133 @@
+"""What one version answers, as figures: its drifts, its equations, its schemes and orders."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from omegadot.adapters.protocol import Description, Integrator
+from omegadot.commands.versions.aims import (
+    conserves_kinetic_energy,
+    drift_names,
+    equation_names,
+    order_names,
+    scheme_name,
+)
+from omegadot.commands.versions.metric import RATIO, Figure, Name
+from omegadot.commands.versions.truths import Exact
+from omegadot.diagnosis.scheme_study.fingerprint import fingerprint
+from omegadot.diagnosis.scheme_study.orders import Observed, global_errors, observe
+from omegadot.diagnosis.scheme_study.probes import Probe
+from omegadot.diagnosis.scheme_study.study import Order, ProbeStudy
+from omegadot.diagnosis.scheme_study.subject import Stepper, is_finite
+from omegadot.gates.case import Case
+from omegadot.gates.equation import forward_rows, inverse_rows
+from omegadot.gates.measured_run import CHANNELS, orders_for, scheme_key
+from omegadot.gates.model import body_rows, state_rows
+from omegadot.gates.rows import Row
+from omegadot.gates.verdicts import ORDER_TOLERANCE
+from omegadot.reference_impl.energy import total_energy
+from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.system import State
+from omegadot.workers.harness_end.process import Answer
+from omegadot.workers.wire import acceleration_from, body_from, state_from
+
+Figures = dict[Name, Figure]
+Wanted = Callable[[Name], bool]
+ROUNDING = "rounding alone"
+BLOWN_UP = Figure("blew up")
+
+
+def reported_figures(description: Description, native: dict[str, dict[str, str]]) -> Figures:
+    """What an engine says of itself and, where its adapter asks it, what it itself answers."""
+    found: Figures = {}
+    for part, kind in (("conventions", "convention"), ("defaults", "default")):
+        for name, value in native.get(part, {}).items():
+            found[kind, name] = Figure(value)
+    for clause in description.switched_off:
+        found["setup", "switched off", clause] = Figure("yes")
+    for integrator in description.integrators:
+        found["integrator", integrator.name] = Figure("there")
+    return found
+
+
+def drift_figures(case: Case, name: str, exact: Exact, step: Stepper) -> Figures:
+    """The largest distance from the exact course in each channel, and E/E0 at the end.
+
+    The band is what rounding may have grown to, along the exact course or the engine's own.
+    Raises NoAnswerError.
+    """
+    sweep, names = case.sweeps[0], drift_names(case, name)
+    state = step(case.initial, sweep.timestep, sweep.steps, sweep.every)
+    if not is_finite(state):
+        return dict.fromkeys(names, BLOWN_UP)
+    yardstick = exact.yardstick
+    own = growth_along(case.system, sweep.times, state, yardstick.rate)
+    growth = np.maximum(own, exact.growth)
+    bound = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth)
+    found: Figures = {}
+    if conserves_kinetic_energy(case):
+        energy = total_energy(case.system, state)
+        found[names[0]] = Figure(float(energy[-1] / energy[0]), float(bound["energy"][-1]))
+    for channel, metric in zip(CHANNELS, names[-len(CHANNELS) :], strict=True):
+        distance = yardstick.distance(channel, state, exact.state)
+        found[metric] = Figure(float(np.max(distance)), float(np.max(bound[channel])))
+    assert set(found) == set(names), RATIO
+    return found
+
+
+def scheme_figures(
+    probe: Probe, integrator: Integrator, step: Stepper, wanted: Wanted
+) -> tuple[Figures, ProbeStudy]:
+    """The schemes that an integrator equals on a probe, its orders there, and what is declared.
+
+    Raises NoAnswerError.
+    """
+    found: Figures = {}
+    name, matches, orders = integrator.name, None, {}
+    declared, key = orders_for(integrator, probe.system), scheme_key(integrator, probe.system)
+    if wanted(scheme_name(name, probe.kind)):
+        matches = tuple(fingerprint(probe, step))
+        schemes = dict.fromkeys(match.scheme for match in matches)
+        found[scheme_name(name, probe.kind)] = Figure(" or ".join(schemes) or "unknown")
+    if any(map(wanted, order_names(name, probe.kind))):
+        errors = global_errors(probe, step)
+        for channel, metric in zip(CHANNELS, order_names(name, probe.kind), strict=True):
+            seen = observe(errors[channel])
+            orders[channel] = Order(declared.get(channel), seen)
+            found[metric] = _order_figure(seen)
+    fits = None if matches is None or key is None else any(m.key == key for m in matches)
+    return found, ProbeStudy(Answer("ok"), integrator.scheme, fits, matches or (), orders)
+
+
+def _order_figure(seen: Observed) -> Figure:
+    if seen.kind == "floor":
+        return Figure(ROUNDING)
+    return Figure(seen.order if seen.kind == "settled" else None, ORDER_TOLERANCE)
+
+
+def equation_figures(case: Case, exact: Exact, forward: Answer, inverse: Answer) -> list[Row]:
+    """Omega-dot, acceleration and torque at random states, against their bounds."""
+    rows: list[Row] = []
+    if forward.ok:
+        found = acceleration_from(forward.result)
+        rows += forward_rows(case.system, exact.random, found, "residual")
+    if inverse.ok:
+        torque = inverse.result["torque"]
+        rows += inverse_rows(case.system, exact.random, exact.requested, torque)
+    return rows
+
+
+def figures_of_rows(case: Case, rows: Sequence[Row]) -> Figures:
+    """The rows of the equations as figures."""
+    names = {name[-1]: name for name in equation_names(case)}
+    return {names[row.channel]: Figure(row.value, row.bound or 0.0) for row in rows}
+
+
+def model_rows(case: Case, requested: State, answer: Answer) -> list[Row]:
+    """The body and a state read back, against what was asked."""
+    if not answer.ok:
+        return []
+    bodies, state = answer.result["bodies"], state_from(answer.result["state"])
+    return body_rows(case, body_from(bodies[0])) + state_rows(case, requested, state)

@@ -1,0 +1,133 @@
+"""What was found as plain data: printed as JSON, and all that tables and the page are made of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from omegadot import __version__
+from omegadot.commands.versions.aims import Aims, conserves_kinetic_energy
+from omegadot.commands.versions.bisection import Bisection, Step
+from omegadot.commands.versions.changes import (
+    Change,
+    all_changes,
+    integrator_of,
+    neighbours,
+    pace_changes,
+)
+from omegadot.commands.versions.measure import Portrait
+from omegadot.commands.versions.metric import Figure, Name, shown, title
+from omegadot.commands.versions.product import Product
+from omegadot.commands.versions.speed import pace_of
+from omegadot.workers.machine import describe_machine
+
+SCHEMA = 1
+Record = dict[str, Any]
+
+
+def record_of(
+    product: Product,
+    aims: Aims,
+    setup: str,
+    portraits: Sequence[Portrait],
+    bisection: Record | None,
+) -> Record:
+    """Versions, rising, with what changed from each to the next that could be asked."""
+    steps = [] if bisection else _steps(portraits)
+    return {
+        "schema": SCHEMA,
+        "omegadot": __version__,
+        "engine": product.engine,
+        "package": product.package,
+        "setup": setup,
+        "machine": describe_machine(),
+        "cases": [
+            {
+                "name": case.name,
+                "title": case.scenario.title,
+                "timestep": case.sweeps[0].timestep,
+                "duration": case.sweeps[0].timestep * case.sweeps[0].steps,
+                "energy_ratio": conserves_kinetic_energy(case),
+            }
+            for case in aims.cases
+        ],
+        "versions": [_version(portrait) for portrait in portraits],
+        "steps": steps,
+        "bisect": bisection,
+    }
+
+
+def _steps(portraits: Sequence[Portrait]) -> list[Record]:
+    paces = [pace_changes(one, other) for one, other in neighbours(portraits)]
+    return [
+        {
+            "from": one.version,
+            "to": other.version,
+            "changes": [change_record(change) for change in changes],
+            "paces": {name: vars(ratio) for name, ratio in pace.items()},
+        }
+        for (one, other, changes), pace in zip(all_changes(portraits), paces, strict=True)
+    ]
+
+
+def _version(portrait: Portrait) -> Record:
+    paces = {name: pace_of(times) for name, times in portrait.speeds.items()}
+    return {
+        "version": portrait.version,
+        "outcome": portrait.outcome,
+        "reason": portrait.reason,
+        "origin": portrait.origin,
+        "says": portrait.statement,
+        "integrators": portrait.integrators,
+        "faults": portrait.faults,
+        "troubles": portrait.troubles,
+        "figures": {title(name): _figure(name, f) for name, f in portrait.figures.items()},
+        "seconds_per_step": {name: vars(pace) for name, pace in paces.items() if pace},
+    }
+
+
+def _figure(name: Name, figure: Figure | None) -> Record | None:
+    if figure is None:
+        return None
+    number = figure.value
+    finite = not isinstance(number, float) or math.isfinite(number)
+    return {
+        "value": number if finite else None,
+        "band": figure.band if math.isfinite(figure.band) else None,
+        "text": shown(name, figure),
+    }
+
+
+def change_record(change: Change) -> Record:
+    """A change, with the parts of its name that tell what it is about."""
+    return {
+        "metric": title(change.name),
+        "kind": change.name[0],
+        "integrator": integrator_of(change.name),
+        "name": list(change.name),
+        "before": _figure(change.name, change.before),
+        "after": _figure(change.name, change.after),
+        "size": change.size if math.isfinite(change.size) else None,
+    }
+
+
+def bisection_record(arguments: str, matched: Sequence[Name], found: Bisection) -> Record:
+    """The releases found, and what was looked at on the way."""
+    return {
+        "words": arguments,
+        "metrics": [title(name) for name in matched],
+        "low": found.low.version if found.low else None,
+        "high": found.high.version if found.high else None,
+        "looked_at": [portrait.version for portrait in found.looked_at],
+        "found": [_found(step) for step in found.steps],
+    }
+
+
+def _found(step: Step) -> Record:
+    return {
+        "from": step.before.version,
+        "to": step.after.version,
+        "skipped": step.skipped,
+        "changes": [change_record(change) for change in step.changes],
+    }

@@ -1,0 +1,157 @@
+"""Which runs are copies of one another: the same scheme many times over is one vote, not many.
+
+Members are found by what they did, not by what they declare: two runs of one case and step belong
+together where their omega and attitude differ by no more than rounding may have grown to in either.
+Translation is left aside: engines that step one scheme at different points of the body, its origin
+or its centre of mass, turn alike.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.likeness import ROTATION, likeness
+from omegadot.gates.measured_run import scheme_key
+from omegadot.gates.truth import Truth
+from omegadot.harness.outcome import EngineCase, JudgedCase
+from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.system import Array
+from omegadot.workers.wire import state_from
+
+# The reference has no vote: its schemes are what the members are named after.
+NO_VOTE = ("exact", "reference")
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """Runs of one scenario and step that turn alike, as ``engine:integrator``.
+
+    scheme: the reference's that they equal, None where they equal none.  also: others that they
+    equal too, where the motion does not tell schemes apart; `scheme` is then the one that most
+    members declare.
+    """
+
+    scenario: str
+    timestep: float
+    scheme: str | None
+    members: tuple[str, ...]
+    also: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class _MeasuredRun:
+    """One run, or one of the reference's. bound: (n,), how far rounding may take its omega."""
+
+    name: str
+    scheme: str | None
+    orientation: Array
+    omega: Array
+    bound: Array
+
+
+def _alike(one: _MeasuredRun, others: Sequence[_MeasuredRun], rate: float) -> list[bool]:
+    """Whether a run agrees with each of the others, to the sum of both bounds."""
+    if not others:
+        return []
+    turns = attitude_angle(one.orientation, np.array([other.orientation for other in others]))
+    gaps = one.omega - np.array([other.omega for other in others])
+    spins = np.sqrt(np.add.reduce(gaps * gaps, -1)) / rate
+    found = []
+    for turn, spin, other in zip(turns, spins, others, strict=True):
+        bounds = dict.fromkeys(ROTATION, one.bound + other.bound)
+        found.append(likeness({"omega": spin, "attitude": turn}, bounds).agree)
+    return found
+
+
+def _bound(truth: Truth, sweep: Sweep, growth: Array) -> Array:
+    return truth.yardstick.round_off(sweep.timestep, sweep.sample_steps, growth)["omega"]
+
+
+def _runs(truth: Truth, engines: Iterable[EngineCase], sweep: Sweep) -> list[_MeasuredRun]:
+    """The runs of one step that ended well, each with the bound of the scheme that it declares."""
+    found = []
+    for engine in engines:
+        for judged in engine.runs:
+            if judged.sweep != sweep or judged.outcome != "ok" or engine.engine.name in NO_VOTE:
+                continue
+            answer = engine.result.runs[judged.integrator.name, sweep.timestep]
+            if len(answer.result["time"]) != len(sweep.times):
+                continue
+            state = state_from(answer.result["state"])
+            key = scheme_key(judged.integrator, truth.yardstick.system)
+            companion = truth.companions.get((key, sweep.timestep)) if key else None
+            growth = companion.growth if companion else truth.samples(sweep).growth
+            found.append(
+                _MeasuredRun(
+                    f"{engine.engine.name}:{judged.integrator.name}",
+                    judged.integrator.scheme,
+                    state.orientation,
+                    state.angular_velocity,
+                    _bound(truth, sweep, growth),
+                )
+            )
+    return found
+
+
+def _schemes(truth: Truth, sweep: Sweep) -> list[_MeasuredRun]:
+    """The reference's runs with this step."""
+    return [
+        _MeasuredRun(
+            key.scheme,
+            key.scheme,
+            companion.state.orientation,
+            companion.state.angular_velocity,
+            _bound(truth, sweep, companion.growth),
+        )
+        for (key, timestep), companion in truth.companions.items()
+        if timestep == sweep.timestep
+    ]
+
+
+def _grouped(runs: list[_MeasuredRun], rate: float) -> list[list[_MeasuredRun]]:
+    """The runs in groups: each agrees with every other of its group."""
+    groups: list[list[_MeasuredRun]] = []
+    for run in runs:
+        home = next((group for group in groups if all(_alike(run, group, rate))), None)
+        if home is None:
+            groups.append([run])
+        else:
+            home.append(run)
+    return groups
+
+
+def _named(group: list[_MeasuredRun], schemes: list[_MeasuredRun], rate: float) -> list[str]:
+    """The schemes that a group equals, the one that most of it declare first."""
+    alike = zip(schemes, _alike(group[0], schemes, rate), strict=True)
+    agreeing = list(dict.fromkeys(scheme.name for scheme, equal in alike if equal))
+    declared = Counter(run.scheme for run in group)
+    return sorted(agreeing, key=lambda name: -declared[name])
+
+
+def clusters_of(case: Case, truth: Truth, engines: Sequence[EngineCase]) -> list[Cluster]:
+    """The clusters of one case, step by step; a run that nothing else equals is one by itself."""
+    found, rate = [], truth.yardstick.rate
+    with np.errstate(all="ignore"):
+        for sweep in case.sweeps:
+            schemes = _schemes(truth, sweep)
+            for group in _grouped(_runs(truth, engines, sweep), rate):
+                names = tuple(run.name for run in group)
+                equal = _named(group, schemes, rate)
+                scheme, also = next(iter(equal), None), tuple(equal[1:])
+                found.append(Cluster(case.name, sweep.timestep, scheme, names, also))
+    return found
+
+
+def clusters_of_run(cases: Iterable[JudgedCase]) -> list[Cluster]:
+    """The clusters of every case that has an exact course to be measured by."""
+    return [
+        cluster
+        for judged in cases
+        if judged.truth is not None
+        for cluster in clusters_of(judged.case, judged.truth, judged.engines)
+    ]

@@ -1,0 +1,94 @@
+"""The likeliest cause of what the gates found, in words.
+
+``diagnose(case, truth, questions, result, runs) -> list[str]`` is a pure function of what the
+harness has after judging one engine on one case: the `Case`, its `Truth` (with the companions of
+the schemes in question), the `Questions` that were asked, the `CaseResult` with the engine's own
+answers, and the `JudgedRun` list of `judge_case`. Each sentence names a cause that was tried on
+those answers and explains them within the gates' own bounds. Where nothing does, or nothing failed,
+the list is empty: no guess is better than a wrong one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from omegadot.diagnosis import (
+    equation,
+    model,
+    pieces,
+    stepping,
+)
+from omegadot.diagnosis import (
+    reported_run_causes as runs_told,
+)
+from omegadot.diagnosis.reported_run import reported_run
+from omegadot.diagnosis.reported_sample_causes import omega_dot_late
+from omegadot.gates.case import Case
+from omegadot.gates.evaluation_states import EvaluationStates
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.judge import JudgedRun, shared_rows
+
+
+def diagnose(
+    case: Case,
+    truth: Truth,
+    evaluation: EvaluationStates,
+    result: CaseResult,
+    runs: Sequence[JudgedRun],
+) -> list[str]:
+    """Sentences that explain the failed gates, the most basic cause first; none without failure.
+
+    A wrong model or equation is looked for first, and explains the runs after it: these are looked
+    at by themselves only where neither gate failed.
+    """
+    with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+        return _causes(case, truth, evaluation, result, runs)
+
+
+def _causes(
+    case: Case,
+    truth: Truth,
+    evaluation: EvaluationStates,
+    result: CaseResult,
+    runs: Sequence[JudgedRun],
+) -> list[str]:
+    failed = {row.gate for row in shared_rows(case, evaluation, result) if row.verdict == "fail"}
+    found: list[str] = []
+    if "model" in failed:
+        found += model.causes(case, evaluation, result)
+    if "equation" in failed and not found:
+        found += equation.causes(case, evaluation, result)
+    if not failed:
+        for run in _shortest_failed(runs):
+            found = _of_run(case, truth, result, run)
+            if found:
+                break
+    return list(dict.fromkeys(found))
+
+
+def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list[str]:
+    """What is told of one run, then how it is stepped, then where it is sound and where it isn't.
+
+    Where nothing but the omega-dot told along it failed, only that is looked at.
+    """
+    reported = reported_run(case, truth, result, run)
+    if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
+        late = "" if reported is None else omega_dot_late(reported, result)
+        return [late] if late else []
+    found = runs_told.causes(case, truth, result, run)
+    found = found or stepping.causes(case, truth, result, run)
+    if found or reported is None or len(reported.time) != len(reported.sweep.times):
+        return found
+    return pieces.causes(reported)
+
+
+def _shortest_failed(runs: Sequence[JudgedRun]) -> list[JudgedRun]:
+    """Of each integrator the failed run of the fewest steps, for hypotheses are stepped anew."""
+    failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
+    shortest: dict[str, JudgedRun] = {}
+    for run in sorted(failed, key=lambda run: run.sweep.steps):
+        shortest.setdefault(run.integrator.name, run)
+    return list(shortest.values())

@@ -1,0 +1,214 @@
+"""Causes with a number in them, fitted to an engine's accelerations and then held to its bounds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.diagnosis.match import Match
+from omegadot.gates.scales import norm
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import (
+    applied_torque,
+    damping_torque,
+    gravity_torque,
+    torque,
+)
+from omegadot.reference_impl.motion import (
+    acceleration_of,
+    center_of_mass_acceleration,
+    forward_dynamics,
+)
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Acceleration, Array
+
+# A fitted number has rounding of its own, of about as many terms as there are components.
+SLACK = 4.0
+MOST_TRIES = 6
+
+
+def _term(match: Match, moment: Array, gravity: float) -> Acceleration:
+    """A torque's share of the acceleration, and that of a free body's weight."""
+    angular = apply(inverse(moving_inertia(match.system)), moment)
+    if match.system.load.pivot is None:
+        return Acceleration(angular, gravity * match.system.load.gravity + 0 * angular)
+    turned = center_of_mass_acceleration(match.system, match.states, angular)
+    still = center_of_mass_acceleration(match.system, match.states, 0 * angular)
+    return Acceleration(angular, turned - still)
+
+
+def _fit(match: Match, term: Acceleration) -> float | None:
+    """The k with ``found = true + k term``, each state weighted by its bound; None if none fits."""
+    true = match.true
+    rest, line = _weighted(match, _difference(match.found, true)), _weighted(match, term)
+    if not np.any(line):
+        return None
+    k = float(rest @ line / (line @ line))
+    added = Acceleration(true.angular + k * term.angular, true.linear + k * term.linear)
+    return k if match.fits(added, SLACK) else None
+
+
+def _spoken(what: str, factor: float, words: dict[int, str]) -> str:
+    nearest = round(factor)
+    if abs(factor - nearest) < 1e-9 and nearest in words:
+        return f"{what} {words[nearest]}"
+    return f"{what} is scaled by {factor:.6g}"
+
+
+def scaled_terms(match: Match) -> str:
+    """One of the equation's terms times a number, or a damping that nobody asked for."""
+    system, states = match.system, match.states
+    w = states.angular_velocity
+    gyroscopic = -cross(w, apply(moving_inertia(system), w))
+    terms = {
+        "the gyroscopic term": (gyroscopic, 0.0),
+        "gravity": (gravity_torque(system, states), 1.0),
+        "the applied torque": (applied_torque(system, states), 0.0),
+        "the damping": (damping_torque(system, states), 0.0),
+        "the torque of all loads": (torque(system, states), 0.0),
+    }
+    words = {0: "is missing", -1: "has the wrong sign", 2: "counts twice"}
+    for what, (moment, gravity) in terms.items():
+        k = _fit(match, _term(match, moment, gravity))
+        if k is not None:
+            over_mass = abs((1.0 + k) * float(system.body.mass) - 1.0) < 1e-9
+            text = _spoken(what, 1.0 + k, words)
+            return f"{text}: it is divided by the mass" if over_mass else text
+    k = _fit(match, _term(match, -w, 0.0))
+    if k is not None:
+        return f"a damping of {k:.3g} N m s/rad acts that nobody asked for"
+    return _gravity_vector(match)
+
+
+def _gravity_vector(match: Match) -> str:
+    """Another constant gravity than the one asked for, by least squares."""
+    system, states = match.system, match.states
+    rest = _weighted(match, _difference(match.found, match.true))
+    lines = []
+    for unit in np.eye(3):
+        other = replace(system, load=replace(system.load, gravity=system.load.gravity + unit))
+        more = _difference(forward_dynamics(other, states), match.true)
+        lines.append(_weighted(match, more))
+    change = np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
+    requested = system.load.gravity
+    other = replace(system, load=replace(system.load, gravity=requested + change))
+    if not match.fits(forward_dynamics(other, states), SLACK):
+        return ""
+    return (
+        f"gravity is {_vector(requested + change)} m/s^2, where {_vector(requested)} was asked for"
+    )
+
+
+def other_pivot(match: Match) -> str:
+    """Another pivot than the one asked for, by Gauss-Newton."""
+    system, requested = match.system, match.system.load.pivot
+    if requested is None:
+        return ""
+
+    def there(pivot: Array) -> Acceleration:
+        load = replace(system.load, pivot=pivot)
+        return forward_dynamics(replace(system, load=load), match.states)
+
+    delta = 1e-6 * float(norm(system.body.center_of_mass - requested))
+    pivot = np.array(requested, dtype=float)
+    for _ in range(MOST_TRIES):
+        here = there(pivot)
+        if match.fits(here, SLACK):
+            off = _vector(pivot - requested)
+            return f"the pivot lies at {_vector(pivot)} m, {off} m from where it was asked for"
+        rest = _weighted(match, _difference(match.found, here))
+        lines = [
+            _weighted(match, _difference(there(pivot + delta * unit), here)) / delta
+            for unit in np.eye(3)
+        ]
+        pivot = pivot + np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
+    return ""
+
+
+def _difference(one: Acceleration, other: Acceleration) -> Acceleration:
+    return Acceleration(one.angular - other.angular, one.linear - other.linear)
+
+
+def _weighted(match: Match, acceleration: Acceleration) -> Array:
+    """All components in one row, each state's in parts of its bound."""
+    parts = (
+        acceleration.angular / match.angular_bound[:, None],
+        acceleration.linear / match.linear_bound[:, None],
+    )
+    return np.concatenate([np.ravel(part) for part in parts])
+
+
+def _vector(values: Array) -> str:
+    return f"({', '.join(f'{value:.6g}' for value in values)})"
+
+
+def constant_inertia(match: Match) -> str:
+    """Another inertia, the same at every state: ``I w_dot + w x I w = tau`` solved for I.
+
+    Without any torque its size stays open, and is taken to be the asked one's.
+    """
+    w, w_dot = match.states.angular_velocity, match.found.angular
+    basis = _symmetric_basis()
+    columns = [apply(one, w_dot) + cross(w, apply(one, w)) for one in basis]
+    weight = 1.0 / match.angular_bound[:, None]
+    lines = np.stack([np.ravel(column * weight) for column in columns], axis=-1)
+    requested, moment = moving_inertia(match.system), torque(match.system, match.states)
+    if np.any(moment):
+        found = np.linalg.lstsq(lines, np.ravel(moment * weight), rcond=None)[0]
+        tensor = np.tensordot(found, basis, 1)
+    else:
+        tensor = np.tensordot(np.linalg.svd(lines, full_matrices=False)[2][-1], basis, 1)
+        tensor = tensor * np.trace(requested) / np.trace(tensor)
+    moments = np.linalg.eigvalsh(tensor)
+    if not moments[0] > 0.0:
+        return ""
+    angular = apply(inverse(tensor), moment - cross(w, apply(tensor, w)))
+    linear = match.true.linear
+    if match.system.load.pivot is not None:
+        linear = center_of_mass_acceleration(match.system, match.states, angular)
+    if not match.fits(Acceleration(angular, linear), SLACK * moments[-1] / moments[0]):
+        return ""
+    off = float(np.linalg.norm(tensor - requested, 2) / np.linalg.norm(requested, 2))
+    text = f"the dynamics are those of another inertia, {100 * off:.2g} % off"
+    return f"{text}: its moments are {_vector(moments)} kg m^2"
+
+
+def _symmetric_basis() -> Array:
+    pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    basis = np.zeros((6, 3, 3))
+    for n, (i, j) in enumerate(pairs):
+        basis[n, i, j] = basis[n, j, i] = 1.0
+    return basis
+
+
+def difference_quotient(match: Match) -> str:
+    """omega-dot as ``(omega(t + h) - omega(t)) / h``, one h at all states.
+
+    It is off by ``h/2`` times the second derivative; the third bounds what is left, by h times the
+    fastest rate of the size of the first.
+    """
+    acceleration = acceleration_of(match.system)
+    rate = float(np.max(norm(match.states.angular_velocity)))
+    if not rate > 0.0:
+        return ""
+    delta = 1e-4 / rate
+    step = SCHEMES["lie-rk4"].step
+    ahead = acceleration(step(acceleration, match.states, delta)).angular
+    behind = acceleration(step(acceleration, match.states, -delta)).angular
+    second = (ahead - behind) / (2 * delta)
+    rest = match.found.angular - match.true.angular
+    weight = 1.0 / match.angular_bound[:, None]
+    line = np.ravel(0.5 * second * weight)
+    h = float(np.ravel(rest * weight) @ line / (line @ line))
+    left = norm(rest - 0.5 * h * second)
+    if not 0.0 < h * rate < 0.1:
+        return ""
+    allowed = 4.0 * h * rate * (0.5 * h * norm(second)) + SLACK * match.angular_bound
+    # where the second derivative is small the third is not: the sizes of both count
+    allowed = allowed + h**2 * rate**2 * norm(match.true.angular)
+    if not np.all(left <= allowed):
+        return ""
+    return f"omega-dot looks like a difference quotient over {h:.2g} s"

@@ -1,0 +1,84 @@
+"""Where a run is sound and where it is not: sample to sample, and quantity by quantity.
+
+The last resort, where no single cause explains a whole run: every sample is stepped on by the
+declared scheme to the next, so that what is wrong at one place does not spoil the rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.diagnosis.conditions import only_where
+from omegadot.diagnosis.reported_run import ReportedRun, rows
+from omegadot.gates.measured_run import CHANNELS
+
+# One interval's rounding is within the bound of its end; its start is rounded, too.
+SLACK = 2.0
+ALONE = {
+    "the attitude": ("orientation",),
+    "omega": ("angular_velocity",),
+    "the position": ("position",),
+    "the linear velocity": ("linear_velocity",),
+    "the linear velocity, with the position,": ("linear_velocity", "position"),
+}
+
+
+def causes(reported: ReportedRun) -> list[str]:
+    """One sentence, or none."""
+    for cause in (_intervals, _one_field):
+        text = cause(reported)
+        if text:
+            return [text]
+    return []
+
+
+def sound_intervals(reported: ReportedRun) -> NDArray[np.bool_]:
+    """(n - 1,): whether the declared scheme leads from each sample to the next."""
+    numbers = reported.sweep.sample_steps
+    count = int(np.count_nonzero(np.diff(numbers) == reported.sweep.every))
+    ends = reported.stepped_on(rows(reported.state, slice(0, count)))
+    then, bounds = rows(reported.state, slice(1, count + 1)), reported.bounds
+    sound = np.ones(count, bool)
+    with np.errstate(all="ignore"):
+        for channel in CHANNELS:
+            apart = reported.truth.yardstick.distance(channel, then, ends)
+            sound &= apart <= SLACK * bounds[channel][1 : count + 1]
+    return sound
+
+
+def _one_field(reported: ReportedRun) -> str:
+    """All but one quantity are sound, and so they are stepped with the right one."""
+    for text, names in ALONE.items():
+        right = {name: getattr(reported.own, name) for name in names}
+        if reported.agrees(replace(reported.state, **right), reported.own):
+            own = right[names[0]]
+            off = float(np.max(np.abs(getattr(reported.state, names[0]) - own)))
+            part = off / float(np.max(np.abs(own)))
+            return f"{text} alone is wrong in the run, by up to {part:.1e} of it"
+    return ""
+
+
+def _intervals(reported: ReportedRun) -> str:
+    sound = sound_intervals(reported)
+    wrong = np.flatnonzero(~sound)
+    if len(sound) < 3 or not len(wrong) or not sound.any():
+        return ""
+    time, first, last = reported.time, int(wrong[0]), int(wrong[-1])
+    if len(wrong) == 1 and first == 0:
+        return f"only the first steps are wrong: from t = {time[1]:.4g} s on, the run is sound"
+    if len(wrong) <= 2 and last - first <= 1 and last + 1 < len(sound):
+        return _one_sample(reported, last)
+    if first > 0 and len(wrong) == len(sound) - first:
+        return f"the run is sound until t = {time[first]:.4g} s, and every step after it is wrong"
+    where = only_where(rows(reported.state, slice(0, len(sound))), sound)
+    return f"steps are wrong only where {where}" if where else ""
+
+
+def _one_sample(reported: ReportedRun, sample: int) -> str:
+    pairs = (values[sample] == values[sample - 1] for values in vars(reported.state).values())
+    if sample > 0 and all(bool(np.all(pair)) for pair in pairs):
+        return f"the sample at t = {reported.time[sample]:.4g} s is the one before, told twice"
+    return f"the sample at t = {reported.time[sample]:.4g} s alone does not belong to the run"

@@ -1,0 +1,132 @@
+"""One run as it was told, beside the same run stepped by the reference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.restep import step_anew
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.measured_run import CHANNELS, scheme_key
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.judge import JudgedRun
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.schemes import SCHEMES, Scheme
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.workers.wire import state_from
+
+LEAST_SAMPLES = 6
+# In parts of what rounding may do: a fitted number is then good to six digits.
+DISTINCT = 1e6
+
+
+def rows(state: State, which: slice | NDArray[Any]) -> State:
+    """Some samples of a run."""
+    return State(*(values[which] for values in vars(state).values()))
+
+
+@dataclass(frozen=True)
+class ReportedRun:
+    """time and state as told; own: the reference's run of the declared scheme, with the samples.
+
+    growth: (n,), how far rounding may have grown along it.
+    """
+
+    case: Case
+    truth: Truth
+    integrator: Integrator
+    sweep: Sweep
+    time: Array
+    state: State
+    own: State
+    growth: Array
+
+    @property
+    def bounds(self) -> dict[str, Array]:
+        """(n,) per channel: what rounding may account for."""
+        step, numbers = self.sweep.timestep, self.sweep.sample_steps
+        return self.truth.yardstick.round_off(step, numbers, self.growth)
+
+    def agrees(
+        self, state: State, other: State, samples: slice = slice(None), slack: float = 1.0
+    ) -> bool:
+        """Whether two courses are the same within rounding, at these samples."""
+        bounds, yardstick = self.bounds, self.truth.yardstick
+        with np.errstate(all="ignore"):
+            return all(
+                bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))
+                for c in CHANNELS
+            )
+
+    def stepped(
+        self,
+        scheme: Scheme | None = None,
+        system: System | None = None,
+        initial: State | None = None,
+        timestep: float | None = None,
+        every_step: bool = False,
+    ) -> State:
+        """The reference's run with something else in it; the declared where nothing is given."""
+        wanted, sweep = system or self.case.system, self.sweep
+        declared = SCHEMES[self.integrator.scheme or ""]
+        exact = acceleration_of(wanted)
+        plan = (timestep or sweep.timestep, sweep.steps, 1 if every_step else sweep.every)
+
+        def acceleration(state: State) -> Acceleration:  # a wrong end may leave q too long
+            return exact(replace(state, orientation=normalize(state.orientation)))
+
+        how = (wanted, acceleration, scheme or declared, self.integrator.steps_origin)
+        return step_anew(*how, initial or self.case.initial, plan)[1]
+
+    def stepped_on(self, states: State) -> State:
+        """Where the declared scheme leads from each of (m,) states to the next sample."""
+        plan = (self.sweep.timestep, self.sweep.every, self.sweep.every)
+        system, declared = self.case.system, SCHEMES[self.integrator.scheme or ""]
+        how = (system, acceleration_of(system), declared, self.integrator.steps_origin)
+        unit = replace(states, orientation=normalize(states.orientation))
+        return State(*(values[-1] for values in vars(step_anew(*how, unit, plan)[1]).values()))
+
+
+def reported_run(
+    case: Case, truth: Truth, result: CaseResult, run: JudgedRun
+) -> ReportedRun | None:
+    """The run that was judged; None where it failed or no scheme is declared for it."""
+    integrator, sweep = run.integrator, run.sweep
+    answer = result.runs.get((integrator.name, sweep.timestep))
+    key = scheme_key(integrator, case.system)
+    own = truth.companions.get((key, sweep.timestep)) if key else None
+    if answer is None or not answer.ok or own is None or integrator.scheme not in SCHEMES:
+        return None
+    time, state = answer.result["time"], state_from(answer.result["state"])
+    whole = ReportedRun(case, truth, integrator, sweep, time, state, own.state, own.growth)
+    return _until_it_shows(whole) if len(time) == len(sweep.times) else whole
+
+
+def _until_it_shows(reported: ReportedRun) -> ReportedRun:
+    """The beginning of a run, until it has departed from the reference's beyond any doubt.
+
+    Causes are tried by stepping anew: a short course is quicker, and followed more surely where the
+    motion magnifies what is not quite right yet.
+    """
+    numbers, bounds = reported.sweep.sample_steps, reported.bounds
+    distances = {
+        c: reported.truth.yardstick.distance(c, reported.state, reported.own) for c in CHANNELS
+    }
+    apart = np.any([~(distances[c] <= DISTINCT * bounds[c]) for c in CHANNELS], axis=0)
+    first = int(np.argmax(apart)) if apart.any() else len(numbers)
+    count = min(max(2 * first, LEAST_SAMPLES), len(numbers))
+    begun = slice(0, count)
+    sweep = Sweep(reported.sweep.timestep, int(numbers[count - 1]), reported.sweep.every)
+    part = (
+        reported.time[begun],
+        rows(reported.state, begun),
+        rows(reported.own, begun),
+        reported.growth[begun],
+    )
+    return ReportedRun(reported.case, reported.truth, reported.integrator, sweep, *part)

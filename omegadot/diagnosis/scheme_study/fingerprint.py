@@ -1,0 +1,120 @@
+"""Name the schemes that an integrator's steps equal to rounding, whatever it declares."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
+from omegadot.diagnosis.scheme_study.subject import Stepper, is_finite
+from omegadot.gates.measured_run import CHANNELS, SchemeKey
+from omegadot.reference_impl.body_origin import is_offset
+from omegadot.reference_impl.companion import CompanionRun, Steps, companion
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import State
+
+# Angles r a step. At 0.2 rad the schemes of order 4 differ most among each other. Below 1e-3 rad an
+# engine may expand the turn to second order: at 2e-4 rad the r^3/6 that it is then too long stands
+# clear of rounding, while the r^4/4 that the matrix is off orthogonal, which each engine mends
+# in coordinates of its own, does not.
+WEEDING = ((0.2, 60, 20), (0.02, 60, 20), (2e-4, 60, 20))
+# What is left is followed over three turns.
+FOLLOWING = ((0.02, 1000, 20),)
+Lanes = tuple[tuple[float, int, int], ...]
+
+
+@dataclass(frozen=True)
+class Match:
+    """A scheme that an integrator equals to rounding on one probe.
+
+    residual: the largest distance in attitude (rad) and omega (relative).  share: the largest part
+    of the bound that was used, over all channels; at most one.  steps: of the longest run.
+    """
+
+    scheme: str
+    at_origin: bool
+    residual: float
+    share: float
+    steps: int
+
+    @property
+    def key(self) -> SchemeKey:
+        """Scheme and point stepped."""
+        return SchemeKey(self.scheme, self.at_origin)
+
+
+def keys_of(probe: Probe) -> list[SchemeKey]:
+    """Every reference scheme; at the body's origin too where that is another computation."""
+    points = (False, True) if is_offset(probe.system) else (False,)
+    return [SchemeKey(name, point) for name in SCHEMES for point in points]
+
+
+_computing = threading.Lock()  # engines are studied side by side and share what is computed here
+
+
+@cache
+def _computed(probe: Probe, key: SchemeKey, lanes: Lanes) -> list[CompanionRun]:
+    plan = _plan(probe, lanes)
+    rate = truth_of(probe, _times(plan[0])).yardstick.rate
+    return companion(probe.system, probe.initial, key.scheme, rate, plan, key.at_origin)
+
+
+def _plan(probe: Probe, lanes: Lanes) -> list[Steps]:
+    return [Steps(probe.timestep(angle), steps, every) for angle, steps, every in lanes]
+
+
+def _times(step: Steps) -> tuple[float, ...]:
+    return tuple((step.kept * step.timestep).tolist())
+
+
+def _compare(
+    probe: Probe, key: SchemeKey, lanes: Lanes, measured_runs: Sequence[State]
+) -> tuple[float, float]:
+    """Largest residual, and largest share of the round-off bound: above one, they differ.
+
+    The bound is `Yardstick.round_off` with the growth along the scheme's own course. Where that
+    course blows up there is no bound, hence no match. An equation that engines solve less finely
+    than to rounding widens it in proportion.
+    """
+    widened = 1 + SCHEMES[key.scheme].solved_to / float(np.finfo(float).eps)
+    with _computing:
+        runs = _computed(probe, key, lanes)
+    residual = share = 0.0
+    for step, run, measured in zip(_plan(probe, lanes), runs, measured_runs, strict=True):
+        if not (np.all(np.isfinite(run.growth)) and is_finite(measured) and is_finite(run.state)):
+            return np.inf, np.inf
+        yardstick = truth_of(probe, _times(step)).yardstick
+        bound = yardstick.round_off(step.timestep, step.kept, run.growth)
+        for channel in CHANNELS:
+            distance = yardstick.distance(channel, measured, run.state)
+            share = max(share, float(np.max(distance / (widened * bound[channel]))))
+            if channel in ("omega", "attitude"):
+                residual = max(residual, float(np.max(distance)))
+    return residual, share
+
+
+def _measured_runs(probe: Probe, step: Stepper, lanes: Lanes) -> list[State]:
+    return [step(probe.initial, s.timestep, s.steps, s.every) for s in _plan(probe, lanes)]
+
+
+def fingerprint(probe: Probe, step: Stepper) -> list[Match]:
+    """The schemes that `step` equals on a probe, the simplest first; none where it is unknown.
+
+    Every reference scheme is stepped beside it at three step sizes; those that agree to round-off
+    are followed over a longer run. Raises NoAnswerError.
+    """
+    measured_runs = _measured_runs(probe, step, WEEDING)
+    left = [key for key in keys_of(probe) if _compare(probe, key, WEEDING, measured_runs)[1] <= 1.0]
+    if not left:
+        return []
+    longer, found = _measured_runs(probe, step, FOLLOWING), []
+    for key in left:
+        residual, share = _compare(probe, key, FOLLOWING, longer)
+        if share <= 1.0:
+            steps = max(count for _, count, _ in FOLLOWING)
+            found.append(Match(key.scheme, key.at_origin, residual, share, steps))
+    return found

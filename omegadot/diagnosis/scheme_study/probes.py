@@ -1,0 +1,118 @@
+"""A few systems on which schemes differ, and the exact motion of each.
+
+Their tensors are full, their axes turned and their loads askew, so that no two schemes coincide by
+symmetry. Steps are told by the angle that the body turns in one, ``|omega_0| h``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from omegadot.gates.measures import Yardstick
+from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.series import solve_series
+from omegadot.reference_impl.system import Array, Body, Load, State, System
+
+
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """A system with a start. kind: what it stands for, "free", "damped", "pivoted" or both."""
+
+    kind: str
+    shows: str
+    system: System
+    initial: State
+
+    def timestep(self, angle: float) -> float:
+        """The step in s in which the body turns by `angle` rad at its initial rate."""
+        return angle / float(np.linalg.norm(self.initial.angular_velocity))
+
+
+def _vector(*values: float) -> Array:
+    return np.array(values)
+
+
+def _state(orientation: Sequence[float], angular_velocity: Sequence[float]) -> State:
+    return State(
+        orientation=normalize(np.array(orientation)),
+        angular_velocity=np.array(angular_velocity),
+        position=_vector(0.4, -1.0, 2.0),
+        linear_velocity=_vector(1.0, -0.5, 0.8),
+    )
+
+
+def _flyer(center_of_mass: Array) -> Body:
+    inertia = [[1.0, 0.1, 0.2], [0.1, 1.6, -0.1], [0.2, -0.1, 2.1]]
+    return Body(np.array(2.0), center_of_mass, np.array(inertia))
+
+
+def _top() -> Body:
+    inertia = [[0.4, 0.03, -0.05], [0.03, 0.6, 0.02], [-0.05, 0.02, 0.3]]
+    return Body(np.array(1.5), _vector(0.05, -0.04, 0.2), np.array(inertia))
+
+
+_GRAVITY = _vector(0.3, -0.2, -1.0)  # m/s^2, weak, so that a fall stays as large as the body
+_HEAVY = _vector(0.0, 0.0, -9.81)
+_PIVOT = _vector(0.02, 0.01, -0.1)
+_FREE = _state((0.5, 0.1, -0.7, 0.4), (0.8, 2.0, -0.5))
+_SPUN = _state((0.8, 0.3, -0.2, 0.1), (1.0, 2.0, 6.0))
+
+
+def _pivoted(system: System) -> State:
+    return place_on_pivot(system, _SPUN)
+
+
+def _probes() -> tuple[Probe, ...]:
+    offset = System((_flyer(_vector(0.05, -0.02, 0.1)),), Load(gravity=_GRAVITY))
+    driven = Load(
+        gravity=_GRAVITY,
+        damping=np.array(0.15),
+        torque_body=_vector(0.3, -0.2, 0.1),
+        torque_world=_vector(-0.1, 0.4, 0.2),
+    )
+    top = System((_top(),), Load(gravity=_HEAVY, pivot=_PIVOT))
+    slowed = Load(_HEAVY, _PIVOT, np.array(0.1), torque_body=_vector(0.2, 0.1, 0.3))
+    slowed_top = System((_top(),), slowed)
+    return (
+        Probe("free", "a tumbling body falls, its centre of mass off its origin", offset, _FREE),
+        Probe(
+            "damped",
+            "a body falls, its centre of mass at its origin, damped, driven in body and world axes",
+            System((_flyer(np.zeros(3)),), driven),
+            _FREE,
+        ),
+        Probe("pivoted", "a heavy asymmetric top on a pivot", top, _pivoted(top)),
+        Probe(
+            "pivoted-damped",
+            "the top, damped and driven in body axes",
+            slowed_top,
+            _pivoted(slowed_top),
+        ),
+    )
+
+
+PROBES = _probes()
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """The exact course of a probe at some times, with the growth of rounding along it."""
+
+    state: State
+    yardstick: Yardstick
+    growth: Array
+
+
+@cache
+def truth_of(probe: Probe, times: tuple[float, ...]) -> Truth:
+    """The exact states of a probe at `times`, the first of them zero."""
+    moments = np.array(times)
+    state = solve_series(probe.system, probe.initial, moments)
+    yardstick = Yardstick(probe.system, moments, state)
+    return Truth(state, yardstick, growth_along(probe.system, moments, state, yardstick.rate))

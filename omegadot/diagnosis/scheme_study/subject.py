@@ -1,0 +1,66 @@
+"""The integrator under study: something that steps a probe, wherever it runs."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.scheme_study.probes import Probe
+from omegadot.reference_impl.system import State
+from omegadot.workers.harness_end.process import Answer, WorkerProcess
+from omegadot.workers.wire import description_of, state_from
+
+
+class NoAnswerError(Exception):
+    """The engine did not answer; the answer tells the outcome and the reason."""
+
+    def __init__(self, answer: Answer) -> None:
+        super().__init__(answer.reason)
+        self.answer = answer
+
+
+class Stepper(Protocol):
+    """How an integrator is asked to step."""
+
+    def __call__(self, initial: State, timestep: float, steps: int, every: int) -> State:
+        """The states at step 0, each `every`-th and the last. Raises NoAnswerError."""
+        ...
+
+
+def _requested(worker: WorkerProcess, operation: str, **fields: object) -> Answer:
+    answer = worker.request(operation, **fields)
+    if not answer.ok:
+        raise NoAnswerError(answer)
+    return answer
+
+
+def load(worker: WorkerProcess, probe: Probe) -> dict[str, Integrator]:
+    """Load a probe's system; the integrators as declared for it. Raises NoAnswerError."""
+    if not worker.started:
+        started = worker.start()
+        if not started.ok:
+            raise NoAnswerError(started)
+    answer = _requested(worker, "load", system=probe.system)
+    return {i.name: i for i in description_of(answer.result).integrators}
+
+
+def stepper_of(worker: WorkerProcess, integrator: str) -> Stepper:
+    """The steps of one integrator, over the system that the worker has loaded."""
+
+    def step(initial: State, timestep: float, steps: int, every: int) -> State:
+        plan = {"timestep": timestep, "steps": steps, "every": every}
+        answer = _requested(worker, "run", initial=initial, integrator=integrator, **plan)
+        state, kept = state_from(answer.result["state"]), -(-steps // every) + 1
+        if len(state.orientation) != kept:
+            came = f"{len(state.orientation)} samples came back, {kept} were asked for"
+            raise NoAnswerError(Answer("raised", came))
+        return state
+
+    return step
+
+
+def is_finite(state: State) -> bool:
+    """Whether every number of a course is finite."""
+    return all(bool(np.all(np.isfinite(values))) for values in vars(state).values())

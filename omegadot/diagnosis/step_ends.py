@@ -1,0 +1,86 @@
+"""What wrong steppers make of the end of a step: ``end(before, after, dt) -> state``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.gates.scales import norm
+from omegadot.reference_impl.rotations import (
+    conjugate,
+    normalize,
+    quaternion_product,
+    turn_in_body,
+)
+from omegadot.reference_impl.schemes import AccelerationOf, Scheme
+from omegadot.reference_impl.system import Array, State
+
+End = Callable[[State, State, float | Array], State]
+
+
+def with_end(scheme: Scheme, end: End) -> Scheme:
+    """A scheme whose every step ends in ``end(before, after, dt)`` instead of ``after``."""
+
+    def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
+        return end(state, scheme.step(acceleration, state, dt), dt)
+
+    return replace(scheme, step=step)
+
+
+def left_multiplied(before: State, after: State, dt: float | Array) -> State:
+    """The attitude's change in body axes from the left: ``dq q`` for ``q dq``."""
+    q = normalize(before.orientation)
+    change = quaternion_product(conjugate(q), after.orientation)
+    return replace(after, orientation=quaternion_product(change, q))
+
+
+def straight_quaternion(before: State, after: State, dt: float | Array) -> State:
+    """``q + h/2 q omega``, never normalised."""
+    w, h = after.angular_velocity, np.asarray(dt)[..., None]
+    pure = np.concatenate([np.zeros_like(w[..., :1]), 0.5 * w], axis=-1)
+    q = before.orientation
+    return replace(after, orientation=q + h * quaternion_product(q, pure))
+
+
+def turned_by_last_omega(before: State, after: State, dt: float | Array) -> State:
+    """``q exp(h omega)`` with the omega at the end of the step."""
+    h = np.asarray(dt)[..., None]
+    turned = turn_in_body(before.orientation, after.angular_velocity, h)
+    return replace(after, orientation=turned)
+
+
+def single_precision(before: State, after: State, dt: float | Array) -> State:
+    """Every number rounded to single precision."""
+    return State(*(f.astype(np.float32).astype(float) for f in vars(after).values()))
+
+
+def asleep_below(rate: float) -> End:
+    """Omega is zero below a rate in rad/s."""
+
+    def end(before: State, after: State, dt: float | Array) -> State:
+        w = after.angular_velocity
+        return replace(after, angular_velocity=np.where(norm(w)[..., None] < rate, 0.0, w))
+
+    return end
+
+
+def clipped_at(rate: float) -> End:
+    """Each component of omega is held within a rate in rad/s."""
+
+    def end(before: State, after: State, dt: float | Array) -> State:
+        return replace(after, angular_velocity=np.clip(after.angular_velocity, -rate, rate))
+
+    return end
+
+
+def held_below(rate: float) -> End:
+    """Omega is scaled down to a rate in rad/s."""
+
+    def end(before: State, after: State, dt: float | Array) -> State:
+        w = after.angular_velocity
+        with np.errstate(divide="ignore"):
+            return replace(after, angular_velocity=w * np.minimum(1.0, rate / norm(w)[..., None]))
+
+    return end

@@ -1,0 +1,192 @@
+"""Causes in the stepping: another scheme, another step, another force, a limit on omega."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.diagnosis.reported_run import ReportedRun, reported_run
+from omegadot.diagnosis.step_ends import (
+    End,
+    clipped_at,
+    held_below,
+    left_multiplied,
+    straight_quaternion,
+    turned_by_last_omega,
+    with_end,
+)
+from omegadot.gates.case import Case
+from omegadot.gates.scales import norm
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.judge import JudgedRun
+from omegadot.reference_impl.body_origin import is_offset
+from omegadot.reference_impl.growth import changes
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import Array, State
+
+ENDS: dict[str, End] = {
+    "the attitude's change in body axes is multiplied from the left": left_multiplied,
+    "the attitude is stepped as q + h/2 q omega and not normalised": straight_quaternion,
+    "the attitude turns by the step's last omega alone": turned_by_last_omega,
+}
+MOST_TRIES = 8
+MOST_STEPS = 5000  # causes are tried by stepping anew, and a step takes about 0.1 ms
+# A fitted run has come out of a search that ends within rounding, and bounds are of one run.
+SLACK = 4.0
+
+
+def causes(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list[str]:
+    """One sentence, or none."""
+    reported = reported_run(case, truth, result, run)
+    finite = reported is not None and all(
+        np.all(np.isfinite(f)) for f in vars(reported.state).values()
+    )
+    if reported is None or not finite or len(reported.time) != len(reported.sweep.times):
+        return []
+    if reported.sweep.steps > MOST_STEPS:
+        return []
+    for cause in (
+        _precision,
+        _asleep,
+        _other_scheme,
+        _other_end,
+        _longer,
+        _damped,
+        _clipped,
+        _held,
+    ):
+        text = cause(reported)
+        if text:
+            return [text]
+    return []
+
+
+def _precision(reported: ReportedRun) -> str:
+    """Attitude or omega of every sample after the start are numbers of single precision.
+
+    Places are not looked at: they may follow, in double, from what is kept.
+    """
+
+    def single(state: State, field: str) -> bool:
+        kept = getattr(state, field)[1:]
+        moves = bool(np.ptp(kept, axis=0).any())  # a body put to sleep has zeros
+        return moves and np.array_equal(kept, kept.astype(np.float32).astype(float))
+
+    fields = {"orientation": "attitude", "angular_velocity": "omega"}
+    found = [
+        s for f, s in fields.items() if single(reported.state, f) and not single(reported.own, f)
+    ]
+    what = "state" if len(found) == 2 else "".join(found)
+    return f"the {what} is kept in single precision" if found else ""
+
+
+def _asleep(reported: ReportedRun) -> str:
+    still = ~np.any(reported.state.angular_velocity, axis=-1)
+    if not still.any() or not np.all(np.any(reported.own.angular_velocity, axis=-1)):
+        return ""
+    first = int(np.argmax(still))
+    if not np.all(still[first:]):
+        return ""
+    rate = float(norm(reported.own.angular_velocity[first]))
+    when = f"from t = {reported.time[first]:.4g} s on"
+    return f"the body is put to sleep: omega is zero {when}, where it should be {rate:.2g} rad/s"
+
+
+def _held(reported: ReportedRun) -> str:
+    """The greatest |omega| that is told is a limit, and nearly the one that the steps keep to."""
+    greatest = float(np.max(norm(reported.state.angular_velocity[1:])))
+    if not 0.0 < greatest < float(np.max(norm(reported.own.angular_velocity[1:]))):
+        return ""
+    declared = SCHEMES[reported.integrator.scheme or ""]
+
+    def stepped(more: float) -> State:
+        return reported.stepped(with_end(declared, held_below(greatest * (1.0 + more))))
+
+    more = _search(reported, stepped, 1e-6)
+    return "" if more is None else f"omega is held below {greatest * (1.0 + more):.6g} rad/s"
+
+
+def _clipped(reported: ReportedRun) -> str:
+    """The greatest component of omega that is told is a limit to each of them."""
+    greatest = float(np.max(np.abs(reported.state.angular_velocity[1:])))
+    if not 0.0 < greatest < float(np.max(np.abs(reported.own.angular_velocity[1:]))):
+        return ""
+    declared = SCHEMES[reported.integrator.scheme or ""]
+
+    def stepped(more: float) -> State:
+        return reported.stepped(with_end(declared, clipped_at(greatest * (1.0 + more))))
+
+    more = _search(reported, stepped, 1e-6)
+    if more is None:
+        return ""
+    return f"each component of omega is held within {greatest * (1.0 + more):.6g} rad/s"
+
+
+def _other_scheme(reported: ReportedRun) -> str:
+    for name, scheme in SCHEMES.items():
+        declared = reported.integrator.steps_origin
+        for origin in (declared, not declared) if is_offset(reported.case.system) else (declared,):
+            other = replace(reported, integrator=replace(reported.integrator, steps_origin=origin))
+            if reported.agrees(reported.state, other.stepped(scheme)):
+                where = "the body's origin" if origin else "the centre of mass"
+                if name == reported.integrator.scheme:
+                    return f"it steps {where}, which is not what is declared"
+                return f"it is stepped by {name}, though {reported.integrator.scheme} is declared"
+    return ""
+
+
+def _other_end(reported: ReportedRun) -> str:
+    for text, end in ENDS.items():
+        declared = SCHEMES[reported.integrator.scheme or ""]
+        if reported.agrees(reported.state, reported.stepped(with_end(declared, end))):
+            return text
+    return ""
+
+
+def _search(reported: ReportedRun, stepped: Callable[[float], State], delta: float) -> float | None:
+    """The number with which a run comes to the told one, by Gauss-Newton; None if none does.
+
+    delta: a small change of the number, of which one per cent is still told from rounding.
+    """
+    rate, found = reported.truth.yardstick.rate, 0.0
+
+    def apart(state: State) -> Array:
+        return np.ravel(changes(state, reported.state, rate))
+
+    for _ in range(MOST_TRIES):
+        here = stepped(found)
+        if reported.agrees(reported.state, here, slack=SLACK):
+            return found
+        slope = (apart(here) - apart(stepped(found + delta))) / delta
+        size = float(slope @ slope)
+        if not size > 0.0 or not np.isfinite(size):
+            return None
+        found += float(slope @ apart(here)) / size
+        if not np.isfinite(found):
+            return None
+    return None
+
+
+def _longer(reported: ReportedRun) -> str:
+    h = reported.sweep.timestep
+    part = _search(reported, lambda k: reported.stepped(timestep=h * (1.0 + k)), 1e-6)
+    if part is None or part == 0.0:
+        return ""
+    return f"steps are {100 * abs(part):.4g} % too {'long' if part > 0 else 'short'}"
+
+
+def _damped(reported: ReportedRun) -> str:
+    system, yardstick = reported.case.system, reported.truth.yardstick
+
+    def stepped(damping: float) -> State:
+        more = replace(system.load, damping=system.load.damping + damping)
+        return reported.stepped(system=replace(system, load=more))
+
+    scale = yardstick.scale.smallest / float(reported.time[-1])  # takes a run's time to act
+    found = _search(reported, stepped, 1e-6 * scale)
+    if found is None or found == 0.0:
+        return ""
+    return f"a damping of {found:.3g} N m s/rad acts in the steps that nobody asked for"

@@ -1,0 +1,122 @@
+"""Gate 2, equation: omega-dot, acceleration and torque of the engine at identical states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.gates.case import Case
+from omegadot.gates.rows import Row, within
+from omegadot.gates.scales import (
+    EPS,
+    ROUNDINGS_PER_EVALUATION,
+    body_scale,
+    linear_size,
+    norm,
+    torque_size,
+)
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.motion import (
+    center_of_mass_acceleration,
+    forward_dynamics,
+    inverse_dynamics,
+)
+from omegadot.reference_impl.precision import cast, extended, extended_state
+from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+GATE = "equation"
+BOUND = ROUNDINGS_PER_EVALUATION * EPS
+
+
+def random_states(case: Case, count: int, seed: Sequence[int]) -> State:
+    """`count` states: any attitude, rates over two decades about the scenario's own."""
+    random = np.random.default_rng(seed)
+    orientation = random.standard_normal((count, 4))
+    orientation /= np.linalg.norm(orientation, axis=-1, keepdims=True)
+    body, initial = case.system.body, case.initial
+    gyration = np.sqrt(float(np.trace(body.inertia)) / float(body.mass))
+    rate = float(norm(initial.angular_velocity)) or 1.0
+    speed = float(norm(initial.linear_velocity)) or rate * gyration
+    reach = float(norm(initial.position)) or gyration
+    spread = 10.0 ** random.uniform(-1.0, 1.0, (count, 1))
+    state = State(
+        orientation=orientation,
+        angular_velocity=rate * spread * random.standard_normal((count, 3)),
+        position=reach * random.standard_normal((count, 3)),
+        linear_velocity=speed * random.standard_normal((count, 3)),
+    )
+    return place_on_pivot(case.system, state)
+
+
+def random_acceleration(system: System, states: State, seed: Sequence[int]) -> Acceleration:
+    """An acceleration to ask inverse dynamics for: not the one that the loads would give."""
+    random = np.random.default_rng(seed)
+    free = forward_dynamics(system, states)
+    rate = norm(states.angular_velocity)[..., None]
+    angular = free.angular + rate**2 * random.standard_normal(free.angular.shape)
+    if system.load.pivot is not None:  # the pivot, not the caller, sets the linear part
+        return Acceleration(angular, center_of_mass_acceleration(system, states, angular))
+    linear = free.linear + rate**2 * random.standard_normal(free.linear.shape)
+    return Acceleration(angular, linear)
+
+
+def _row(channel: str, metric: str, residual: Array, size: Array, condition: float = 1.0) -> Row:
+    """The state with the largest residual, relative to `size`, against ``64 eps condition``.
+
+    Where the size is zero there is nothing to be wrong about: any residual there is infinite.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value = np.where(residual == 0.0, 0.0, residual / size)
+    largest = float(np.max(value)) if np.all(np.isfinite(residual)) else float("nan")
+    return within(GATE, channel, metric, largest, "1", BOUND * condition)
+
+
+def forward_rows(system: System, states: State, found: Acceleration, metric: str) -> list[Row]:
+    """Forward dynamics against equation (8).
+
+    omega_dot: ``J |omega_dot - reference| / S``, S the terms of (8) by size (`torque_size`) and J
+    the largest inertia among them, within ``64 eps cond``, ``cond = J / smallest``: an engine that
+    inverts the inertia cannot do better.
+    linear_momentum: the centre of mass's acceleration, relative to its terms by size.
+    """
+    true = forward_dynamics(extended(system), extended_state(states))
+    scale = body_scale(system)
+    angular = norm(found.angular - true.angular)
+    linear = norm(found.linear - true.linear)
+    size = torque_size(system, states, true) / scale.largest
+    return [
+        _row("omega_dot", metric, angular, size, scale.largest / scale.smallest),
+        _row("linear_momentum", metric, linear, linear_size(system, states, true)),
+    ]
+
+
+def reported_rows(system: System, states: State, omega_dot: Array) -> list[Row]:
+    """The omega-dot told along a run, against equation (8) at the very states that it tells.
+
+    States that are not finite, or whose squares overflow, have no omega-dot to be held against.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        rate = norm(states.angular_velocity) ** 2
+    kept = np.isfinite(rate) & np.isfinite(norm(states.orientation)) & np.isfinite(norm(omega_dot))
+    if not kept.any():
+        return []
+    sound = State(*(values[kept] for values in vars(states).values()))
+    unit = replace(sound, orientation=normalize(sound.orientation))
+    true = forward_dynamics(extended(system), extended_state(unit))
+    scale = body_scale(system)
+    size = torque_size(system, unit, true) / scale.largest
+    apart = norm(omega_dot[kept] - true.angular)
+    return [_row("omega_dot", "residual_in_run", apart, size, scale.largest / scale.smallest)]
+
+
+def inverse_rows(
+    system: System, states: State, requested: Acceleration, torque: Array
+) -> list[Row]:
+    """Inverse dynamics: ``|tau - reference|`` relative to the terms of equation (8) by size."""
+    exactly = cast(requested, np.longdouble)
+    true = inverse_dynamics(extended(system), extended_state(states), exactly)
+    size = torque_size(system, states, requested)
+    return [_row("torque", "residual", norm(torque - true), size)]

@@ -1,0 +1,38 @@
+"""The states that every engine's equations are asked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from omegadot.gates.case import Case
+from omegadot.gates.equation import random_acceleration, random_states
+from omegadot.gates.truth import Truth, path_states
+from omegadot.reference_impl.system import Acceleration, Array, State
+
+RANDOM_STATES = 200
+PATH_STATES = 200
+
+
+@dataclass(frozen=True)
+class EvaluationStates:
+    """States to put to an engine's equations: random ones, and ones along the exact course."""
+
+    random: State
+    path: State
+    requested: Acceleration
+
+
+@dataclass(frozen=True)
+class Probe:
+    """States (m, ...) to take one step from, and the steps (m, k) in s to try there."""
+
+    states: State
+    timesteps: Array
+
+
+def evaluation_states_of(case: Case, truth: Truth, seed: int) -> EvaluationStates:
+    """The states that every engine is asked about; the same for all, and for every run."""
+    own = [seed, *case.name.encode()]
+    states = random_states(case, RANDOM_STATES, own)
+    path = path_states(case, truth, PATH_STATES)
+    return EvaluationStates(states, path, random_acceleration(case.system, states, own))

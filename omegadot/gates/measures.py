@@ -1,0 +1,121 @@
+"""How far two motions are apart, channel by channel, and how far rounding alone may take them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from omegadot.gates.scales import (
+    EPS,
+    ROUNDINGS_PER_STEP,
+    BodyScale,
+    angular_size,
+    body_scale,
+    norm,
+)
+from omegadot.reference_impl.energy import kinetic_energy, total_energy
+from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.system import Array, State, System
+
+TRAJECTORY_UNITS = {"omega": "1", "attitude": "rad", "position": "m"}
+INVARIANT_CHANNELS = ("energy", "angular_momentum", "linear_momentum")
+Distance = Callable[[State, State], Array]
+
+
+class Yardstick:
+    """The sizes of one exact motion, against which its imitations are measured.
+
+    rate: rad/s, the greatest |omega|; where the body never turns, the rate that its greatest
+    omega-dot would reach over the motion.
+    """
+
+    def __init__(self, system: System, times: Array, exact: State) -> None:
+        self.system, self.times, self.exact = system, times, exact
+        self.scale: BodyScale = body_scale(system)
+        acceleration = forward_dynamics(system, exact)
+        self.acceleration = float(np.max(angular_size(system, exact, acceleration)))
+        duration = float(times[-1])
+        self.rate = float(np.max(norm(exact.angular_velocity))) or self.acceleration * duration
+        self.rate = self.rate or 1.0 / duration
+        self.speed = float(np.max(norm(exact.linear_velocity))) + self.rate * self.scale.lever
+        self.reach = float(np.max(norm(exact.position))) + self.scale.lever
+        self.gravity = float(norm(system.load.gravity))
+        moment = float(np.max(norm(angular_momentum(system, exact))))
+        self.sizes = {
+            "energy": self._energy_size(),
+            "angular_momentum": moment or self.scale.smallest * self.rate,
+            "linear_momentum": self._linear_momentum_size(),
+        }
+
+    def _energy_size(self) -> float:
+        kinetic = float(np.max(kinetic_energy(self.system, self.exact)))
+        return kinetic or 0.5 * self.scale.smallest * self.rate**2
+
+    def _linear_momentum_size(self) -> float:
+        """Its greatest value; for a body that stays in place, that of its turning."""
+        greatest = float(np.max(norm(linear_momentum(self.system, self.exact))))
+        gyration = np.sqrt(float(np.trace(self.system.body.inertia)) / self.scale.mass)
+        return greatest or self.scale.mass * self.rate * float(gyration)
+
+    def distance(self, channel: str, one: State, other: State) -> Array:
+        """(n,): |one - other| in this channel.
+
+        omega: over the rate.  attitude: rad, or how much longer a quaternion is, whichever is more.
+        position: m.  energy, momenta: over their sizes.
+        """
+        # An engine that has gone astray may be where squares overflow: that far away is infinite.
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._distance(channel, one, other)
+
+    def _distance(self, channel: str, one: State, other: State) -> Array:
+        if channel == "omega":
+            return np.asarray(norm(one.angular_velocity - other.angular_velocity) / self.rate)
+        if channel == "attitude":
+            length = np.abs(norm(one.orientation) - norm(other.orientation))
+            return np.maximum(attitude_angle(one.orientation, other.orientation), length)
+        if channel == "position":
+            return norm(one.position - other.position)
+        if channel == "energy":
+            gap = np.abs(total_energy(self.system, one) - total_energy(self.system, other))
+        else:
+            momentum = angular_momentum if channel == "angular_momentum" else linear_momentum
+            gap = norm(momentum(self.system, one) - momentum(self.system, other))
+        return np.asarray(gap / self.sizes[channel])
+
+    def round_off(self, timestep: float, steps: Array, growth: Array) -> dict[str, Array]:
+        """(n,) per channel: how far rounding may take a sound engine after so many steps.
+
+        Each step adds ``c eps (1 + h A / rate)`` (A the greatest size of omega-dot, so that an
+        ill-conditioned inertia counts), and what was added earlier grows by at most `growth`:
+        ``theta = c eps (n + 1) (1 + h A / rate) growth``, for attitude in rad and for
+        omega / rate alike. The others follow from it to first order.
+        """
+        amount = ROUNDINGS_PER_STEP * EPS * (steps + 1.0)
+        theta = amount * (1.0 + timestep * self.acceleration / self.rate) * growth
+        time = timestep * steps
+        speed = amount * (self.speed + self.gravity * time) + theta * self.rate * self.scale.lever
+        reach = amount * self.reach + time * speed + theta * self.scale.lever
+        return {
+            "omega": theta,
+            "attitude": theta,
+            "position": reach,
+            **self.invariant_round_off(theta, speed, reach),
+        }
+
+    def invariant_round_off(self, theta: Array, speed: Array, reach: Array) -> dict[str, Array]:
+        """(n,) per invariant: how far it is off where omega and attitude are off by theta, the
+        velocity by speed in m/s and the position by reach in m, to first order.
+        """
+        mass, spin = self.scale.mass, self.scale.largest * self.rate
+        turning = 2.0 * spin * theta  # |I d_omega| + |d_theta x I omega|
+        moving = mass * self.speed * speed + mass * self.gravity * reach
+        lever = mass * (self.scale.lever * speed + self.speed * reach)
+        pivoted = 0.0 if self.system.load.pivot is None else lever
+        return {
+            "energy": (turning * self.rate + moving) / self.sizes["energy"],
+            "angular_momentum": (turning + pivoted) / self.sizes["angular_momentum"],
+            "linear_momentum": mass * speed / self.sizes["linear_momentum"],
+        }

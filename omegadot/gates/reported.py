@@ -1,0 +1,87 @@
+"""Gate 5, trajectory: a run tells what the contract asks, whatever the scheme and its order.
+
+It begins at the state that it was given, its quaternions are of unit length, and an engine that
+works in double precision tells numbers of double precision. No step size excuses any of these.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.gates import equation
+from omegadot.gates.case import Sweep
+from omegadot.gates.measured_run import MeasuredRun
+from omegadot.gates.measures import TRAJECTORY_UNITS
+from omegadot.gates.rows import Row, within
+from omegadot.gates.scales import EPS, ROUNDINGS_PER_STEP, norm
+from omegadot.gates.truth import Truth
+from omegadot.reference_impl.system import Array, State, System
+
+GATE = "trajectory"
+
+
+def rows(truth: Truth, measured: MeasuredRun, state: State, precision: str) -> list[Row]:
+    """The start, the quaternion's length and, where it is found, single precision."""
+    found = [_start(measured), _length(measured.sweep, state)]
+    if precision == "float64" and _is_single(state, truth.at(measured.sweep)):
+        note = "the state is kept in single precision, and double is declared"
+        eps = float(np.finfo(np.float32).eps)
+        found.append(Row(GATE, "attitude", "precision", eps, "1", EPS, "fail", note))
+    return found
+
+
+def omega_dot_rows(system: System, state: State, omega_dot: Array) -> list[Row]:
+    """The omega-dot told along a run, held to the equation's bound at the states it tells."""
+    found = [replace(row, gate=GATE) for row in equation.reported_rows(system, state, omega_dot)]
+    note = "the omega-dot told along the run is not that of its states"
+    return [replace(row, note=note) if row.verdict == "fail" else row for row in found]
+
+
+def _start(measured: MeasuredRun) -> Row:
+    """The first sample's distance from the state given, in parts of rounding in and out."""
+    shares = {}
+    for channel in TRAJECTORY_UNITS:
+        allowed = measured.round_off[channel][0] + _first(measured.floor.get(channel))
+        error = float(measured.error[channel][0])
+        shares[channel] = error / allowed if error else 0.0
+    worst = max(shares, key=lambda channel: shares[channel])
+    row = within(GATE, worst, "start", float(shares[worst]), "1", 1.0)
+    if row.verdict == "pass":
+        return row
+    note = "the run does not begin at the state that it is given"
+    return Row(GATE, worst, "start", row.value, "1", 1.0, "fail", note)
+
+
+def _first(floor: Array | None) -> float:
+    return 0.0 if floor is None else float(floor[0])
+
+
+def _length(sweep: Sweep, state: State) -> Row:
+    """How far a quaternion is from unit length; each step may round it by ``16 eps``."""
+    off = np.abs(norm(state.orientation) - 1.0)
+    allowed = ROUNDINGS_PER_STEP * EPS * (sweep.sample_steps + 1.0)
+    place = int(np.argmax(off / allowed))
+    row = within(GATE, "attitude", "unit_length", float(off[place]), "1", float(allowed[place]))
+    if row.verdict == "pass":
+        return row
+    note = f"the quaternion is not of unit length: it is off by {row.value:.1e}"
+    return Row(GATE, "attitude", "unit_length", row.value, "1", row.bound, "fail", note)
+
+
+def _is_single(state: State, exact: State) -> bool:
+    """Whether attitude or omega move, and every one told after the start is a single's number."""
+    pairs = (
+        (state.orientation[1:], exact.orientation[1:]),
+        (state.angular_velocity[1:], exact.angular_velocity[1:]),
+    )
+    return any(
+        _singles(reported) and not _singles(true) and np.ptp(reported, 0).any()
+        for reported, true in pairs
+    )
+
+
+def _singles(values: Array) -> bool:
+    with np.errstate(over="ignore"):
+        return bool(np.array_equal(values, values.astype(np.float32).astype(float)))

@@ -1,0 +1,71 @@
+"""Gate 3 for a scheme that nobody knows: a run begun anew at a sample of its own must go on alike.
+
+The motion is that of an autonomous system, so a step depends on the state alone: not on the clock,
+nor on how the state was come by. A run from the state told at one sample then tells the same
+samples after it. It does not where a sample is not the state that was stepped (told late, or made
+up afterwards), where something acts for a while only, and where there is noise.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates.case import Sweep
+from omegadot.gates.likeness import Likeness, likeness
+from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.rows import Row
+from omegadot.gates.truth import Truth
+from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.system import Array, State
+
+GATE = "scheme"
+METRIC = "begun_anew"
+
+
+def restart_of(sweep: Sweep) -> tuple[int, Sweep] | None:
+    """The sample in the middle and what is left of a sweep from there on; None without any."""
+    kept = sweep.sample_steps
+    sample = (len(kept) - 1) // 2
+    if sample == 0:
+        return None
+    left = Sweep(sweep.timestep, int(sweep.steps - kept[sample]), sweep.every)
+    return sample, left
+
+
+def refused(reason: str) -> Row:
+    """A run that cannot be begun anew where it has been."""
+    note = f"a run cannot be begun anew at its own sample: {reason}"
+    return Row(GATE, "omega", METRIC, float("inf"), "1", 1.0, "fail", note)
+
+
+def row(
+    truth: Truth, integrator: Integrator, sweep: Sweep, state: State, sample: int, anew: State
+) -> Row:
+    """The largest distance between the two runs, in parts of what rounding allows.
+
+    Each lies within the round-off bound of one course, so that they differ by twice that at most.
+    """
+    yardstick = truth.yardstick
+    rest = State(*(values[sample:] for values in vars(state).values()))
+    apart = {c: yardstick.distance(c, rest, anew) for c in CHANNELS}
+
+    def alike(growth: Array) -> Likeness:
+        bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth)
+        return likeness(apart, {c: 2.0 * bounds[c][sample:] for c in CHANNELS})
+
+    found = alike(np.ones(len(sweep.times)))
+    if not found.agree:  # most agree to the bit, and growth takes long to work out
+        found = alike(growth_along(yardstick.system, sweep.times, state, yardstick.rate))
+    reported = (found.channel, METRIC, found.share, "1", 1.0)
+    if np.isnan(found.share):
+        return Row(GATE, *reported, "info", "not judged: the run blows up")
+    if found.agree:
+        return Row(GATE, *reported, "pass")
+    if not integrator.one_step:
+        return Row(GATE, *reported, "info", "steps use earlier ones, as is declared")
+    when = f"t = {sweep.times[sample]:.4g} s"
+    note = f"a run begun anew at its own sample at {when} goes elsewhere: samples are not the"
+    return Row(
+        GATE, *reported, "fail", f"{note} state that is stepped, or steps depend on the past"
+    )

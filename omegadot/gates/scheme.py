@@ -1,0 +1,197 @@
+"""Gate 3, scheme: an engine's steps against those it declares, and the order of its errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates.likeness import Likeness, like_schemes, likeness
+from omegadot.gates.measured_run import (
+    CHANNELS,
+    Declared,
+    MeasuredRun,
+    SchemeKey,
+    evidence_of,
+    order_of,
+    scheme_key,
+)
+from omegadot.gates.rows import Row
+from omegadot.gates.truth import Truth
+from omegadot.gates.verdicts import ORDER_TOLERANCE, is_whole
+from omegadot.reference_impl.body_origin import is_offset
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import State, System
+
+GATE = "scheme"
+# Rounding is then a tenth of the error at most, and its bound is seldom reached.
+CLEAR_OF_ROUNDING = 10.0
+# Beyond half a radian, or half its size, an error is no longer a power of the step: it saturates.
+SATURATED = 0.5
+BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The order that a sweep shows in one channel.
+
+    limit: where its slopes are heading: what they lack halves with the step where the next term of
+    the error is one order higher, so that ``limit = s1 + (s1 - s2)``, the finest slope first.
+    reason: why it cannot be judged; "" if it can.
+    """
+
+    value: float
+    limit: float
+    reason: str
+
+
+def _saturated(measured: MeasuredRun) -> bool:
+    return any(not np.max(measured.error[c]) <= SATURATED for c in ("omega", "attitude"))
+
+
+def _clear(measured: MeasuredRun, channel: str) -> bool:
+    """Whether an error stands clear of rounding, the engine's and that of the exact answer."""
+    floor = float(np.max(measured.floor.get(channel, 0.0)))
+    bound = max(float(np.max(measured.round_off[channel])), floor)
+    return float(np.max(measured.error[channel])) > CLEAR_OF_ROUNDING * bound
+
+
+def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, Seen]:
+    """The order of every channel with an error above rounding, from all runs of one sweep.
+
+    It can be judged where the two finest slopes agree, of errors that stand clear of rounding and
+    come from runs that do not saturate.
+    """
+    unsaturated = [measured for measured in measured_runs if not _saturated(measured)]
+    saturate = len(unsaturated) < len(measured_runs)
+    found = {}
+    for channel in CHANNELS:
+        shown = order_of(measured_runs, channel)
+        if shown is None:
+            continue
+        usable = [measured for measured in unsaturated if _clear(measured, channel)]
+        clear = shown if len(usable) == len(measured_runs) else order_of(usable, channel)
+        reason = ""
+        if clear is None or not clear.resolved:
+            why = ": errors saturate" if saturate else ": errors are close to rounding"
+            reason = "not resolved by this sweep" + why * (len(usable) < len(measured_runs))
+        best = clear or shown
+        coarser = order_of(sorted(usable, key=lambda c: c.sweep.timestep)[1:], channel)
+        limit = 2.0 * best.value - coarser.value if coarser else best.value
+        found[channel] = Seen(best.value, limit, reason)
+    return found
+
+
+def order_rows(seen: Mapping[str, Seen], declared: Declared, measured: MeasuredRun) -> list[Row]:
+    """The orders that one integrator's sweep shows, against those that it declares.
+
+    A channel in which the engine equals its declared scheme is not held to an order that the
+    scheme does not show here either.
+    """
+    found = []
+    for channel, order in seen.items():
+        limit = declared.orders[channel]
+        verdict, note = "info", order.reason
+        if not note:
+            verdict, note = _held_to(order, limit, _explained(measured, channel))
+        bound = None if limit is None else float(limit)
+        found.append(Row(GATE, channel, "observed_order", order.value, "1", bound, verdict, note))
+    return found
+
+
+def _explained(measured: MeasuredRun, channel: str) -> bool:
+    left = measured.against_scheme.get(channel)
+    return left is not None and bool(np.all(left <= measured.round_off[channel]))
+
+
+def _held_to(order: Seen, declared: int | None, explained: bool) -> tuple[str, str]:
+    if declared is None:
+        return "info", "no order is declared"
+    if order.value >= declared - ORDER_TOLERANCE:
+        return "pass", ""
+    if order.limit >= declared - ORDER_TOLERANCE:
+        return "info", f"not settled: the slopes are heading for {order.limit:.2f}"
+    if not is_whole(order.value):
+        return "info", f"not settled: observed order {order.value:.2f}, declared {declared}"
+    if explained:
+        return "info", "below the declared order, as the scheme itself is on this motion"
+    return "fail", f"observed order {order.value:.2f}, declared {declared}"
+
+
+def keys_beside(integrator: Integrator, system: System) -> list[SchemeKey]:
+    """The reference's runs to hold an integrator against: every scheme's if it declares none."""
+    declared = scheme_key(integrator, system)
+    if declared is not None:
+        return [declared]
+    at_origin = integrator.steps_origin and is_offset(system)
+    return [SchemeKey(name, at_origin) for name in SCHEMES]
+
+
+def match_row(
+    truth: Truth,
+    integrator: Integrator,
+    measured: MeasuredRun,
+    state: State,
+    measured_runs: list[MeasuredRun],
+) -> Row:
+    """The largest distance from the declared scheme, in parts of its round-off bound.
+
+    An engine that declares a scheme and steps another fails, even where its error shrinks as it
+    should: what it says of itself is wrong. What is left may stand where it shrinks faster than
+    the scheme's own error by an order at least: that is the same scheme, less finely computed.
+    One that declares none is told what it equals.
+    """
+    if measured.against_scheme:
+        found = likeness(measured.against_scheme, measured.round_off)
+        row = _declared_row(truth, integrator, measured, state, found)
+        if row.verdict == "fail" and _left_is_of_higher_order(measured, measured_runs, integrator):
+            note = f"equals {integrator.scheme} but for terms that vanish faster than its error"
+            return _row(found, "info", note)
+        return row
+    if integrator.scheme is not None:
+        note = f"the reference has no run of {integrator.scheme} to hold this against"
+        return _row(Likeness(float("nan"), "omega", float("nan")), "info", note)
+    alike = like_schemes(truth, measured.sweep, state)
+    nearest = min(alike.values(), key=lambda one: (np.isnan(one.share), one.share), default=None)
+    if nearest is None:
+        nothing = Likeness(float("nan"), "omega", float("nan"))
+        return _row(nothing, "info", "declares no scheme, and none was stepped beside it")
+    equals = [key.scheme for key, one in alike.items() if one.agree]
+    text = f"declares no scheme, and equals {' and '.join(dict.fromkeys(equals)) or 'none known'}"
+    return _row(nearest, "info", text)
+
+
+def _left_is_of_higher_order(
+    measured: MeasuredRun, measured_runs: list[MeasuredRun], integrator: Integrator
+) -> bool:
+    """Whether, in every channel, what is left of the scheme is rounding or of a higher order."""
+    for channel in CHANNELS:
+        evidence = evidence_of(measured, measured_runs, channel)
+        if evidence.left is None or np.all(evidence.left <= evidence.round_off):
+            continue
+        left, declared = evidence.orders[-1], integrator.orders.get(channel)
+        if left is None or declared is None or not left.resolved:
+            return False
+        if left.value < declared + 1 - ORDER_TOLERANCE:
+            return False
+    return True
+
+
+def _row(found: Likeness, verdict: str, note: str) -> Row:
+    return Row(GATE, found.channel, "match", found.share, "1", 1.0, verdict, note)
+
+
+def _declared_row(
+    truth: Truth, integrator: Integrator, measured: MeasuredRun, state: State, found: Likeness
+) -> Row:
+    if np.isnan(found.share):
+        return _row(found, "info", BLOWN_UP)
+    if found.agree:
+        return _row(found, "pass", f"equals {integrator.scheme}, to {found.distance:.1e}")
+    alike = like_schemes(truth, measured.sweep, state)
+    others = dict.fromkeys(key.scheme for key, one in alike.items() if one.agree)
+    instead = f"equals {' and '.join(others)}" if others else "steps otherwise"
+    text = f"declares {integrator.scheme}, but {instead}: {found.channel} parts from it"
+    return _row(found, "fail", f"{text} {found.share:.0e} times as far as rounding can")

@@ -1,0 +1,163 @@
+"""Gate 3 for a scheme that nobody knows: steps made ever smaller must follow the equation.
+
+One step from a state x leads to ``Phi_h(x)``, and for every consistent scheme, whatever its order,
+``(Phi_h(x) - x) / h`` tends to the equation's rate at x. The limit is extrapolated from halved
+steps (Richardson 1911); what a scheme adds vanishes in it, and what a fault adds does not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.gates.evaluation_states import EvaluationStates, Probe
+from omegadot.gates.rows import Row
+from omegadot.gates.scales import (
+    EPS,
+    ROUNDINGS_PER_EVALUATION,
+    ROUNDINGS_PER_STEP,
+    angular_size,
+    body_scale,
+    linear_size,
+    norm,
+)
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.rotations import rotation_between
+from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian
+from omegadot.reference_impl.system import Array, State, System
+
+GATE = "scheme"
+METRIC = "rate_at_no_step"
+PROBES = 6  # of the random states, and as many along the exact course
+# Of five steps, what is left is about the longest's radians to the fifth power over 2^10.
+RADIANS = 2.0**-7
+# A scheme may take short turns by a shorter formula, which breaks the smoothness at one length of
+# step. Such a break lies in one of two ranges of steps only, and a fault shows in both.
+RANGES = (slice(0, 5), slice(4, 9))
+STEPS = 9
+
+
+def probe_of(system: System, evaluation: EvaluationStates) -> Probe:
+    """States to step from, (m,), and steps (m, 9) s, short against all that goes on there."""
+    count = len(evaluation.path.angular_velocity)
+    along = np.unique(np.linspace(0, count - 1, PROBES).round().astype(int))
+    pairs = zip(vars(evaluation.random).values(), vars(evaluation.path).values(), strict=True)
+    states = State(*(np.concatenate([one[:PROBES], two[along]]) for one, two in pairs))
+    here, jacobian, _ = acceleration_and_jacobian(acceleration_of(system), states)
+    rates = (
+        norm(states.angular_velocity),
+        np.sqrt(norm(here.angular)),
+        np.max(np.abs(jacobian), axis=(-1, -2)),
+    )
+    rate = np.maximum.reduce(rates)
+    longest = RADIANS / np.where(rate > 0.0, rate, 1.0)
+    return Probe(states, longest[:, None] / 2.0 ** np.arange(STEPS))
+
+
+def _extrapolants(quotients: Array) -> tuple[Array, Array, Array]:
+    """The last three extrapolants to no step, the best first, of (..., 5, c) at halved steps."""
+    last, table = [], quotients
+    for level in range(1, quotients.shape[-2]):
+        table = (2.0**level * table[..., 1:, :] - table[..., :-1, :]) / (2.0**level - 1.0)
+        last.append(table[..., -1, :])
+    return last[-1], last[-2], last[-3]
+
+
+_WEIGHTS = np.abs(_extrapolants(np.eye(5))[0])
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One quantity's rate at no step by each range of steps, (2, m, 3), and the equation's (m, 3).
+
+    bound: (2, m), how far the extrapolants differ, and what rounding makes of it. Where they
+    converge, the difference of two is the error of the worse.
+    """
+
+    found: Array
+    expected: Array
+    bound: Array
+
+    def shares(self, factor: float = 1.0) -> Array:
+        """(m,): the distance from `factor` times the equation's rate, in parts of its bound."""
+        apart = norm(self.found - factor * self.expected)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shares = np.where(apart == 0.0, 0.0, apart / self.bound)
+        least: Array = np.min(np.where(np.isnan(shares), np.inf, shares), axis=0)
+        return least
+
+    @property
+    def off(self) -> float:
+        """How far it is from the equation's at the worst of the states, relative."""
+        place = int(np.argmax(self.shares()))
+        apart = np.min(norm(self.found - self.expected)[:, place])
+        return float(apart / max(float(norm(self.expected[place])), float(np.finfo(float).tiny)))
+
+
+def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
+    """The rates at no step by channel. stepped: (m, 9, ...), the states after one step each.
+
+    A step rounds what it steps by ``16 eps``, which is divided by the step.
+    """
+    states, h = probe.states, probe.timesteps
+    before = State(*(f[:, None] for f in vars(states).values()))
+    true, lever = acceleration_of(system)(states), body_scale(system).lever
+    w, v = states.angular_velocity, states.linear_velocity
+    step, evaluation = ROUNDINGS_PER_STEP * EPS, ROUNDINGS_PER_EVALUATION * EPS
+    of_omega = evaluation * angular_size(system, states, true)
+    of_velocity = evaluation * linear_size(system, states, true)
+    turn = rotation_between(before.orientation, stepped.orientation)
+    spin = stepped.angular_velocity - before.angular_velocity
+    way, push = stepped.position - before.position, stepped.linear_velocity - before.linear_velocity
+    nothing = np.zeros(len(w))
+    parts = {  # what changes, its rate, and the roundings of a step and of an evaluation
+        "attitude": (turn, w, step + nothing, nothing),
+        "omega": (spin, true.angular, step * norm(w), of_omega),
+        "position": (way, v, step * (norm(states.position) + lever), nothing),
+        "linear_momentum": (push, true.linear, step * (norm(v) + lever * norm(w)), of_velocity),
+    }
+    return {channel: _limit(h, *part) for channel, part in parts.items()}
+
+
+def _limit(h: Array, change: Array, expected: Array, rounding: Array, reported: Array) -> Limit:
+    found, bounds = [], []
+    for steps in RANGES:
+        best, worse, worst = _extrapolants(change[:, steps] / h[:, steps, None])
+        rounded = rounding * np.sum(_WEIGHTS / h[:, steps], axis=-1)
+        found.append(best)
+        bounds.append(norm(best - worse) + norm(worse - worst) + rounded + reported)
+    return Limit(np.array(found), expected, np.array(bounds))
+
+
+def _common_factor(found: dict[str, Limit]) -> float | None:
+    """By which all rates are off alike: the step is that much longer than it says."""
+    weights = [np.where(one.bound[0] > 0.0, 1.0 / one.bound[0], 0.0) for one in found.values()]
+    pairs = list(zip(found.values(), weights, strict=True))
+    rates = np.concatenate([np.ravel(one.found[0] * part[:, None]) for one, part in pairs])
+    true = np.concatenate([np.ravel(one.expected * part[:, None]) for one, part in pairs])
+    factor = float(rates @ true / (true @ true))
+    return factor if all(np.all(one.shares(factor) <= 1.0) for one in found.values()) else None
+
+
+def rows(system: System, probe: Probe, stepped: State) -> list[Row]:
+    """Per channel, how far the steps' own rate is from the equation's, in parts of its bound."""
+    with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+        found = limits(system, probe, stepped)
+        shares = {channel: float(np.max(one.shares())) for channel, one in found.items()}
+        wrong = not all(share <= 1.0 for share in shares.values())
+        factor = _common_factor(found) if wrong else None
+        return [
+            Row(GATE, channel, METRIC, share, "1", 1.0, "pass")
+            if share <= 1.0
+            else Row(GATE, channel, METRIC, share, "1", 1.0, "fail", _note(found[channel], factor))
+            for channel, share in shares.items()
+        ]
+
+
+def _note(limit: Limit, factor: float | None) -> str:
+    if factor == 0.0:
+        return "a run of one step does not move"
+    if factor is not None:
+        return f"steps are {100 * abs(factor - 1.0):.4g} % too {'long' if factor > 1 else 'short'}"
+    return f"as the step vanishes, its rate is not the equation's: it is off by {limit.off:.1e}"

@@ -1,0 +1,189 @@
+"""Send one engine's answers for one scenario through the gates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates import (
+    cost,
+    equation,
+    invariants,
+    model,
+    phase,
+    scheme,
+    trajectory,
+)
+from omegadot.gates import (
+    reported as reports_found,
+)
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.evaluation_states import EvaluationStates
+from omegadot.gates.measured_run import (
+    Declared,
+    MeasuredRun,
+    findings_of,
+    measure,
+    orders_for,
+    scheme_key,
+)
+from omegadot.gates.rows import Row, worst
+from omegadot.gates.truth import Truth
+from omegadot.gates.verdicts import Finding
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.unknown_schemes import rows_of_unknown
+from omegadot.reference_impl.system import State
+from omegadot.workers.harness_end.process import Answer
+from omegadot.workers.wire import acceleration_from, body_from, state_from
+
+GATES = ("model", "equation", "scheme", "invariants", "trajectory", "cost")
+
+
+@dataclass(frozen=True)
+class JudgedRun:
+    """One task's outcome, rows and reason. unresolved: a finer sweep could still decide."""
+
+    integrator: Integrator
+    sweep: Sweep
+    outcome: str
+    reason: str
+    rows: list[Row] = field(default_factory=list)
+    why: str = ""
+    unresolved: bool = False
+
+    def verdicts(self) -> dict[str, str]:
+        """The worst verdict per gate that was reached."""
+        found = {gate: worst(r.verdict for r in self.rows if r.gate == gate) for gate in GATES}
+        return {gate: verdict for gate, verdict in found.items() if verdict is not None}
+
+
+def shared_rows(case: Case, evaluation: EvaluationStates, result: CaseResult) -> list[Row]:
+    """The rows that belong to engine and scenario, whatever the integrator."""
+    rows: list[Row] = []
+    if result.model.ok:
+        answer = result.model.result
+        for body in answer["bodies"]:
+            rows += model.body_rows(case, body_from(body))
+        first = State(*(values[0] for values in vars(evaluation.random).values()))
+        rows += model.state_rows(case, first, state_from(answer["state"]))
+    named = {"residual": (result.forward, evaluation.random)}
+    named["residual_on_path"] = (result.path, evaluation.path)
+    for metric, (found, states) in named.items():
+        if found.ok:
+            acceleration = acceleration_from(found.result)
+            rows += equation.forward_rows(case.system, states, acceleration, metric)
+    if result.inverse.ok:
+        torque = result.inverse.result["torque"]
+        rows += equation.inverse_rows(case.system, evaluation.random, evaluation.requested, torque)
+    return rows
+
+
+def _is_finite(state: State) -> bool:
+    return all(bool(np.all(np.isfinite(values))) for values in vars(state).values())
+
+
+def _why(findings: dict[str, Finding]) -> str:
+    """One reason for the whole run: the least favourable among its channels."""
+    order = ["unexplained", "unresolved", "beyond", "consistent", "explained", "round-off"]
+    channel = min(findings, key=lambda c: order.index(findings[c].kind))
+    finding = findings[channel]
+    alone = finding.kind in ("explained", "round-off", "beyond")
+    return finding.note if alone else f"{channel}: {finding.note}"
+
+
+def _measured_runs(
+    truth: Truth, integrator: Integrator, answers: dict[float, Answer], sweeps: list[Sweep]
+) -> dict[float, MeasuredRun]:
+    """The runs of one integrator that can be measured: finite, with the samples asked for."""
+    measured_runs, key = {}, scheme_key(integrator, truth.yardstick.system)
+    for sweep in sweeps:
+        answer = answers[sweep.timestep]
+        if not answer.ok or len(answer.result["time"]) != len(sweep.times):
+            continue
+        state = state_from(answer.result["state"])
+        if _is_finite(state):
+            companion = truth.companions.get((key, sweep.timestep)) if key else None
+            measured_runs[sweep.timestep] = measure(
+                truth.yardstick, sweep, truth.samples(sweep), state, companion
+            )
+    return measured_runs
+
+
+def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
+    """A task without a course to measure: its outcome, and what can be said of its times."""
+    if not answer.ok:
+        return JudgedRun(integrator, sweep, answer.outcome, answer.reason)
+    rows = [trajectory.time_row(sweep, answer.result["time"])]
+    state = state_from(answer.result["state"])
+    if _is_finite(state):
+        return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
+    finite = np.isfinite(state.orientation).all(-1) & np.isfinite(state.angular_velocity).all(-1)
+    bad = np.flatnonzero(~finite & np.isfinite(answer.result["time"]))
+    when = f" from t = {answer.result['time'][bad[0]]:g} s" if len(bad) else ""
+    note = f"the state is not finite{when}"
+    rows.append(
+        Row("trajectory", "omega", "error_max", float("nan"), "1", None, "fail", "diverged")
+    )
+    return JudgedRun(integrator, sweep, "diverged", note, rows, why=note)
+
+
+def judge_integrator(
+    truth: Truth,
+    integrator: Integrator,
+    sweeps: list[Sweep],
+    answers: dict[float, Answer],
+    refinements: dict[float, tuple[Sweep, Answer]],
+    result: CaseResult | None = None,
+) -> Iterator[JudgedRun]:
+    """Judge every step size of one integrator; refinements only serve to see its order.
+
+    result: what else the engine answered, where its scheme is unknown.
+    """
+    result = result or CaseResult("", "")
+    finer = {step: answer for step, (_, answer) in refinements.items()}
+    every = [*sweeps, *(sweep for sweep, _ in refinements.values())]
+    measured_runs = _measured_runs(truth, integrator, {**answers, **finer}, every)
+    declared = Declared(integrator.scheme, orders_for(integrator, truth.yardstick.system))
+    known = list(measured_runs.values())
+    seen = scheme.orders_seen(known)
+    for sweep in sweeps:
+        answer, measured = answers[sweep.timestep], measured_runs.get(sweep.timestep)
+        if measured is None:
+            yield _failed(integrator, sweep, answer)
+            continue
+        state = state_from(answer.result["state"])
+        findings = findings_of(measured, declared, known)
+        match = scheme.match_row(truth, integrator, measured, state, known)
+        system = truth.yardstick.system
+        rows = [match, *scheme.order_rows(seen, declared, measured)]
+        unknown = rows_of_unknown(truth, system, integrator, sweep, result)
+        misreported = reports_found.rows(truth, measured, state, result.precision)
+        misreported += reports_found.omega_dot_rows(system, state, answer.result["omega_dot"])
+        rows += unknown
+        rows += invariants.rows(measured, findings, sweep.times)
+        rows.append(trajectory.time_row(sweep, answer.result["time"]))
+        rows += [*misreported, *trajectory.rows(measured, findings)]
+        rows += phase.rows(truth, measured, state)
+        rows += cost.rows(sweep.timestep, answer.result["seconds_per_step"])
+        broken = [row.note for row in (*misreported, match, *unknown) if row.verdict == "fail"]
+        why = broken[0] if broken else _why(findings)
+        unresolved = any(f.kind == "unresolved" for f in findings.values())
+        yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
+
+
+def judge_case(
+    truth: Truth,
+    case: Case,
+    result: CaseResult,
+    refinements: dict[str, dict[float, tuple[Sweep, Answer]]],
+) -> list[JudgedRun]:
+    """Judge every task of one engine on one scenario."""
+    sweeps, judged = list(case.sweeps), []
+    for integrator in result.integrators:
+        answers = {s.timestep: result.runs[integrator.name, s.timestep] for s in sweeps}
+        finer = refinements.get(integrator.name, {})
+        judged += list(judge_integrator(truth, integrator, sweeps, answers, finer, result))
+    return judged

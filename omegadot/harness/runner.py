@@ -1,0 +1,187 @@
+"""A run: every engine over every case, judged case by case as the answers come in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.evaluation_states import evaluation_states_of
+from omegadot.gates.measured_run import SchemeKey, scheme_key
+from omegadot.gates.scheme import keys_beside
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import INTERRUPTED, CaseResult
+from omegadot.harness.engines import Engines
+from omegadot.harness.judge import JudgedRun, judge_case, shared_rows
+from omegadot.harness.outcome import (
+    EngineCase,
+    JudgedCase,
+    Outcome,
+    PendingCase,
+    PendingTruth,
+    RunRequest,
+    tasks_of,
+)
+from omegadot.harness.plan import Engine
+from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine, refined_sweeps
+from omegadot.harness.truth_requests import case_companions, case_truth, reference_runs
+from omegadot.harness.unknown_schemes import probe_unknown_schemes
+from omegadot.workers.harness_end.pool import outcome_of
+
+
+class Runner:
+    """One run. on_start and on_advance tell a progress bar what has been planned and done."""
+
+    def __init__(self, request: RunRequest) -> None:
+        self.request = request
+        self.engines = Engines(request)
+        self.on_start: Callable[[], None] = lambda: None
+        self.on_advance: Callable[[int], object] = lambda _: None
+
+    def _keys(self, case: Case) -> list[SchemeKey]:
+        """The reference's runs that this case's engines will be held against."""
+        stepping = (engine for engine in self.engines.started if engine.name != "exact")
+        named = {
+            key
+            for engine in stepping
+            for integrator in engine.integrators
+            for key in keys_beside(integrator, case.system)
+        }
+        return sorted(named, key=str)
+
+    def _add_companions(
+        self, case: Case, truth: Truth, results: list[CaseResult], sweeps: list[Sweep]
+    ) -> None:
+        """Companions for schemes or steps that came up only when the engines had answered."""
+        named = {scheme_key(i, case.system) for result in results for i in result.integrators}
+        for sweep in sweeps:
+            known = {key for key, step in truth.companions if step == sweep.timestep}
+            missing = sorted((key for key in named if key and key not in known), key=str)
+            if missing:
+                driver = self.engines.drivers["reference"]
+                call = partial(case_companions, driver, case, truth, missing, [sweep])
+                truth.companions.update(outcome_of(self.engines.submit("reference", call)))
+
+    def _examine(self, engine: Engine, case: Case, pending: PendingTruth) -> CaseResult:
+        truth, driver = pending.truth.result(), self.engines.drivers[engine.name]
+        if isinstance(truth, str):
+            self.on_advance(tasks_of(engine, case))
+            return CaseResult(engine.name, case.name)
+        evaluation = evaluation_states_of(case, truth, self.request.seed)
+        result = driver.evaluate_equations(case, evaluation)
+        if engine.name == "exact":
+            self.on_advance(1)
+        elif engine.name == "reference":
+            result.runs.update(reference_runs(driver, case, pending.companions.result()))
+            self.on_advance(tasks_of(engine, case))
+        else:
+            result.runs.update(driver.run_all(case, lambda: self.on_advance(1)))
+            probe_unknown_schemes(driver, case, evaluation, result)
+        return result
+
+    def _submit_case(self, case: Case) -> PendingCase:
+        exact, reference = self.engines.drivers["exact"], self.engines.drivers["reference"]
+        truth = self.engines.submit("exact", lambda: case_truth(exact, case))
+        keys = self._keys(case)
+        companions = self.engines.submit(
+            "reference", lambda: case_companions(reference, case, truth.result(), keys, case.sweeps)
+        )
+        known = PendingTruth(truth, companions)
+        results = {
+            engine.name: self.engines.submit(
+                engine.name, partial(self._examine, engine, case, known)
+            )
+            for engine in self.engines.started
+        }
+        return PendingCase(case, known, results)
+
+    def judge(self, pending: PendingCase, finer: dict[str, Refinements]) -> JudgedCase:
+        """Wait for one case and send it through the gates. finer: refinements, by engine."""
+        case, truth = pending.case, outcome_of(pending.known.truth)
+        results = {name: outcome_of(future) for name, future in pending.results.items()}
+        if isinstance(truth, str):
+            unjudged = [EngineCase(e, results[e.name], [], []) for e in self.engines.started]
+            return JudgedCase(case, None, truth, unjudged)
+        companions = outcome_of(pending.known.companions)
+        truth.companions.update(companions)
+        refined = [sweep for known in finer.values() for sweep in refined_sweeps(known)]
+        unique = {sweep.timestep: sweep for sweep in (*case.sweeps, *refined)}
+        self._add_companions(case, truth, list(results.values()), list(unique.values()))
+        judged = [
+            self._judge_engine(case, truth, engine, results[engine.name], finer)
+            for engine in self.engines.started
+        ]
+        return JudgedCase(case, truth, "", judged)
+
+    def _judge_engine(
+        self,
+        case: Case,
+        truth: Truth,
+        engine: Engine,
+        result: CaseResult,
+        finer: dict[str, Refinements],
+    ) -> EngineCase:
+        runs: list[JudgedRun] = []
+        # A run that blew up is measured like any other: what overflows is infinitely far off.
+        with np.errstate(over="ignore", invalid="ignore"):
+            shared = shared_rows(case, evaluation_states_of(case, truth, self.request.seed), result)
+            if engine.name != "exact":
+                runs = judge_case(truth, case, result, finer.get(engine.name, {}))
+        return EngineCase(engine, result, shared, runs)
+
+    def _resolve(self, pending: PendingCase, judged: JudgedCase) -> JudgedCase:
+        """Judge a case again with finer steps, as long as these can still decide something."""
+        finer: dict[str, Refinements] = {}
+        for _ in range(MOST_HALVINGS):
+            requested = []
+            for found in judged.engines:
+                name, driver = found.engine.name, self.engines.drivers[found.engine.name]
+                known = finer.setdefault(name, {})
+                if any(run.unresolved for run in found.runs):
+                    call = partial(refine, driver, judged.case, found.runs, known)
+                    requested.append(self.engines.submit(name, call))
+            done = [outcome_of(future) for future in requested]
+            if not any(done):
+                break
+            judged = self.judge(pending, finer)
+        return judged
+
+    def run_case(self, case: Case) -> JudgedCase:
+        """One case by itself; the workers are started before and finished after by the caller."""
+        pending = self._submit_case(case)
+        return self._resolve(pending, self.judge(pending, {}))
+
+    def execute(self) -> Outcome:
+        """Run everything; Ctrl-C ends the workers and keeps what has come in."""
+        judged: list[JudgedCase] = []
+        interrupted = False
+        pending: list[PendingCase] = []
+        try:
+            self.engines.start()
+            self.on_start()
+            pending = [self._submit_case(case) for case in self.request.cases]
+            for case in pending:
+                judged.append(self.judge(case, {}))
+            for index, case in enumerate(pending):
+                judged[index] = self._resolve(case, judged[index])
+        except KeyboardInterrupt:
+            interrupted = True
+            self.engines.stop()
+            judged += [self._leftover(case) for case in pending[len(judged) :]]
+        except BaseException:
+            self.engines.stop()
+            raise
+        finally:
+            self.engines.finish()
+        engines = self.engines
+        return Outcome(engines.started, engines.missing, judged, interrupted, engines.deaths())
+
+    def _leftover(self, pending: PendingCase) -> JudgedCase:
+        """A case that the interruption caught: none of it is judged, and it says so."""
+        engines = [
+            EngineCase(engine, CaseResult(engine.name, pending.case.name), [], [])
+            for engine in self.engines.started
+        ]
+        return JudgedCase(pending.case, None, INTERRUPTED.reason, engines)

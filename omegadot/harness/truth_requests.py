@@ -1,0 +1,87 @@
+"""Ask the exact solution and the reference's companions of their workers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.measured_run import Companion, SchemeKey
+from omegadot.gates.measures import Yardstick
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import Driver
+from omegadot.reference_impl.growth import growth_along
+from omegadot.workers.harness_end.process import Answer
+from omegadot.workers.wire import state_from
+
+STEPS_TIMED = 64
+
+
+def case_truth(exact: Driver, case: Case) -> Truth | str:
+    """The exact course of a case, or the sentence that says why there is none."""
+    times = case.sample_times
+    fields = {"system": case.system, "initial": case.initial, "times": times}
+    answer = exact.request(case, "solve", **fields)
+    if answer.outcome == "crashed":  # every engine is judged by this: it is worth a second try
+        answer = exact.request(case, "solve", **fields)
+    if not answer.ok:
+        return f"no exact solution to compare with: {answer.reason}"
+    state = state_from(answer.result["state"])
+    yardstick = Yardstick(case.system, times, state)
+    found, floor = answer.result, answer.result["floor"]
+    relative = {
+        "omega": floor["angular_velocity"] / yardstick.rate,
+        "attitude": floor["attitude"],
+    }
+    growth = growth_along(case.system, times, state, yardstick.rate)
+    return Truth(found["source"], times, state, found["omega_dot"], growth, relative, yardstick)
+
+
+def case_companions(
+    reference: Driver,
+    case: Case,
+    truth: Truth | str,
+    keys: Sequence[SchemeKey],
+    sweeps: Sequence[Sweep],
+) -> dict[tuple[SchemeKey, float], Companion]:
+    """The reference's run for every scheme and step; a scheme that fails is left out."""
+    if isinstance(truth, str):
+        return {}
+    plan = [{"timestep": s.timestep, "steps": s.steps, "every": s.every} for s in sweeps]
+    found = {}
+    for key in keys:
+        fields = {"system": case.system, "initial": case.initial, "plan": plan}
+        fields |= {"scheme": key.scheme, "at_origin": key.at_origin, "rate": truth.yardstick.rate}
+        answer = reference.request(case, "companion", **fields)
+        if answer.outcome == "crashed":
+            answer = reference.request(case, "companion", **fields)
+        if answer.ok:
+            for sweep, run in zip(sweeps, answer.result, strict=True):
+                companion = Companion(state_from(run["state"]), run["growth"], run["omega_dot"])
+                found[key, sweep.timestep] = companion
+    return found
+
+
+def reference_runs(
+    reference: Driver, case: Case, companions: dict[tuple[SchemeKey, float], Companion]
+) -> dict[tuple[str, float], Answer]:
+    """The companions as the runs of the engine `reference`: they are the same computation.
+
+    Companions of a sweep share their steps, so the cost of one is measured on a short run apart.
+    """
+    runs = {}
+    for integrator in reference.engine.integrators:
+        first = case.sweeps[0]
+        short = Sweep(first.timestep, min(first.steps, STEPS_TIMED), first.every)
+        timed = reference.run(case, integrator.name, short)
+        for sweep in case.sweeps:
+            key = (integrator.name, sweep.timestep)
+            found = companions.get((SchemeKey(integrator.name, False), sweep.timestep))
+            if found is None or not timed.ok:
+                failed = Answer("raised", "the reference gave no answer for this scheme")
+                runs[key] = failed if timed.ok else timed
+                continue
+            result = {"time": sweep.times, "state": vars(found.state)}
+            result |= {"omega_dot": found.omega_dot}
+            result |= {"seconds_per_step": timed.result["seconds_per_step"]}
+            runs[key] = Answer("ok", result=result)
+    return runs

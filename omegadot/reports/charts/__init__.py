@@ -1,0 +1,1 @@
+"""What is drawn: deviations along a run, convergence, work and precision."""

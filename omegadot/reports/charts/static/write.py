@@ -1,0 +1,85 @@
+"""Every picture of a run, written as SVG and PNG, each whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from omegadot.reports.charts.static.charts import Charts, charts_of
+from omegadot.reports.charts.static.names import file_stems
+from omegadot.reports.charts.static.style import RC, require_matplotlib
+from omegadot.reports.record.record import Record
+from omegadot.reports.record.schema import RecordError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORMATS = ("svg", "png")
+
+
+def write_figures(record: Record, folder: Path) -> list[Path]:
+    """Draw every scenario's charts into `folder`, as SVG and PNG; returns the paths.
+
+    ``SCENARIO-CHART.svg``, with CHART one of omega-dot, energy, angular-momentum, linear-momentum,
+    attitude, convergence and work-precision; a chart that has nothing to show is left out. The
+    same record gives the same bytes. Raises RecordError: no matplotlib, nothing to draw, or a
+    folder that cannot be written.
+    """
+    require_matplotlib()
+    import matplotlib
+
+    charts = charts_of(record)
+    if not charts:
+        raise RecordError("--figures: the record holds no trajectories to draw; give another run.")
+    stems = file_stems(chart.name for chart in charts)
+    written = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with matplotlib.rc_context(cast(Any, RC)), warnings.catch_warnings():
+            # A name may hold letters that the font has not; they become boxes, and that is all.
+            warnings.filterwarnings("ignore", message="Glyph .* missing from")
+            for chart in charts:
+                for kind, figure in _figures(chart):
+                    written += _save(figure, folder, f"{stems[chart.name]}-{kind}")
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise RecordError(f"{folder}: the figures cannot be written ({reason}).") from error
+    return written
+
+
+def _figures(charts: Charts) -> Iterator[tuple[str, Figure]]:
+    from omegadot.reports.charts.static import deviations as all_series
+    from omegadot.reports.charts.static import sweeps
+
+    for channel in charts.chart.units:
+        figure = all_series.draw(charts, channel)
+        if figure is not None:
+            yield channel.replace("_", "-"), figure
+    for kind, draw in (
+        ("convergence", sweeps.draw_convergence),
+        ("work-precision", sweeps.draw_work_precision),
+    ):
+        figure = draw(charts)
+        if figure is not None:
+            yield kind, figure
+
+
+def _save(figure: Figure, folder: Path, stem: str) -> list[Path]:
+    """Write both formats under other names, then give them theirs."""
+    found = []
+    for form in FORMATS:
+        target = folder / f"{stem}.{form}"
+        fresh = folder / f".{stem}.{secrets.token_hex(4)}.{form}"
+        # Neither a date nor the library's version: the same record is the same file.
+        nothing = {"Date": None, "Creator": "omegadot"} if form == "svg" else {"Software": None}
+        try:
+            figure.savefig(fresh, format=form, metadata=nothing)
+            os.replace(fresh, target)
+        finally:
+            fresh.unlink(missing_ok=True)
+        found.append(target)
+    return found

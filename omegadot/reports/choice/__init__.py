@@ -1,0 +1,1 @@
+"""A choice of engine: sentences, tables, chart, page and files."""

@@ -1,0 +1,167 @@
+"""A choice in words, the same for the terminal and the page."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from omegadot.reports.text.numbers import listed, plain, short, times
+
+Row = Mapping[str, Any]
+NAMES = {
+    "attitude": "attitude error",
+    "omega": "omega error",
+    "energy-drift": "energy drift",
+    "momentum-drift": "momentum drift",
+    "linear-momentum-drift": "linear momentum drift",
+    "flip-time": "flip-time error",
+    "real-time-factor": "real-time factor",
+}
+LONGEST = 3600.0  # s, for a run that anybody might wait for
+
+
+def step_text(timestep: float, duration: float) -> str:
+    """A step in s to seven digits, rounded down: it then fills the horizon as often as it did."""
+    digits = 6 - math.floor(math.log10(timestep))
+    scaled = math.floor(timestep * 10.0**digits)
+    while duration / (scaled / 10.0**digits) < round(duration / timestep):
+        scaled -= 1
+    return f"{scaled / 10.0**digits:.{max(digits, 0)}f}".rstrip("0").rstrip(".")
+
+
+def figure(value: float) -> str:
+    """A plain factor to three digits: 1.06, 33, 2,465; with an exponent where it is extreme."""
+    if not math.isfinite(value) or not 1e-3 <= abs(value) < 1e7:
+        return short(value, 3)
+    return f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+
+
+def measure_text(value: float | None, unit: str) -> str:
+    """A number with its unit."""
+    return short(value) if unit == "1" else f"{short(value)} {unit}"
+
+
+def requested(choice: Row) -> str:
+    """The requirements as they were written, in one line."""
+    wanted = choice["requirements"]
+    message = [f"{NAMES[r['requirement']]} within {r['asked']}" for r in wanted["accuracy"]]
+    if wanted["real_time_factor"] is not None:
+        message.append(f"real-time factor of {plain(wanted['real_time_factor'])} at least")
+    if wanted["precision"]:
+        message.append(f"{wanted['precision']} precision")
+    message += [f"feature {name}" for name in wanted["features"]]
+    if wanted["licences"]:
+        message.append(f"licence {' or '.join(wanted['licences'])}")
+    if wanted["python"]:
+        message.append(f"Python {wanted['python']}")
+    return listed(message)
+
+
+def _label(row: Row) -> str:
+    return f"{row['engine']} {row['version']} {row['integrator']}"
+
+
+def headline(case: Row) -> str:
+    """What came out of a case, in a sentence or two."""
+    start = f"{case['name']}, {plain(case['duration'])} s: "
+    if case["reason"]:
+        return f"{start}nothing was chosen, {case['reason']}."
+    if case["unverifiable"]:
+        keys = listed([NAMES[key] for key in case["unverifiable"]])
+        return f"{start}nothing qualifies: the {keys} asked for cannot be verified in doubles."
+    rows = case["candidates"]
+    best = [row for row in rows if row["rank"] == 1]
+    if not best:
+        return start + _nothing(rows)
+    more = sum(1 for row in rows if row["predicted"] and row["predicted"]["seconds"] <= LONGEST)
+    left = f" ({more} more might, in runs longer than the budget)" if more else ""
+    count = f"{case['qualifying']} of {times(len(rows), 'integrator')} qualify{left}"
+    if case["qualifying"] == 1:
+        count = f"1 of {times(len(rows), 'integrator')} qualifies{left}"
+    first = best[0]
+    step = step_text(first["found"]["timestep"], case["duration"])
+    named = f"{_label(first)} with a step of {step} s"
+    if len(best) > 1:
+        others = listed([_label(row) for row in best[1:]])
+        return f"{start}{count}; cheapest is {named}, not told apart from {others}."
+    return f"{start}{count}; cheapest is {named}."
+
+
+def _nothing(rows: Sequence[Row]) -> str:
+    """Nothing qualifies; what comes nearest, if anything ran."""
+    ran = [row for row in rows if row["nearest"] and row["missed"]]
+    if not ran:
+        return "nothing qualifies, and nothing ran."
+    near = min(ran, key=lambda row: max((m["factor"] or math.inf) for m in row["missed"]))
+    return f"nothing qualifies; nearest comes {_label(near)}, {missed_text(near['missed'][0])}."
+
+
+def missed_text(missed: Row) -> str:
+    """One requirement that is missed, and by how much."""
+    name = NAMES[missed["requirement"]]
+    if missed["found"] is None or missed["factor"] is None:
+        return f"{name} not finite"
+    limit = measure_text(missed["limit"], missed["unit"])
+    found = measure_text(missed["found"], missed["unit"])
+    wanted = "at least" if missed["requirement"] == "real-time-factor" else "at most"
+    return f"{name} {found}, {wanted} {limit} asked: {figure(missed['factor'])} times off"
+
+
+def variant_lines(case: Row) -> Iterator[str]:
+    """How the ranking changes when a requirement is halved or doubled."""
+    for variant in case["variants"]:
+        term = {0.5: "halved", 2.0: "doubled"}.get(variant["factor"], f"x {variant['factor']}")
+        limit = measure_text(variant["limit"], variant["unit"])
+        start = f"{NAMES[variant['requirement']]} {term} ({limit}): "
+        order = variant["order"]
+        changes = []
+        if variant["left"]:
+            verb = "drop" if len(variant["left"]) > 1 else "drops"
+            changes.append(f"{listed(variant['left'])} {verb} out")
+        if variant["joined"]:
+            verb = "qualify" if len(variant["joined"]) > 1 else "qualifies"
+            changes.append(f"{listed(variant['joined'])} {verb} too")
+        if not changes:
+            changes.append("the ranking stays" if variant["same"] else "the ranking changes")
+        steps = [
+            f"{o['rank']}{'=' if o['tied'] else ''} {o['candidate']} at "
+            f"{step_text(o['timestep'], case['duration'])} s"
+            for o in order
+        ]
+        yield start + "; ".join(changes) + (": " + ", ".join(steps) if steps else "") + "."
+
+
+def notes(choice: Row) -> Iterator[str]:
+    """Engines that did not take part, and what is open about those that did."""
+    for engine in choice["engines"]:
+        if not engine["installed"]:
+            yield f"{engine['name']}: {engine['outcome']}: {engine['reason']}"
+        for clause in engine["refused"]:
+            yield f"{engine['name']} {engine['version']} is out, {clause}."
+        if engine["note"] and not engine["refused"]:
+            yield f"{engine['name']} {engine['version']}: {engine['note']}."
+    for death in choice["worker_deaths"]:
+        yield f"{death['engine']}: a worker died, {death['how']}"
+    for case in choice["scenarios"]:
+        for key in case["unverifiable"]:
+            unit = {r["requirement"]: r["unit"] for r in choice["requirements"]["accuracy"]}[key]
+            floor = measure_text(case["floor"][key], unit)
+            yield f"{case['name']}: doubles leave {floor} of {NAMES[key]} open; ask for more."
+
+
+GUARANTEE = (
+    "Of each step: this run met every limit at every sample looked at, so did every smaller step "
+    "that was tried, and the next larger one that was tried did not. To spare is the limit over "
+    "the error. Steps are known to 5 %: costs within 5 %, or not told apart in three of four "
+    "rounds, share a rank. The front: no run tried is cheaper, more accurate and smaller at once. "
+    "The real-time factor is of stepping alone, median and quartiles."
+)
+
+
+def verdict_everywhere(choice: Row) -> str:
+    """What came out of a set of scenarios."""
+    best = [row["candidate"] for row in choice["everywhere"] if row["rank"] == 1]
+    if not best:
+        return "Nothing qualifies in every scenario."
+    return f"Cheapest in all of them: {listed(best)}{', not told apart' if len(best) > 1 else ''}."

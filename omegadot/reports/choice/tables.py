@@ -1,0 +1,135 @@
+"""A choice in tables, the same for the terminal and the page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from omegadot.reports.choice.sentences import (
+    LONGEST,
+    NAMES,
+    figure,
+    measure_text,
+    missed_text,
+    step_text,
+)
+from omegadot.reports.text.numbers import short
+
+Row = Mapping[str, Any]
+MEGABYTE = 1e6
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A plain table; every row has as many texts as there are heads."""
+
+    title: str
+    heads: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+
+
+def ranking(choice: Row, case: Row) -> Grid:
+    """Those that qualify, the cheapest first."""
+    wanted = choice["requirements"]["accuracy"]
+    errors = (NAMES[r["requirement"]] for r in wanted)
+    heads: tuple[str, ...] = ("rank", "engine", "integrator", "step in s", "steps", *errors)
+    heads = (*heads, "real-time factor", "memory in MB", "front", "next larger step tried")
+    rows = [
+        (
+            _rank(row),
+            f"{row['engine']} {row['version']}",
+            row["integrator"],
+            step_text(row["found"]["timestep"], case["duration"]),
+            str(row["found"]["steps"]),
+            *(_error(row["found"], requirement) for requirement in wanted),
+            _factor(row),
+            _memory(row),
+            "yes" if row["on_front"] else "",
+            _larger(case, row),
+        )
+        for row in case["candidates"]
+        if row["status"] == "qualifies"
+    ]
+    return Grid(f"{case['name']}: what qualifies, the cheapest first", heads, rows)
+
+
+def _error(found: Row, requirement: Row) -> str:
+    error = found["errors"].get(requirement["requirement"])
+    if error is None:
+        return "–"
+    text = measure_text(error["value"], requirement["unit"])
+    margin = error["margin"]
+    return text if margin is None else f"{text} ({figure(margin)}x to spare)"
+
+
+def _factor(row: Row) -> str:
+    factor = row["real_time_factor"]
+    if factor is None:
+        return "–"
+    low, high = factor["quartiles"]
+    return f"{figure(factor['median'])} ({figure(low)} to {figure(high)})"
+
+
+def _rank(row: Row) -> str:
+    return f"{row['rank']}=" if row["tied"] else str(row["rank"])
+
+
+def _memory(row: Row) -> str:
+    return "–" if not row["memory"] else f"{row['memory'] / MEGABYTE:.0f}"
+
+
+def _larger(case: Row, row: Row) -> str:
+    larger = row["larger"]
+    if larger is None:
+        return "none: passes at every step tried"
+    message = (
+        f"{step_text(larger['timestep'], case['duration'])} fails ({figure(larger['ratio'])}x)"
+    )
+    if row["passes_again"]:
+        again = step_text(row["passes_again"]["timestep"], case["duration"])
+        message += f", {again} passes again"
+    return message
+
+
+def refusals(case: Row) -> Grid:
+    """Those that do not qualify: which requirement each misses, and the nearest it comes."""
+    rows: list[tuple[str, ...]] = []
+    for row in case["candidates"]:
+        if row["status"] == "qualifies":
+            continue
+        near, engine = row["nearest"], f"{row['engine']} {row['version']}"
+        at = step_text(near["timestep"], case["duration"]) if near else "–"
+        if row["status"] != "out":
+            rows.append((engine, row["integrator"], f"{row['status']}: {row['reason']}", at, ""))
+            continue
+        misses = "; ".join(missed_text(missed) for missed in row["missed"])
+        rows.append((engine, row["integrator"], misses, at, _guess(row)))
+    heads = ("engine", "integrator", "misses", "at step in s", "what its order suggests")
+    return Grid(f"{case['name']}: what is out, at the nearest it comes", heads, rows)
+
+
+def _guess(row: Row) -> str:
+    guess = row["predicted"]
+    if guess is None:
+        return "" if row["found"] else "no order to go by at these steps"
+    if guess["seconds"] > LONGEST:
+        return "out of reach: a run would take more than an hour"
+    step, seconds = short(guess["timestep"]), figure(guess["seconds"])
+    return f"a step of {step} s might do, {seconds} s a run: not verified"
+
+
+def everywhere(choice: Row) -> Grid | None:
+    """Of several scenarios, what qualifies in all; None where there is but one."""
+    cases = choice["scenarios"]
+    if len(cases) < 2:
+        return None
+    heads = ("rank", "engine and integrator", "s for all", "steps in s, scenario by scenario")
+    rows: list[tuple[str, ...]] = []
+    for row in choice["everywhere"]:
+        steps = zip(row["timesteps"], cases, strict=True)
+        rows.append((
+            _rank(row), row["candidate"], short(row["seconds"]["median"], 3),
+            ", ".join(step_text(step, case["duration"]) for step, case in steps),
+        ))  # fmt: skip
+    return Grid("What qualifies in every scenario, the cheapest first", heads, rows)

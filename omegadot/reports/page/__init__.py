@@ -1,0 +1,1 @@
+"""The HTML page, drawn from a record alone."""

@@ -1,0 +1,132 @@
+"""The HTML page: one file, nothing outside it, drawn from a record alone."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import polars as pl
+
+from omegadot.reports.charts.chart_library import packed_library
+from omegadot.reports.charts.deviations import POINTS, chart_deviations
+from omegadot.reports.charts.packing import FLOOR_DECADE, pack_codes, pack_json
+from omegadot.reports.charts.payload import lines_of, step_choices
+from omegadot.reports.choice.page import Section
+from omegadot.reports.page.glance import glances
+from omegadot.reports.page.matrix_cards import cards
+from omegadot.reports.page.sections import drawings, measured_in, sections_of
+from omegadot.reports.page.templating import asset, environment, script
+from omegadot.reports.page.view_3d.view import see_part
+from omegadot.reports.page.why import order_table, scheme_table
+from omegadot.reports.record.record import Record
+from omegadot.reports.summary import matrix
+from omegadot.reports.summary.copies import copies_of, sentence, where
+from omegadot.reports.summary.headline import headline, remarks, truth
+from omegadot.reports.summary.provenance import (
+    Sources,
+    command_of,
+    provenance_payload,
+    sources_for,
+)
+from omegadot.reports.summary.summary import STATUSES, summarise
+
+_JUDGED_SHOWN = 50
+
+CHART_TITLES = {
+    "omega_dot": ("Omega-dot divergence", "|ω̇ − ω̇ exact| along the run"),
+    "energy": ("Energy error", "|E − E exact| along the run"),
+    "angular_momentum": ("Angular-momentum error", "|H − H exact|, world axes"),
+    "linear_momentum": ("Linear-momentum error", "|p − p exact|, world axes"),
+    "attitude": ("Attitude error", "angle between the attitude and the exact one"),
+}
+
+
+def draw_page(record: Record, choice: Section | None = None) -> str:
+    """The report of a record, as one self-contained HTML text.
+
+    choice: a choice of engine made beside the run, a section of its own.
+    Charts need JavaScript; the verdicts and every table do not.
+    """
+    library = packed_library()
+    summary = summarise(record)
+    sources = sources_for(record.run["engines"])
+    charts = {name: chart for name, chart in chart_deviations(record).items() if chart.units}
+    lines = lines_of(charts.values(), record.run["engines"])
+    anchors = _anchors(summary.scenarios)
+    measured = measured_in(record.metrics)
+    sections = sections_of(record, summary, charts, anchors, sources, measured)
+    description, codes = drawings(measured, charts, lines, anchors, sources)
+    judged = _judged(record.metrics, sources)
+    schemes, orders = scheme_table(record, sources), order_table(record, sources)
+    engines = glances(summary, record.metrics, sources)
+    matrix_cards = cards(summary, sources, anchors)
+    # Last, when every table and chart has named its sources.
+    origins = provenance_payload(record.run, sources, anchors) | {"cards": matrix_cards}
+    template = environment().get_template("report.html.j2")
+    return template.render(
+        run=record.run,
+        command=command_of(record.run),
+        choice=choice,
+        headline=record.run.get("headline") or headline(summary),
+        beside=remarks(summary) + truth(summary),
+        counts=[(status, summary.runs[status]) for status in STATUSES if summary.runs[status]],
+        summary=summary,
+        matrix=matrix.matrix(summary),
+        numbers=matrix.NUMBERS,
+        anchors=anchors,
+        glances=engines,
+        judged=judged,
+        schemes=schemes,
+        orders=orders,
+        copies=[(sentence(copies), where(copies)) for copies in copies_of(record.run)],
+        sections=sections,
+        lines=lines,
+        line_groups=_line_groups(lines),
+        choices=step_choices(charts.values()),
+        chart_titles=CHART_TITLES,
+        floor_decade=FLOOR_DECADE,
+        points=POINTS,
+        css=asset("report.css") + asset("see.css") + (asset("choice.css") if choice else ""),
+        see=see_part(record, charts, lines, anchors),
+        js=script(),
+        plotly=library.result() if charts else "",
+        payload=pack_json(description),
+        codes=pack_codes(codes),
+        provenance=pack_json(origins),
+    )
+
+
+def _judged(metrics: pl.DataFrame, sources: Sources) -> tuple[list[dict[str, Any]], int]:
+    """Failing and declared measures, failures first, each with its worst run and how many runs
+    it has; and how many more there are than are shown.
+    """
+    measure = ["verdict", "scenario", "engine", "engine_version", "gate", "channel", "metric"]
+    rows = metrics.filter(pl.col("verdict").is_in(["fail", "declared"])).sort(
+        pl.col("verdict") == "declared",
+        pl.col("value").fill_nan(float("inf")).fill_null(float("inf")),
+        descending=[False, True],
+        maintain_order=True,
+    )
+    rows = rows.group_by(measure, maintain_order=True).agg(
+        *(pl.col(name).first() for name in rows.columns if name not in measure),
+        runs=pl.len(),
+    )
+    shown = [row | {"source": sources.number(row)} for row in rows.head(_JUDGED_SHOWN).to_dicts()]
+    return shown, max(0, len(rows) - _JUDGED_SHOWN)
+
+
+def _anchors(names: tuple[str, ...]) -> dict[str, str]:
+    """An address for each scenario: its name where that is plain, made unique by its place."""
+    anchors: dict[str, str] = {}
+    for place, name in enumerate(names):
+        slug = "scenario-" + (re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-") or str(place))
+        anchors[name] = slug if slug not in anchors.values() else f"{slug}-{place}"
+    return anchors
+
+
+def _line_groups(lines: list[Any]) -> list[tuple[str, list[tuple[int, Any]]]]:
+    """The lines of each engine with their numbers, for the page's own legend."""
+    groups: dict[str, list[tuple[int, Any]]] = {}
+    for number, line in enumerate(lines):
+        groups.setdefault(line.engine, []).append((number, line))
+    return list(groups.items())

@@ -1,0 +1,1 @@
+"""The tumbling bodies on the page."""

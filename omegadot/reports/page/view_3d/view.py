@@ -1,0 +1,147 @@
+"""What the page's tumbling bodies are drawn from: shapes as JSON, attitudes as 16-bit codes.
+
+An engine's attitude travels as the rotation from the exact attitude to it, which is zero to the
+code's step wherever the engine is right: so the runs of a whole record take a few score kB.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.system import Array
+from omegadot.reports.charts.deviations import Chart
+from omegadot.reports.charts.divergence import system_from
+from omegadot.reports.charts.packing import pack_codes, pack_json
+from omegadot.reports.charts.payload import Line, rank_of
+from omegadot.reports.page.templating import script
+from omegadot.reports.page.view_3d.attitudes import PARTED, Flight, Flights, flights_of
+from omegadot.reports.page.view_3d.bodies import look_of
+from omegadot.reports.page.view_3d.shapes import shape
+from omegadot.reports.record.record import Record
+from omegadot.reports.text.numbers import knob
+
+# A unit, half a turn, and this many times the scenario's greatest omega each have code 32767.
+_LARGEST = 32767
+_SPINS = 8.0
+# One idea a file; what comes first is spoken of by what comes after.
+_SCRIPTS = ("unpack", "see_turns", "see_draw", "see_polhode", "see_stage", "see_clock", "see")
+
+
+class Codes:
+    """Numbers as 16-bit codes in two's complement, one table after the other."""
+
+    def __init__(self) -> None:
+        self._parts: list[Array] = [np.empty(0)]
+        self.used = 0
+
+    def add(self, rows: Array, largest: float) -> None:
+        """A table, column by column; what is beyond `largest` ends there."""
+        self._parts.append(rows.T.ravel() / largest)
+        self.used += rows.size
+
+    def all(self) -> Array:
+        """All of them, (used,) uint16."""
+        share = np.clip(np.concatenate(self._parts), -1.0, 1.0)
+        codes: Array = np.rint(share * _LARGEST).astype(np.int16).view(np.uint16)
+        return codes
+
+
+def see_part(
+    record: Record, charts: Mapping[str, Chart], lines: list[Line], anchors: Mapping[str, str]
+) -> dict[str, Any]:
+    """What the template of "See it" takes: the scenarios' names, the packed data, the script."""
+    description, codes = see_payload(record, charts, lines)
+    for scenario in description["scenarios"]:
+        scenario["anchor"] = anchors[scenario["name"]]
+    return {
+        "scenarios": description["scenarios"],
+        "parted": description["parted"],
+        "data": pack_json(description),
+        "codes": pack_codes(codes),
+        "js": script(_SCRIPTS),
+    }
+
+
+def see_payload(
+    record: Record, charts: Mapping[str, Chart], lines: list[Line]
+) -> tuple[dict[str, Any], Array]:
+    """The script's description of every body and run, and all their codes in a row.
+
+    Each scenario's codes begin with its exact solution, w x y z of the attitude and then omega,
+    one row of as many codes as it has times each. A run is ``[line, rank, knob, frames, start,
+    count, parts, largest, end]``: six rows of `count` codes from `start`, the rotation from the
+    exact attitude and omega less the exact one, at the exact times numbered in ``frames``.
+    """
+    places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
+    flights = flights_of(record.trajectories)
+    scenarios: list[dict[str, Any]] = []
+    codes = Codes()
+    for entry in record.run["scenarios"]:
+        own, chart = flights.get(entry["name"]), charts.get(entry["name"])
+        if own is None or chart is None or not entry.get("system"):
+            continue
+        look = look_of(
+            system_from(entry["system"]), entry.get("definition") or {}, own.angular_velocity[0]
+        )
+        fastest = float(np.abs(own.angular_velocity).max()) or 1.0
+        scenario: dict[str, Any] = {
+            "name": entry["name"],
+            "title": entry.get("title") or entry["name"],
+            "times": [float(f"{t:.7g}") for t in own.time],
+            "start": codes.used,
+            "fastest": fastest,
+            "coarse": own.coarse,
+            "truth": own.truth,
+            "pivot": entry["system"].get("pivot") is not None,
+            **shape(look),
+        }
+        codes.add(normalize(own.orientation), 1.0)
+        codes.add(own.angular_velocity, fastest)
+        scenario.update(_runs(own, chart, places, codes, fastest))
+        scenarios.append(scenario)
+    description = {
+        "lines": [
+            {"name": line.name, "engine": line.engine, "colour": line.colour} for line in lines
+        ],
+        "parted": float(np.rad2deg(PARTED)),
+        "spins": _SPINS,
+        "scenarios": scenarios,
+    }
+    return description, codes.all()
+
+
+def _runs(
+    own: Flights,
+    chart: Chart,
+    places: Mapping[tuple[str, str, str], int],
+    codes: Codes,
+    fastest: float,
+) -> dict[str, Any]:
+    ranks = rank_of(chart)
+    clocks: dict[bytes, int] = {}
+    frames: list[list[int]] = []
+    runs = []
+    for run in own.runs:
+        line = places.get((run.engine, run.setup, run.integrator))
+        rank = ranks.get((run.timestep, run.accuracy))
+        if line is None or rank is None:
+            continue
+        if (clock := run.frames.tobytes()) not in clocks:
+            clocks[clock] = len(frames)
+            frames.append(run.frames.tolist())
+        texts = knob(run.timestep, run.accuracy)
+        runs.append(
+            [line, rank, texts, clocks[clock], codes.used, len(run.frames), *_reported(run)]
+        )
+        codes.add(run.error, np.pi)
+        codes.add(run.spin, _SPINS * fastest)
+    return {"frames": frames, "runs": sorted(runs, key=lambda entry: entry[:2])}
+
+
+def _reported(run: Flight) -> tuple[float | None, float, float]:
+    """When it parts, s, how far it gets, degrees, and when its samples end, s."""
+    return run.parts, float(f"{np.rad2deg(run.largest):.3g}"), run.end

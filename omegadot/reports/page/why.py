@@ -1,0 +1,142 @@
+"""Why an engine differs: the scheme that each integrator equals, and the orders that it shows."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+import polars as pl
+
+from omegadot.reports.page.tables import CHANNEL_NAMES, Row, Table, Value, run_heads
+from omegadot.reports.record.record import Record
+from omegadot.reports.summary.provenance import Sources
+from omegadot.reports.text.numbers import short, times
+
+_CHANNELS = ("omega", "attitude", "energy", "angular_momentum", "linear_momentum", "position")
+_JUDGED = ("pass", "fail")
+Key = tuple[str, str, str]
+
+
+def _key(row: Mapping[str, Any]) -> Key:
+    return row["engine"], row.get("setup") or "physics", row["integrator"] or ""
+
+
+def _declared(record: Record) -> dict[Key, Counter[str]]:
+    """How often each integrator declares which scheme; it may depend on the system."""
+    found: dict[Key, Counter[str]] = {}
+    for task in record.run["tasks"]:
+        if task.get("scheme"):
+            found.setdefault(_key(task), Counter())[task["scheme"]] += 1
+    return found
+
+
+def scheme_table(record: Record, sources: Sources | None = None) -> Table:
+    """One row an integrator, over all scenarios and steps: does it equal the scheme it declares?
+
+    In how many runs, at what largest part of the round-off bound, and how far off in omega and
+    attitude. The reference is left out: it is what the others are held against.
+    """
+    sources = sources or Sources()
+    metrics = _of_runs(record).filter(pl.col("engine") != "reference")
+    matches = _by_key(metrics.filter(pl.col("metric") == "match"))
+    left = _by_key(metrics.filter(pl.col("metric") == "unexplained_max"))
+    declared = _declared(record)
+    rows = [
+        Row(
+            (*_heads(key), _named(declared.get(key, Counter()))),
+            (
+                *_equal_cells(found),
+                *(_largest(left.get(key, []), channel) for channel in ("omega", "attitude")),
+            ),
+            _source(key, sources),
+        )
+        for key, found in matches.items()
+    ]
+    return Table(
+        ("engine", "integrator", "scheme"),
+        (("equalled in", 1), ("largest distance from it", 3)),
+        ("runs judged", "over rounding's bound", "omega, relative", "attitude, rad"),
+        tuple(rows),
+    )
+
+
+def order_table(record: Record, sources: Sources | None = None) -> Table:
+    """One row an integrator: the range of its observed orders over all scenarios, by channel."""
+    metrics = _of_runs(record)
+    orders = _by_key(metrics.filter(pl.col("metric") == "observed_order"))
+    rows = [
+        Row(
+            _heads(key),
+            tuple(_order_cell(found, channel) for channel in _CHANNELS),
+            _source(key, sources or Sources()),
+        )
+        for key, found in orders.items()
+    ]
+    return Table(
+        ("engine", "integrator"),
+        (("observed order (declared)", len(_CHANNELS)),),
+        tuple(CHANNEL_NAMES[channel] for channel in _CHANNELS),
+        tuple(rows),
+    )
+
+
+def _of_runs(record: Record) -> pl.DataFrame:
+    return record.metrics.filter(
+        pl.col("integrator").is_not_null() & pl.col("gate").is_in(["scheme", "trajectory"])
+    )
+
+
+def _source(key: Key, sources: Sources) -> int:
+    return sources.number(dict(zip(("engine", "setup", "integrator"), key, strict=True)))
+
+
+def _heads(key: Key) -> tuple[str, ...]:
+    return run_heads((key[0], "", key[1], key[2], None, None))
+
+
+def _named(declared: Counter[str]) -> str:
+    """The scheme that is declared, and those declared for some systems instead."""
+    if not declared:
+        return "none declared"
+    (usual, _), *others = declared.most_common()
+    message = ", ".join(f"{name} in {times(count, 'run')}" for name, count in others)
+    return f"{usual} ({message})" if message else usual
+
+
+def _by_key(metrics: pl.DataFrame) -> dict[Key, list[dict[str, Any]]]:
+    found: dict[Key, list[dict[str, Any]]] = {}
+    names = ("engine", "setup", "integrator", "channel", "value", "bound", "verdict")
+    for row in metrics.select(names).iter_rows(named=True):
+        found.setdefault(_key(row), []).append(row)
+    return found
+
+
+def _equal_cells(matches: list[dict[str, Any]]) -> tuple[Value, Value]:
+    judged = [row for row in matches if row["verdict"] in _JUDGED]
+    equal = sum(row["verdict"] == "pass" for row in judged)
+    mark = "fail" if equal < len(judged) else ""
+    reported = f"{equal} of {len(judged)}" if judged else "–"
+    values = [row["value"] for row in judged if row["value"] is not None]
+    return Value(f"{reported} ✗ fail" if mark else reported, mark), Value(
+        short(max(values, default=None))
+    )
+
+
+def _largest(rows: list[dict[str, Any]], channel: str) -> Value:
+    own = [row["value"] for row in rows if row["channel"] == channel]
+    finite = [value for value in own if value is not None and value == value]
+    return Value(short(max(finite, default=None)))
+
+
+def _order_cell(rows: list[dict[str, Any]], channel: str) -> Value:
+    """The range of the orders that were judged; – where no sweep shows one."""
+    judged = [r for r in rows if r["channel"] == channel and r["verdict"] in _JUDGED]
+    if not judged:
+        return Value("–")
+    low, high = (f"{pick(r['value'] for r in judged):.2f}" for pick in (min, max))
+    bounds = sorted({r["bound"] for r in judged if r["bound"] is not None})
+    span = low if low == high else f"{low} … {high}"
+    failed = "fail" if any(r["verdict"] == "fail" for r in judged) else ""
+    text = f"{span} ({', '.join(f'{bound:.0f}' for bound in bounds)})"
+    return Value(f"{text} ✗ fail" if failed else text, failed)

@@ -1,0 +1,1 @@
+"""A run's record: its schema, how it is read and how it is written."""

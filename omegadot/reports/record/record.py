@@ -1,0 +1,137 @@
+"""A run's record: three files and the page, written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+
+from omegadot.reports.record import schema
+from omegadot.reports.record.run_json import check_run, dump_json, read_run
+from omegadot.reports.record.schema import Field, RecordError
+
+RUN, METRICS, TRAJECTORIES, PAGE = (
+    "run.json",
+    "metrics.parquet",
+    "trajectories.parquet",
+    "report.html",
+)
+_REPEATING = ("timestep", "accuracy", "time")
+FILES = (RUN, METRICS, TRAJECTORIES, PAGE)
+
+
+@dataclass(frozen=True)
+class Record:
+    """run: what ``run.json`` holds.  metrics and trajectories: the contract's two tables."""
+
+    run: dict[str, Any]
+    metrics: pl.DataFrame
+    trajectories: pl.DataFrame
+
+
+def check_folder(folder: Path) -> None:
+    """Raise RecordError unless a record may be written to `folder`.
+
+    It may be absent, empty, or hold an earlier record and nothing else; no other file is ever
+    replaced. Call it before a long run, so that nobody learns of it afterwards.
+    """
+    folder = folder.resolve()
+    if Path.cwd().is_relative_to(folder):
+        raise RecordError(f"{folder}: is the current directory or holds it; name a new folder.")
+    if not folder.exists():
+        return
+    if not folder.is_dir():
+        raise RecordError(f"{folder}: is a file; name a new folder for the record.")
+    names = sorted(entry.name for entry in folder.iterdir())
+    foreign = [name for name in names if name not in FILES]
+    if foreign:
+        raise RecordError(
+            f"{folder}: holds {foreign[0]!r}, which is no part of a record; name a new folder."
+        )
+    if names and RUN not in names:
+        raise RecordError(f"{folder}: is not empty and holds no {RUN}; name a new folder.")
+
+
+def write_record(record: Record, folder: Path, page: str) -> None:
+    """Write the record and its page to `folder`, whole or not at all.
+
+    The files go to a hidden folder beside it, which then takes its name; an earlier record gives
+    way at that moment only. Raises RecordError as `check_folder` does, when the tables break the
+    contract, and when the disk refuses.
+    """
+    check_folder(folder)
+    folder = folder.resolve()
+    text = dump_json(record.run)
+    check_run(record.run, RUN)
+    metrics = schema.conform(record.metrics, schema.METRICS, METRICS)
+    trajectories = schema.conform(record.trajectories, schema.TRAJECTORIES, TRAJECTORIES)
+    fresh = folder.with_name(f".{folder.name}.{secrets.token_hex(6)}.new")
+    try:
+        fresh.mkdir(parents=True)
+        (fresh / RUN).write_text(text, encoding="utf-8")
+        _write_parquet(metrics, schema.METRICS, fresh / METRICS)
+        _write_parquet(trajectories, schema.TRAJECTORIES, fresh / TRAJECTORIES)
+        (fresh / PAGE).write_text(page, encoding="utf-8", errors="replace", newline="\n")
+        _take_the_place_of(folder, fresh)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise RecordError(f"{folder}: the record cannot be written ({reason}).") from error
+    finally:
+        shutil.rmtree(fresh, ignore_errors=True)
+
+
+def _take_the_place_of(folder: Path, fresh: Path) -> None:
+    # A folder that is not empty cannot be renamed over, so the earlier record steps aside first.
+    aside = fresh.with_suffix(".old")
+    had_earlier = folder.exists()
+    if had_earlier:
+        os.replace(folder, aside)
+    try:
+        os.replace(fresh, folder)
+    except BaseException:
+        if had_earlier:
+            os.replace(aside, folder)
+        raise
+    shutil.rmtree(aside, ignore_errors=True)
+
+
+def _write_parquet(frame: pl.DataFrame, fields: Mapping[str, Field], path: Path) -> None:
+    import pyarrow.parquet as pq  # only who writes waits for it
+
+    table = frame.to_arrow(compat_level=pl.CompatLevel.oldest()).cast(schema.arrow_schema(fields))
+    # Words and steps repeat and pack well; measured numbers do not, and trying costs time.
+    repeating = [n for n, f in fields.items() if f.dtype is pl.String or n in _REPEATING]
+    pq.write_table(table, path, compression="zstd", compression_level=1, use_dictionary=repeating)
+
+
+def read_record(folder: Path) -> Record:
+    """Read a record back. Raises RecordError, one sentence, for whatever is wrong with it."""
+    if not folder.is_dir():
+        raise RecordError(f"{folder}: no such folder; give the folder of a run.")
+    for name in (RUN, METRICS, TRAJECTORIES):
+        if not (folder / name).is_file():
+            raise RecordError(f"{folder / name}: missing; give the folder of a whole run.")
+    run = read_run(folder / RUN)
+    return Record(
+        run,
+        _read_parquet(folder / METRICS, schema.METRICS),
+        _read_parquet(folder / TRAJECTORIES, schema.TRAJECTORIES),
+    )
+
+
+def _read_parquet(path: Path, fields: Mapping[str, Field]) -> pl.DataFrame:
+    try:
+        # Opened here, so that the name is not taken for a pattern of many files.
+        with path.open("rb") as file:
+            frame = pl.read_parquet(file)
+    except (OSError, pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
+        raise RecordError(
+            f"{path}: not a readable Parquet file (truncated or damaged); run again."
+        ) from error
+    return schema.conform(frame, fields, str(path))

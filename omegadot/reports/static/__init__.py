@@ -1,5 +1,0 @@
-"""The charts of a run as pictures for papers and slides: SVG and PNG."""
-
-from omegadot.reports.static.write import write_figures
-
-__all__ = ["write_figures"]

@@ -1,0 +1,112 @@
+"""The one sentence of verdict, computed from the summary and claiming no more than it holds."""
+
+from __future__ import annotations
+
+from omegadot.reports.summary.figures import Figure, size
+from omegadot.reports.summary.summary import YARDSTICKS, Cell, Summary
+from omegadot.reports.text.numbers import knob, listed, short, times
+
+
+def headline(summary: Summary) -> str:
+    """Who agrees with the equations and how far, who fails where: one sentence."""
+    return _verdict(summary, _judged_engines(summary))
+
+
+def remarks(summary: Summary) -> list[str]:
+    """What must be said beside the headline: what is missing, and how far trajectories part."""
+    message = [] if summary.complete else ["Partial record: the run was cut short."]
+    spread = _spread(_judged_engines(summary))
+    return message + ([spread] if spread else []) + _remainder(summary)
+
+
+def truth(summary: Summary) -> list[str]:
+    """What everything was measured by: one sentence, none where there is no exact course."""
+    kinds = [f"{name} on {count}" for name, count in sorted(summary.truths.items())]
+    if not kinds:
+        return []
+    return [f"Truth: {listed(kinds)} of {times(len(summary.scenarios), 'scenario')}."]
+
+
+def _judged_engines(summary: Summary) -> dict[str, list[Cell]]:
+    """Cells per column; the yardsticks stand aside unless nothing else ran or they fail."""
+    cells: dict[str, list[Cell]] = {}
+    for (_, column), cell in summary.cells.items():
+        if column.engine not in YARDSTICKS or cell.status == "fail":
+            cells.setdefault(column.label, []).append(cell)
+    if cells:
+        return cells
+    for (_, column), cell in summary.cells.items():
+        cells.setdefault(column.label, []).append(cell)
+    return cells
+
+
+def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
+    failing = [name for name, cells in engines.items() if any(c.status == "fail" for c in cells)]
+    if failing:
+        places = sorted({s for (s, c), cell in summary.cells.items() if cell.status == "fail"})
+        shown = ", ".join(places[:3]) + (f" and {len(places) - 3} more" if len(places) > 3 else "")
+        verb = "fails" if len(failing) == 1 else "fail"
+        who = f"{len(failing)} of {times(len(engines), 'engine')} {verb}"
+        return f"{who} a gate: {listed(failing)}, on {shown}."
+    measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
+    passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
+    # A declared exception is a failure that is known: such an engine is not said to agree.
+    excused = [n for n, cells in engines.items() if any(c.runs.get("declared") for c in cells)]
+    agreeing = [name for name in measured if name in passed and name not in excused]
+    if excused and not agreeing:
+        return f"Every gate holds but for declared exceptions: {listed(excused)}."
+    if not agreeing:
+        return "No verdict: no run of an engine was judged on the equation of motion."
+    largest = max((measured[name] for name in agreeing), key=size)
+    who = {1: agreeing[0], 2: "Both engines"}.get(len(agreeing), f"All {len(agreeing)} engines")
+    if len(agreeing) < len(engines):
+        who = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
+    verb = "agrees" if len(agreeing) == 1 else "agree"
+    apart = f" Declared exceptions: {listed(excused)}." if excused else ""
+    return (
+        f"{who} {verb} with the Newton–Euler equations at identical states: the largest omega-dot "
+        f"residual is {_quantity(largest)} ({largest.engine} on {largest.scenario}).{apart}"
+    )
+
+
+def _residual(cells: list[Cell]) -> Figure | None:
+    return max((c.residual for c in cells if c.residual), key=size, default=None)
+
+
+def _spread(engines: dict[str, list[Cell]]) -> str:
+    ranges = [cell.attitude for cells in engines.values() for cell in cells if cell.attitude]
+    if not ranges:
+        return ""
+    largest = max((r.worst for r in ranges), key=size)
+    best = min((r.best for r in ranges if r.best.scenario == largest.scenario), key=size)
+    if best.value == largest.value:
+        return ""
+    return (
+        "Accuracy over time differs more: at the finest step the attitude error is largest on "
+        f"{largest.scenario}, {_run(largest)}, against {_run(best)}."
+    )
+
+
+def _run(figure: Figure) -> str:
+    settings = knob(figure.timestep, figure.accuracy)
+    settings = f", {settings}" if settings else ""
+    name = " ".join(filter(None, (figure.engine, figure.integrator)))
+    return f"{_quantity(figure)} ({name}{settings})"
+
+
+def _quantity(figure: Figure) -> str:
+    return short(figure.value) + ("" if figure.unit == "1" else f" {figure.unit}")
+
+
+def _remainder(summary: Summary) -> list[str]:
+    message = []
+    declared = summary.runs.get("declared", 0)
+    if declared:
+        message.append(f"{times(declared, 'declared exception')}.")
+    skipped = sum(
+        count for s, count in summary.runs.items() if s not in ("pass", "fail", "declared")
+    )
+    if skipped:
+        total = sum(summary.runs.values())
+        message.append(f"{skipped} of {times(total, 'run')} gave no verdict; each has its reason.")
+    return message

@@ -1,0 +1,128 @@
+"""The page's matrix: how a cell of the summary is worded, and where its numbers come from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from omegadot.reports.summary.figures import Figure, Range
+from omegadot.reports.summary.provenance import Sources
+from omegadot.reports.summary.summary import STATUSES, Cell, Column, Summary
+from omegadot.reports.text.numbers import knob, short
+
+MARKS = {"pass": "✓", "fail": "✗", "declared": "!", "absent": ""}
+# The numbers that the matrix can show, one at a time: the key of `Shown.numbers`, its name.
+NUMBERS = {
+    "residual": "omega-dot residual (relative)",
+    "drift": "angular-momentum drift (relative)",
+    "attitude": "attitude error (rad)",
+}
+
+
+@dataclass(frozen=True)
+class Shown:
+    """One cell in words. mark and status: a sign and a word.  part: how many of its runs passed,
+    where not all did.  numbers: text by the keys of NUMBERS.  card: the number of its card among
+    `cards`.  rank: for sorting, the worst first.
+    """
+
+    mark: str
+    status: str
+    part: str
+    numbers: dict[str, str]
+    card: int = 0
+    rank: int = 0
+
+
+@dataclass(frozen=True)
+class Line:
+    """One engine on one scenario, spelt out.
+
+    numbers: (value, the run behind it) of the worst residual, then best and worst of the drift and
+    best and worst of the attitude error.  source: the number of who gave them.
+    """
+
+    engine: str
+    shown: Shown
+    numbers: list[tuple[str, str]]
+    source: int | None = None
+
+
+def origin_of(column: Column, figure: Figure | None = None) -> dict[str, Any]:
+    """Who gave a number of this column: the run of the figure, or the engine as a whole."""
+    engine = {"engine": column.engine, "engine_version": column.version, "setup": column.setup}
+    return engine if figure is None else {**vars(figure), **engine}
+
+
+def shown(cell: Cell, card: int = 0) -> Shown:
+    """A cell as the matrix shows it."""
+    total, passed = sum(cell.runs.values()), cell.runs.get("pass", 0)
+    part = f"{passed} of {total} runs pass" if total and passed != total else ""
+    numbers = {
+        "residual": "" if cell.residual is None else short(cell.residual.value),
+        "drift": _span(cell.drift),
+        "attitude": _span(cell.attitude),
+    }
+    rank = STATUSES.index(cell.status)
+    return Shown(MARKS.get(cell.status, "–"), text(cell.status), part, numbers, card, rank)
+
+
+def matrix(summary: Summary) -> list[tuple[str, list[Shown]]]:
+    """Rows of the matrix: the scenario's name and its cells in the order of the columns."""
+    width = len(summary.columns)
+    return [
+        (
+            name,
+            [
+                shown(summary.cells[name, column], row * width + place)
+                for place, column in enumerate(summary.columns)
+            ],
+        )
+        for row, name in enumerate(summary.scenarios)
+    ]
+
+
+def lines(summary: Summary, scenario: str, sources: Sources | None = None) -> list[Line]:
+    """A scenario's row of the matrix, spelt out: one line an engine."""
+    sources = sources or Sources()
+    return [
+        replace(
+            _line(column, summary.cells[scenario, column]),
+            source=sources.number(origin_of(column)),
+        )
+        for column in summary.columns
+    ]
+
+
+def _line(column: Column, cell: Cell) -> Line:
+    version = "" if column.version in column.label else f" {column.version}"
+    ends = [end for span in (cell.drift, cell.attitude) for end in _ends(span)]
+    return Line(column.label + version, shown(cell), [named(f) for f in (cell.residual, *ends)])
+
+
+def _ends(span: Range | None) -> tuple[Figure | None, Figure | None]:
+    return (None, None) if span is None else (span.best, span.worst)
+
+
+def _span(span: Range | None) -> str:
+    if span is None:
+        return ""
+    best, worst = short(span.best.value), short(span.worst.value)
+    return best if best == worst else f"{best} … {worst}"
+
+
+def named(figure: Figure | None) -> tuple[str, str]:
+    """A figure in words: the value with its unit, and the run behind it."""
+    if figure is None:
+        return "–", ""
+    unit = "" if figure.unit == "1" else f" {figure.unit}"
+    path = "along the path" if figure.metric == "residual_on_path" else ""
+    run = (path, figure.integrator, knob(figure.timestep, figure.accuracy))
+    return short(figure.value) + unit, ", ".join(filter(None, run))
+
+
+def text(status: str) -> str:
+    """A status as a person would say it."""
+    return {"not-judged": "not judged", "not-installed": "not installed", "absent": "not run"}.get(
+        status, status
+    )

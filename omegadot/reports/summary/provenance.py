@@ -1,0 +1,111 @@
+"""The way back from a number: who gave it, and the command that gives it again."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+# Options that change what a run computes, and must stand in the command that repeats it.
+_KEPT = ("--adapter", "--exceptions")
+
+
+@dataclass(frozen=True)
+class Source:
+    """Who gave a number; what is None was not part of it (an engine's residual has no step)."""
+
+    engine: str
+    version: str = ""
+    setup: str = "physics"
+    integrator: str | None = None
+    timestep: float | None = None
+    accuracy: float | None = None
+
+
+@dataclass
+class Sources:
+    """Every source that the page names, once: tables and charts speak of their numbers."""
+
+    versions: Mapping[str, str] = field(default_factory=dict)
+    numbers: dict[Source, int] = field(default_factory=dict)
+
+    def number(self, row: Mapping[str, Any]) -> int:
+        """The number of the source of a row of metrics, a task, or any such mapping."""
+        engine = row["engine"]
+        source = Source(
+            engine,
+            row.get("engine_version") or self.versions.get(engine, ""),
+            row.get("setup") or "physics",
+            row.get("integrator") or None,
+            row.get("timestep"),
+            row.get("accuracy"),
+        )
+        return self.numbers.setdefault(source, len(self.numbers))
+
+
+def sources_for(engines: Iterable[Mapping[str, Any]]) -> Sources:
+    """An empty list of sources that knows the engines' versions."""
+    return Sources({engine["name"]: str(engine.get("version") or "") for engine in engines})
+
+
+def _arguments(command: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
+    """The positional words behind ``run``, and the options with their values."""
+    texts: list[str] = []
+    options: list[tuple[str, str]] = []
+    rest: Iterator[str] = iter(command[command.index("run") + 1 :] if "run" in command else [])
+    for text in rest:
+        if not text.startswith("--"):
+            texts.append(text)
+        elif "=" in text:
+            name, _, value = text.partition("=")
+            options.append((name, value))
+        else:  # every option of the command takes a value
+            options.append((text, next(rest, "")))
+    return texts, options
+
+
+def requested_as(run: Mapping[str, Any]) -> dict[str, str]:
+    """By scenario: the word that asked for it, which for a file is its path as given."""
+    names = [entry["name"] for entry in run["scenarios"]]
+    texts, _ = _arguments([str(text) for text in run.get("command") or ()])
+    given = texts if len(texts) == len(names) else names
+    return dict(zip(names, given, strict=True))
+
+
+def kept_options(run: Mapping[str, Any]) -> list[str]:
+    """The options of the run's command that its repetition needs, as words."""
+    _, options = _arguments([str(text) for text in run.get("command") or ()])
+    return [text for option in options if option[0] in _KEPT for text in option]
+
+
+def steps_given(run: Mapping[str, Any]) -> list[str]:
+    """The steps that the run's command asked for instead of the scenarios' own."""
+    _, options = _arguments([str(text) for text in run.get("command") or ()])
+    return [value for name, value in options if name == "--timestep"]
+
+
+def provenance_payload(
+    run: Mapping[str, Any], sources: Sources, anchors: Mapping[str, str]
+) -> dict[str, Any]:
+    """What the page's script makes its cards of: sources by number, scenarios by address."""
+    requested = requested_as(run)
+    texts, _ = _arguments([str(text) for text in run.get("command") or ()])
+    return {
+        "sources": [list(vars(source).values()) for source in sources.numbers],
+        "scenarios": {
+            anchor: [name, requested.get(name, name)] for name, anchor in anchors.items()
+        },
+        "asked": texts,
+        "seed": run.get("seed"),
+        "options": kept_options(run),
+        "steps": steps_given(run),
+        "omegadot": run.get("omegadot"),
+        "command": command_of(run),
+        "traces": [engine["name"] for engine in run.get("engines", []) if "trace" in engine],
+    }
+
+
+def command_of(run: Mapping[str, Any]) -> str:
+    """The command that made the record, as one would type it."""
+    return shlex.join(str(text) for text in run.get("command") or ())

@@ -1,0 +1,199 @@
+"""From a record to what a person must see first: verdicts, and the numbers behind them.
+
+Pure functions: the terminal's table and the page both show what stands here, and nothing else.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import polars as pl
+
+from omegadot.reports.record.record import Record
+from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
+
+# From the worst to the best. A skip is never a pass, and neither is a run that nobody judged.
+STATUSES = (
+    "fail",
+    "crashed",
+    "timeout",
+    "raised",
+    "diverged",
+    "interrupted",
+    "unsupported",
+    "not-installed",
+    "not-judged",
+    "declared",
+    "pass",
+    "absent",
+)
+YARDSTICKS = ("exact", "reference")
+
+
+@dataclass(frozen=True)
+class Column:
+    """One engine in one version and one setup. label: what stands over its column."""
+
+    engine: str
+    version: str
+    setup: str
+    label: str
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One engine on one scenario.
+
+    status: the worst over its runs, of STATUSES.  runs: how many runs have which status.
+    residual: the worst omega-dot residual at identical states.  drift and attitude: the range over
+    the integrators, at the finest step, of the angular-momentum drift and the attitude error.
+    """
+
+    status: str
+    runs: Counter[str]
+    residual: Figure | None
+    drift: Range | None
+    attitude: Range | None
+
+
+@dataclass(frozen=True)
+class Missing:
+    """Runs of an engine that gave no verdict for the same reason; none were made of an engine
+    that is not installed.
+    """
+
+    engine: str
+    status: str
+    reason: str
+    runs: int
+    scenarios: tuple[str, ...]
+    integrators: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What the record says at a glance. truths: on how many scenarios the exact course is of which
+    kind.
+    """
+
+    complete: bool
+    scenarios: tuple[str, ...]
+    columns: tuple[Column, ...]
+    cells: Mapping[tuple[str, Column], Cell]
+    runs: Counter[str]
+    missing: tuple[Missing, ...]
+    truths: Counter[str]
+
+
+def worst(statuses: Iterable[str]) -> str:
+    """The worst of some statuses; absent where there is none."""
+    return min(statuses, key=STATUSES.index, default="absent")
+
+
+def task_status(task: Mapping[str, Any]) -> str:
+    """What one run came to: its outcome where it did not end, else the worst of its gates."""
+    verdicts = list((task.get("gates") or {}).values())
+    if "fail" in verdicts:
+        return "fail"
+    if task["outcome"] != "ok":
+        return str(task["outcome"])
+    return worst([v for v in verdicts if v != "info"] or ["not-judged"])
+
+
+def summarise(record: Record) -> Summary:
+    """The matrix of scenarios and engines, the counts, and what did not run."""
+    tasks = record.run["tasks"]
+    columns = _columns(tasks)
+    by_key = {(c.engine, c.version, c.setup): c for c in columns}
+    scenarios = [entry["name"] for entry in record.run["scenarios"]]
+    scenarios += [t["scenario"] for t in tasks if t["scenario"] not in scenarios]
+    scenarios = list(dict.fromkeys(scenarios))
+    statuses: dict[tuple[str, Column], list[str]] = {}
+    for task in tasks:
+        key = (task["scenario"], by_key[_identity(task)])
+        statuses.setdefault(key, []).append(task_status(task))
+    figures = figures_of(record.metrics)
+    judged = _judged_rows(record.metrics)
+    cells = {
+        (scenario, column): _cell(
+            statuses.get((scenario, column), []),
+            judged.get((scenario, column.engine, column.version, column.setup), []),
+            figures.get((scenario, column.engine, column.version, column.setup), {}),
+        )
+        for scenario in scenarios
+        for column in columns
+    }
+    return Summary(
+        bool(record.run.get("complete", True)),
+        tuple(scenarios),
+        columns,
+        cells,
+        Counter(task_status(task) for task in tasks),
+        _missing(record.run),
+        _truths(record.trajectories),
+    )
+
+
+def _truths(trajectories: pl.DataFrame) -> Counter[str]:
+    exact = trajectories.filter(pl.col("engine") == "exact")
+    return Counter(name for _, name in exact.select("scenario", "integrator").unique().rows())
+
+
+def _identity(task: Mapping[str, Any]) -> tuple[str, str, str]:
+    return task["engine"], task.get("engine_version") or "", task.get("setup") or "physics"
+
+
+def _columns(tasks: Iterable[Mapping[str, Any]]) -> tuple[Column, ...]:
+    # The engines stand first: they are what the reader came for, and a phone shows two columns.
+    keys = sorted(
+        dict.fromkeys(_identity(task) for task in tasks), key=lambda k: k[0] in YARDSTICKS
+    )
+    columns = []
+    for engine, version, setup in keys:
+        several = len({v for e, v, _ in keys if e == engine}) > 1
+        label = f"{engine} {version}" if several else engine
+        columns.append(Column(engine, version, setup, label + (setup != "physics") * f" {setup}"))
+    return tuple(columns)
+
+
+def _cell(statuses: list[str], rows: list[str], figures: dict[str, list[Figure]]) -> Cell:
+    # A row's verdict counts even where the task above it is silent: no failure gets lost.
+    status = worst([*statuses, *(verdict for verdict in rows if verdict == "fail")])
+    residuals = figures.get("omega_dot", [])
+    return Cell(
+        status,
+        Counter(statuses),
+        max(residuals, key=size, default=None),
+        range_of(figures.get("angular_momentum", [])),
+        range_of(figures.get("attitude", [])),
+    )
+
+
+def _judged_rows(metrics: pl.DataFrame) -> dict[Key, list[str]]:
+    names = ("scenario", "engine", "engine_version", "setup")
+    groups = metrics.group_by(*names, maintain_order=True).agg(pl.col("verdict").unique())
+    return {row[:4]: row[4] for row in groups.iter_rows()}
+
+
+def _missing(run: Mapping[str, Any]) -> tuple[Missing, ...]:
+    groups: dict[tuple[str, str, str], list[Mapping[str, Any]]] = {}
+    for task in run["tasks"]:
+        if task["outcome"] != "ok":
+            key = (task["engine"], task["outcome"], task.get("reason") or "")
+            groups.setdefault(key, []).append(task)
+    requested = {task["engine"] for task in run["tasks"]}
+    for engine in run["engines"]:
+        if engine.get("installed") is False and engine["name"] not in requested:
+            groups[engine["name"], "not-installed", engine.get("reason") or ""] = []
+    return tuple(
+        Missing(
+            *key,
+            len(tasks),
+            tuple(dict.fromkeys(task["scenario"] for task in tasks)),
+            tuple(dict.fromkeys(t["integrator"] for t in tasks if t.get("integrator"))),
+        )
+        for key, tasks in sorted(groups.items(), key=lambda item: STATUSES.index(item[0][1]))
+    )

@@ -1,0 +1,1 @@
+"""A record in the terminal and in Markdown."""

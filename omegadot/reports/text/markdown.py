@@ -1,0 +1,120 @@
+"""One run as a comment on a pull request: verdict, matrix, failures, what did not run."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+
+from omegadot.reports.record.record import Record
+from omegadot.reports.summary import matrix
+from omegadot.reports.summary.headline import headline, remarks, truth
+from omegadot.reports.summary.summary import STATUSES, Cell, Summary, summarise, task_status
+from omegadot.reports.text.markdown_text import COMMENT, code, escape, folded, table
+from omegadot.reports.text.numbers import times
+
+_FAILING = ("fail", "declared", "crashed", "timeout", "raised", "diverged")
+
+
+def markdown_of(record: Record) -> str:
+    """The record in Markdown, below the length that a comment may have."""
+    summary = summarise(record)
+    beside = " ".join(remarks(summary) + truth(summary))
+    message = record.run.get("headline") or headline(summary)
+    lines = [f"### omegadot: {escape(message, 1000)}", ""]
+    lines += [escape(beside, 1000), ""] if beside else []
+    lines += [_counts(summary), ""]
+    lines += _matrix(summary, COMMENT // 4)
+    lines += _failures(record, COMMENT // 4)
+    lines += _missing(summary, COMMENT // 8)
+    lines += folded("Versions and machine", _versions(record, COMMENT // 8))
+    command = code(shlex.join(str(term) for term in record.run.get("command") or ()))
+    lines += ["", command] if command else []
+    return "\n".join(lines) + "\n"
+
+
+def _counts(summary: Summary) -> str:
+    total = sum(summary.runs.values())
+    if not total:
+        return "No run was made."
+    counts = [f"{summary.runs[status]} {status}" for status in STATUSES if summary.runs[status]]
+    return f"{times(total, 'run')}: {', '.join(counts)}."
+
+
+def _matrix(summary: Summary, room: int) -> list[str]:
+    """Scenarios by engines, those of the worst verdict first where there is no room for all."""
+    if not summary.columns:
+        return []
+    heads = ["scenario"]
+    for column in summary.columns:
+        version = "" if column.version in column.label else f" {column.version}"
+        heads.append(column.label + version)
+
+    def rank(scenario: str) -> int:
+        own = (summary.cells[scenario, column].status for column in summary.columns)
+        return min(map(STATUSES.index, own))
+
+    rows = [
+        (name, *(_cell(summary.cells[name, column]) for column in summary.columns))
+        for name in sorted(summary.scenarios, key=rank)
+    ]
+    signs = "✓ every gate holds, ✗ a gate fails, ! a declared exception; the number is the worst"
+    message = f"{signs} omega-dot residual at identical states, relative."
+    return [*table(heads, rows, room, "more scenarios, none of them worse"), "", message]
+
+
+def _cell(cell: Cell) -> str:
+    shown = matrix.shown(cell)
+    term = "" if cell.status in ("pass", "fail") else shown.status
+    return " ".join(filter(None, (shown.mark, term, shown.numbers["residual"], shown.part)))
+
+
+def _failures(record: Record, room: int) -> list[str]:
+    """Runs that failed, or that failed as declared, each reason once."""
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for task in record.run["tasks"]:
+        status = task_status(task)
+        if status in _FAILING:
+            gates = [gate for gate, v in (task.get("gates") or {}).items() if v == status]
+            why = task.get("reason") or task.get("why") or ""
+            key = (status, task["engine"], task.get("integrator") or "", ", ".join(gates), why)
+            groups.setdefault(key, []).append(task["scenario"])
+    if not groups:
+        return []
+    order = sorted(groups, key=lambda key: (STATUSES.index(key[0]), -len(groups[key])))
+    rows = [(*key[:4], _places(groups[key]), key[4]) for key in order]
+    heads = ("outcome", "engine", "integrator", "gates", "where", "reason")
+    return ["", "**Failures**", "", *table(heads, rows, room)]
+
+
+def _places(scenarios: list[str]) -> str:
+    names = list(dict.fromkeys(scenarios))
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    runs = f", {times(len(scenarios), 'run')}" if len(scenarios) > 1 else ""
+    return ", ".join(names[:3]) + more + runs
+
+
+def _missing(summary: Summary, room: int) -> list[str]:
+    rows = [
+        (item.engine, item.status, item.runs or "none", item.reason)
+        for item in summary.missing
+        if item.status not in _FAILING
+    ]
+    if not rows:
+        return []
+    heads = ("engine", "outcome", "runs", "reason")
+    return ["", "**What did not run**", "", *table(heads, rows, room)]
+
+
+def _versions(record: Record, room: int) -> list[str]:
+    def facts() -> Iterator[tuple[str, object]]:
+        run = record.run
+        yield "omegadot", run.get("omegadot") or ""
+        for engine in run["engines"]:
+            yield engine["name"], engine.get("version") or engine.get("reason") or "not installed"
+        for group in ("machine", "versions"):
+            yield from (run.get(group) or {}).items()
+        for key in ("created", "seconds", "seed"):
+            if run.get(key) is not None:
+                yield key, run[key]
+
+    return table(("", ""), facts(), room)

@@ -1,0 +1,165 @@
+"""The table at the end of a run: what a person reads in ten seconds."""
+
+from __future__ import annotations
+
+import sys
+
+from rich.console import Console
+from rich.measure import Measurement
+from rich.table import Table
+from rich.text import Text
+
+from omegadot.reports.record.record import Record
+from omegadot.reports.summary.copies import copies_of, sentence
+from omegadot.reports.summary.figures import Figure, size
+from omegadot.reports.summary.headline import headline, remarks, truth
+from omegadot.reports.summary.summary import Cell, Column, Missing, Summary, summarise
+from omegadot.reports.text.numbers import short, times
+
+_STYLES = {"pass": "green", "fail": "bold red", "declared": "yellow", "absent": "dim"}
+_NOT_RUN = "magenta"
+# Piped output has no width of its own; nothing is cut off there.
+_WIDTH_WHEN_PIPED = 240
+_SIGNS = {"pass": "every gate holds", "fail": "a gate fails", "declared": "declared exception"}
+_WITH_NUMBERS = ("pass", "fail", "declared", "not-judged")
+_NUMBERS = ("omega-dot residual", "angular-momentum drift", "attitude error in rad")
+
+
+def print_summary(record: Record, console: Console | None = None) -> None:
+    """Print scenario by engine: verdict and numbers, then what did not run, then the verdict.
+
+    Each cell holds the verdict, the worst omega-dot residual, and of the worst integrator at its
+    finest step the angular-momentum drift and the attitude error. Numbers give way from the right
+    where the terminal is too narrow for them.
+    """
+    if console is None:
+        console = Console(width=None if sys.stdout.isatty() else _WIDTH_WHEN_PIPED)
+    summary = summarise(record)
+    shown, table = _fitting_table(summary, console)
+    if summary.columns:
+        console.print(table)
+        console.print(_legend(summary, shown, console), style="dim", highlight=False)
+    for line in _extremes(summary):
+        console.print(Text(line))
+    for copies in copies_of(record.run)[:1]:  # those of most engines; the page names the others
+        console.print(Text(sentence(copies)))
+    for missing in summary.missing:
+        console.print(Text(_missing_line(missing), style=_NOT_RUN))
+    console.print(Text(_counts(summary)))
+    console.print(Text(headline(summary), style="bold"))
+    console.print(Text(" ".join(remarks(summary) + truth(summary))))
+
+
+def _fitting_table(summary: Summary, console: Console) -> tuple[int, Table]:
+    """The table with as many numbers a cell as the console's width holds."""
+    unlimited = console.options.update(width=10_000)
+    for shown in range(len(_NUMBERS), 0, -1):
+        table = _table(summary, shown, console)
+        if Measurement.get(console, unlimited, table).maximum <= console.width:
+            return shown, table
+    return 0, _table(summary, 0, console)
+
+
+def _table(summary: Summary, shown: int, console: Console) -> Table:
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
+    table.add_column("scenario", no_wrap=True, overflow="ellipsis")
+    columns = []
+    for column in summary.columns:
+        cells = [summary.cells[scenario, column] for scenario in summary.scenarios]
+        texts = _column(cells, shown, console)
+        width = max((text.cell_len for text in texts), default=0)
+        # Where space is short the scenarios' names give way, not the verdicts.
+        table.add_column(Text(column.label), no_wrap=True, overflow="ellipsis", min_width=width)
+        columns.append(texts)
+    for place, scenario in enumerate(summary.scenarios):
+        table.add_row(Text(scenario), *(texts[place] for texts in columns))
+    return table
+
+
+def _column(cells: list[Cell], shown: int, console: Console) -> list[Text]:
+    """An engine's cells, their numbers standing below each other."""
+    numbers = [_terse(cell)[:shown] for cell in cells]
+    widths = [max(map(len, column)) for column in zip(*numbers, strict=True)]
+    texts = []
+    for cell, own in zip(cells, numbers, strict=True):
+        terms = [f"{text:<{width}}" for text, width in zip(own, widths, strict=True)]
+        style = _STYLES.get(cell.status, _NOT_RUN)
+        text = Text(_mark(cell, console), style)
+        if cell.status in _WITH_NUMBERS:
+            text.append(" ".join(["", *terms]).rstrip(), "default")
+        texts.append(text)
+    return texts
+
+
+def _mark(cell: Cell, console: Console) -> str:
+    """A sign for what was judged, a word for what did not run, with how many of its runs passed."""
+    wide = console.encoding.startswith("utf")
+    signs = {"pass": "✓" if wide else "ok", "fail": "✗" if wide else "FAIL"}
+    signs |= {"declared": "!", "absent": "-"}
+    if cell.status in signs:
+        return signs[cell.status]
+    passed, total = cell.runs["pass"], sum(cell.runs.values())
+    return cell.status + (f" {passed}/{total}" if passed else "")
+
+
+def _terse(cell: Cell) -> list[str]:
+    figures = (
+        cell.residual,
+        cell.drift.worst if cell.drift else None,
+        cell.attitude.worst if cell.attitude else None,
+    )
+    return ["-" if f is None else short(f.value, 1).replace("not finite", "nan") for f in figures]
+
+
+def _legend(summary: Summary, shown: int, console: Console) -> str:
+    present = {cell.status: _mark(cell, console) for cell in summary.cells.values()}
+    message = [f"{present[status]} {text}" for status, text in _SIGNS.items() if status in present]
+    if shown:
+        message.append("numbers: " + ", ".join(_NUMBERS[:shown]))
+    if shown > 1:
+        message[-1] += " (all but the first of the worst integrator at its finest step)"
+    return "; ".join(message) + "." if message else ""
+
+
+def _extremes(summary: Summary) -> list[str]:
+    """Per engine: its worst attitude error, and what its best integrator does there."""
+    lines = []
+    for column in summary.columns:
+        found = _worst_attitude(summary, column)
+        if found is None:
+            continue
+        worst, best = found
+        span = _named(worst) if best is worst else f"{_named(best)} to {_named(worst)}"
+        lines.append(
+            f"{column.label}: attitude error {span} on {worst.scenario}, at the finest step."
+        )
+    return lines
+
+
+def _worst_attitude(summary: Summary, column: Column) -> tuple[Figure, Figure] | None:
+    cells = [summary.cells[scenario, column] for scenario in summary.scenarios]
+    ranges = [cell.attitude for cell in cells if cell.attitude is not None]
+    if not ranges:
+        return None
+    widest = max(ranges, key=lambda r: size(r.worst))
+    return widest.worst, widest.best
+
+
+def _named(figure: Figure) -> str:
+    source = f" ({figure.integrator})" if figure.integrator else ""
+    return f"{short(figure.value)} {figure.unit}{source}"
+
+
+def _missing_line(missing: Missing) -> str:
+    line = f"{missing.engine}: {missing.status}"
+    if missing.runs:
+        line += f", {times(missing.runs, 'run')} on {', '.join(missing.scenarios[:4])}"
+        hidden = len(missing.scenarios) - 4
+        line += f" and {hidden} more" if hidden > 0 else ""
+    return line + (f": {missing.reason}" if missing.reason else "")
+
+
+def _counts(summary: Summary) -> str:
+    total = sum(summary.runs.values())
+    parts = ", ".join(f"{count} {status}" for status, count in summary.runs.most_common())
+    return f"{times(total, 'run')}: {parts}" if parts else "No run was made."

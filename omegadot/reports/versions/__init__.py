@@ -1,0 +1,1 @@
+"""Several versions of an engine: sheet, chart, page and files."""

@@ -1,0 +1,194 @@
+"""What was found of several versions of an engine, in words: the same sheet for every form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from omegadot.reports.text.numbers import listed, plain, times
+from omegadot.reports.versions.changes import (
+    RATIO,
+    Line,
+    lines_of,
+    pace_lines,
+    pace_text,
+    runs_of,
+)
+
+Record = dict[str, Any]
+MOST_NAMED = 4
+NOTHING = "nothing changed beyond rounding"
+
+
+@dataclass(frozen=True)
+class Part:
+    """A step from one version to another, with what changed; several without a change are one."""
+
+    head: str
+    lines: list[Line]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A title, the heads of the columns, the rows."""
+
+    title: str
+    heads: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """title: one line.  absent: versions that could not be asked.  wrong: faults and troubles."""
+
+    title: str
+    beside: list[str]
+    absent: list[Line]
+    parts: list[Part]
+    tables: list[Table]
+    wrong: list[Line]
+
+
+def sheet_of(record: Record) -> Sheet:
+    """The sheet of a record."""
+    versions = record["versions"]
+    known = [version for version in versions if version["outcome"] == "ok"]
+    return Sheet(
+        title=_title(record, known),
+        beside=_beside(record),
+        absent=[
+            (v["version"], f"{v['outcome']}: {v['reason']}") for v in versions if v not in known
+        ],
+        parts=_bisected(record["bisect"]) if record["bisect"] else _parts(record["steps"]),
+        tables=[] if record["bisect"] else [t for t in _tables(record, known) if t.rows],
+        wrong=[(v["version"], text) for v in known for text in _wrong(v)],
+    )
+
+
+def _wrong(version: Record) -> list[str]:
+    """What is not as declared, in full, and the first of the questions that failed."""
+    troubles = version["troubles"]
+    more = [f"and {len(troubles) - MOST_NAMED} questions more"]
+    return [*version["faults"], *troubles[:MOST_NAMED], *more[: len(troubles) > MOST_NAMED]]
+
+
+def _title(record: Record, known: Sequence[Record]) -> str:
+    engine, package = record["engine"], record["package"]
+    named = engine if engine == package else f"{engine} ({package})"
+    requested = times(len(record["versions"]), "version")
+    if not known:
+        return f"{named}: {requested}, and none could be asked"
+    ends = f"{known[0]['version']} to {known[-1]['version']}"
+    if record["bisect"]:
+        return f"{named} {ends}: {record['bisect']['words']}"
+    changed = sum(bool(step["changes"]) for step in record["steps"])
+    answered = (
+        f"{requested}" if len(known) == len(record["versions"]) else f"{len(known)} of {requested}"
+    )
+    return f"{named} {ends}: {answered}, {times(changed, 'step')} with changes"
+
+
+def _beside(record: Record) -> list[str]:
+    bisected = record["bisect"]
+    if bisected is None:
+        cases = [f"{c['name']} ({plain(c['timestep'])} s)" for c in record["cases"]]
+        return [f"Run on {listed(cases)}, setup {record['setup']}."]
+    followed = bisected["metrics"]
+    if not followed:  # no release could be asked which metrics there are
+        return [f"Looked at: {listed(bisected['looked_at'])}."]
+    named = listed(followed) if len(followed) <= MOST_NAMED else times(len(followed), "metric")
+    return [
+        f"Followed: {named}.",
+        f"Looked at: {listed(bisected['looked_at'])}. Between two releases that are alike it is "
+        "assumed that nothing changed.",
+    ]
+
+
+def _parts(steps: Sequence[Record]) -> list[Part]:
+    parts: list[Part] = []
+    quiet: list[Record] = []
+    for step in [*steps, None]:
+        if step is not None and not (step["changes"] or pace_lines(step)):
+            quiet.append(step)
+            continue
+        if quiet:
+            parts.append(Part(f"{quiet[0]['from']} → {quiet[-1]['to']}", [("", NOTHING)]))
+            quiet = []
+        if step is not None:
+            lines = lines_of(step["changes"]) or [("", NOTHING)]
+            parts.append(Part(f"{step['from']} → {step['to']}", lines + pace_lines(step)))
+    return parts
+
+
+def _bisected(bisected: Record) -> list[Part]:
+    low, high = bisected["low"], bisected["high"]
+    if high is None:
+        return [Part("", [("", "fewer than two versions could be asked: nothing to tell apart")])]
+    if not bisected["found"]:
+        return [Part(f"{low} → {high}", [("", f"the ends do not differ: {NOTHING}")])]
+    parts = []
+    for step in bisected["found"]:
+        lines = lines_of(step["changes"])
+        if step["skipped"]:
+            between = f"{listed(step['skipped'])} between them could not be asked"
+            lines.append(("", between))
+        parts.append(Part(f"changed in {step['to']} (after {step['from']})", lines))
+    return parts
+
+
+def _tables(record: Record, known: Sequence[Record]) -> Iterator[Table]:
+    rows: list[tuple[str, ...]] = [
+        (what, _trajectory(known, what)) for what in _history(record, known)
+    ]
+    yield Table("History", ("figure", "versions"), rows)
+    names = list(dict.fromkeys(name for v in known for name in v["integrators"]))
+    yield Table(
+        "Time a step, µs: median (least–most)",
+        ("version", *names),
+        [(v["version"], *(_pace(v["seconds_per_step"].get(n)) for n in names)) for v in known]
+        if any(v["seconds_per_step"] for v in known)
+        else [],
+    )
+
+
+def _pace(pace: Record | None) -> str:
+    return "–" if pace is None else pace_text(_microseconds(pace))
+
+
+def _microseconds(pace: Record) -> Record:
+    return {
+        "value": 1e6 * pace["median"],
+        "least": 1e6 * pace["least"],
+        "most": 1e6 * pace["most"],
+    }
+
+
+def _history(record: Record, known: Sequence[Record]) -> list[str]:
+    """The figures whose course is shown: conventions and defaults that changed, and for each
+    integrator its schemes, its order in attitude and what the first case makes of it.
+    """
+    reported = {
+        change["metric"]
+        for step in record["steps"]
+        for change in step["changes"]
+        if change["kind"] in ("convention", "default", "setup")
+    }
+    first = record["cases"][0]
+    last = RATIO if first["energy_ratio"] else "attitude"
+    case = f":{plain(first['timestep'])}:{last}"
+    names = list(dict.fromkeys(name for v in known for name in v["figures"]))
+    integrators = dict.fromkeys(name for v in known for name in v["integrators"])
+    found = [name for name in names if name in reported]
+    for integrator in integrators:
+        for kind in ("free", "pivoted-damped"):
+            found.append(f"scheme:{integrator}:{kind}")
+        found.append(f"order:{integrator}:free:attitude")
+        found.append(f"drift:{first['name']}:{integrator}{case}")
+    return [name for name in found if name in names]
+
+
+def _trajectory(known: Sequence[Record], metric: str) -> str:
+    figures = [(v["version"], v["figures"].get(metric)) for v in known]
+    texts = [(version, figure["text"] if figure else "none") for version, figure in figures]
+    return "; ".join(f"{versions}: {text}" for versions, text in runs_of(texts))

@@ -1,0 +1,139 @@
+"""One engine in a process of its own: ``python -m ...engine_end.worker TARGET [SETUP]``.
+
+Reads requests from what was its standard input and answers on what was its standard output;
+whatever the engine prints goes to standard error instead, so a chatty engine cannot garble an
+answer. A request that raises, whatever it raises, is answered with the exception; the process goes
+on. After running out of memory it says so and leaves, for what is left of it cannot be relied on.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import traceback
+from collections.abc import Callable
+from functools import partial
+from typing import Any, BinaryIO, cast
+
+from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
+from omegadot.adapters.registry import build_adapter
+from omegadot.workers.engine_end.checked import checked_description
+from omegadot.workers.engine_end.operations import OPERATIONS
+from omegadot.workers.plain_text import one_line
+from omegadot.workers.wire import encode_frame, read_frame
+
+MEMORY_VARIABLE = "OMEGADOT_WORKER_MEMORY"
+"""Names the environment's limit on the worker's data, in bytes."""
+
+# Given back when memory runs out, so that there is some to say so.
+_reserve = [bytearray(1 << 22)]
+
+
+def limit_memory(most: int) -> None:
+    """Have allocations beyond `most` bytes of data refused, where the system can.
+
+    Data, not address space: engines and numerical libraries reserve much more than they use.
+    """
+    try:
+        import resource
+    except ImportError:  # there is no such limit on this system
+        return
+    _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    if hard != resource.RLIM_INFINITY:
+        most = min(most, hard)
+    resource.setrlimit(resource.RLIMIT_DATA, (most, hard))
+
+
+def _text_of(error: BaseException) -> str:
+    try:
+        return str(error)
+    except Exception:  # an exception that cannot even say what it is
+        return "it cannot be printed"
+
+
+def failure(error: BaseException) -> dict[str, Any]:
+    """The answer that tells of an exception, with its type and the line that raised it."""
+    traceback.clear_frames(error.__traceback__)  # what they hold may be all the memory there is
+    texts = one_line(_text_of(error))
+    if isinstance(error, UnsupportedError):
+        return {"outcome": "unsupported", "reason": texts}
+    last = traceback.extract_tb(error.__traceback__)[-1:]
+    where = f" ({os.path.basename(last[0].filename)}:{last[0].lineno})" if last else ""
+    reason = f"{type(error).__name__}: {texts}".rstrip(": ") + where
+    limit = os.environ.get(MEMORY_VARIABLE)
+    if isinstance(error, MemoryError) and limit:
+        reason += f"; the limit is {int(limit) / 2**30:.3g} GiB, --memory sets another"
+    return {"outcome": "raised", "reason": one_line(reason)}
+
+
+def answered(call: Callable[[], Any]) -> tuple[bytes, bool]:
+    """The frame that answers with what `call` returns or raises, and whether to go on after it."""
+    started = time.perf_counter()
+    try:
+        result = call()
+        seconds = time.perf_counter() - started
+        return encode_frame({"outcome": "ok", "result": result, "seconds": seconds}), True
+    except MemoryError as error:
+        _reserve.clear()
+        return encode_frame({**failure(error), "leaves": True}), False
+    except BaseException as error:
+        return encode_frame(failure(error)), True
+
+
+def _built(target: str, setup: Setup) -> tuple[Adapter | None, bytes]:
+    """The adapter, with the frame that holds its description; None where it cannot be built."""
+    try:
+        adapter = build_adapter(target, setup)
+    except ImportError as error:
+        missing = {"outcome": "not-installed", "reason": one_line(_text_of(error))}
+        return None, encode_frame(missing)
+    except BaseException as error:
+        return None, encode_frame(failure(error))
+    frame, _ = answered(lambda: checked_description(adapter.description))
+    return adapter, frame
+
+
+def serve(target: str, setup: Setup, requests: BinaryIO, answers: BinaryIO) -> None:
+    """Answer requests until the harness closes the channel."""
+    own = os.getpid()
+    adapter, frame = _built(target, setup)
+    going_on = True
+    while True:
+        if os.getpid() != own:  # a child that the engine forked; the channel is its parent's
+            os._exit(0)
+        answers.write(frame)
+        answers.flush()
+        if adapter is None or not going_on:
+            return
+        try:
+            request = read_frame(requests)
+        except EOFError:
+            return
+        operation = partial(OPERATIONS[request["operation"]], adapter, request)
+        frame, going_on = answered(operation)
+
+
+def _private_channels() -> tuple[BinaryIO, BinaryIO]:
+    """Keep standard input and output for the harness; the engine gets nothing to read and prints
+    to standard error.
+    """
+    requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    os.dup2(2, 1)
+    return requests, answers
+
+
+def main() -> None:
+    """Serve the adapter that the command line names."""
+    setup = cast(Setup, sys.argv[2] if len(sys.argv) > 2 else "physics")
+    memory = os.environ.get(MEMORY_VARIABLE)
+    if memory:
+        limit_memory(int(memory))
+    serve(sys.argv[1], setup, *_private_channels())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The harness's end: processes, their pipes, and a pool of them."""

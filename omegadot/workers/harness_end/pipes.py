@@ -1,0 +1,103 @@
+"""What flows between the harness and one worker, each stream on a thread of its own.
+
+No stream can then block another, whatever the worker does: it may flood standard error, stop
+reading its requests, write what is no answer, or leave children behind that hold its pipes open.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import subprocess
+import threading
+from dataclasses import dataclass
+from typing import Any
+
+from omegadot.workers.harness_end.family import end_family
+from omegadot.workers.plain_text import one_line
+from omegadot.workers.wire import encode_frame, read_frame
+
+STDERR_BYTES_KEPT = 4000
+SECONDS_TO_DRAIN = 1.0
+
+
+@dataclass(frozen=True)
+class Lost:
+    """There will be no more answers. how: why, where it is not for the process's death."""
+
+    how: str = ""
+
+
+class Pipes:
+    """The streams of one process, from its start to its end. mark: what its family bears."""
+
+    def __init__(self, process: subprocess.Popen[bytes], mark: str) -> None:
+        self._process, self._mark = process, mark
+        self._tail = b""
+        self._requests: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
+        self.answers: queue.Queue[dict[str, Any] | Lost] = queue.Queue()
+        self._feeder = self._start(self._feed)
+        self._collector = self._start(self._collect)
+        self._listener = self._start(self._listen)
+        self._start(self._watch)
+
+    @staticmethod
+    def _start(call: Any) -> threading.Thread:
+        thread = threading.Thread(target=call, daemon=True)
+        thread.start()
+        return thread
+
+    def send(self, message: dict[str, Any]) -> None:
+        """Have a request written, as soon as the worker reads it."""
+        self._requests.put(encode_frame(message))
+
+    def close_requests(self) -> None:
+        """Tell the worker, after what was sent, that nothing more will be asked."""
+        self._requests.put(None)
+
+    def last_output(self) -> str:
+        """The last three lines that an ended process wrote to standard error."""
+        self._listener.join(SECONDS_TO_DRAIN)
+        lines = self._tail.decode(errors="replace").strip().splitlines()[-3:]
+        return one_line(" | ".join(line.strip() for line in lines), 400)
+
+    def _feed(self) -> None:
+        stream = self._process.stdin
+        assert stream is not None
+        with contextlib.suppress(OSError, ValueError):  # a dead worker reads nothing more
+            while (frame := self._requests.get()) is not None:
+                stream.write(frame)
+                stream.flush()
+        with contextlib.suppress(OSError, ValueError):
+            stream.close()
+
+    def _collect(self) -> None:
+        """Move answers from the pipe to the queue; what is no answer ends it."""
+        stream = self._process.stdout
+        assert stream is not None
+        try:
+            while True:
+                self.answers.put(read_frame(stream))  # type: ignore[arg-type]
+        except (EOFError, OSError):
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(SECONDS_TO_DRAIN)
+                return  # it died, which `_watch` tells when all answers are in
+            self.answers.put(Lost("it closed the channel of its answers"))
+        except Exception as error:  # garbage can fail to be read in many ways
+            self.answers.put(Lost(f"its answer cannot be read: {one_line(str(error), 100)}"))
+
+    def _listen(self) -> None:
+        """Keep the last words on standard error and drop the rest, however much comes."""
+        stream = self._process.stderr
+        assert stream is not None
+        with contextlib.suppress(OSError, ValueError):
+            while chunk := stream.read1(1 << 16):  # type: ignore[attr-defined]
+                self._tail = (self._tail + chunk)[-STDERR_BYTES_KEPT:]
+
+    def _watch(self) -> None:
+        """See the process's end even where a child of it still holds the pipe open."""
+        self._process.wait()
+        end_family(self._process, self._mark)
+        self.close_requests()
+        self._collector.join(SECONDS_TO_DRAIN)
+        self.answers.put(Lost())

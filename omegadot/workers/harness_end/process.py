@@ -1,0 +1,172 @@
+"""The harness's side of one worker: start it, ask it, and say how it died."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from omegadot.workers.engine_end.worker import MEMORY_VARIABLE
+from omegadot.workers.harness_end.family import end_family, marked, new_mark
+from omegadot.workers.harness_end.pipes import Lost, Pipes
+from omegadot.workers.machine import memory_of_machine
+from omegadot.workers.plain_text import one_line
+
+SECONDS_TO_LEAVE = 2.0
+# Importing an engine takes as long as it takes, however short a request may be asked to be.
+SECONDS_TO_START = 20.0
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What came back: an outcome of the contract, its reason, the result and the time it took."""
+
+    outcome: str
+    reason: str = ""
+    result: Any = None
+    seconds: float = 0.0
+
+    @property
+    def ok(self) -> bool:
+        """Whether there is a result."""
+        return self.outcome == "ok"
+
+
+def _worker_environment(memory: int | None) -> dict[str, str]:
+    # One thread an engine: the workers run side by side, and timings must not share cores.
+    single = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+    limit = {MEMORY_VARIABLE: str(memory)} if memory else {}
+    return {**os.environ, **single, "PYTHONUNBUFFERED": "1", **limit}
+
+
+class WorkerProcess:
+    """One engine's process. It is started when first asked and again after it dies.
+
+    timeout: s, for one request; a start has 20 s at least.  memory: bytes of data that it may
+    hold; half of the machine's where none is given, and no limit where that is not known.
+    """
+
+    def __init__(
+        self,
+        target: str,
+        setup: str,
+        timeout: float,
+        command: Sequence[str] | None = None,
+        memory: int | None = None,
+    ) -> None:
+        python = [sys.executable, "-m", "omegadot.workers.engine_end.worker"]
+        self._command = [*(command or python), target, setup]
+        self._timeout = timeout
+        self._memory = memory or memory_of_machine() // 2
+        self._process: subprocess.Popen[bytes] | None = None
+        self._pipes: Pipes | None = None
+        self._mark = new_mark()
+        self.deaths: list[str] = []
+
+    @property
+    def pid(self) -> int | None:
+        """The process's number while it lives."""
+        process = self._process
+        return process.pid if process else None
+
+    @property
+    def started(self) -> bool:
+        """Whether there is a process to ask; one that died since then will be found out there."""
+        return self._process is not None
+
+    def start(self) -> Answer:
+        """Start the process; the result is the engine's description."""
+        self.stop()
+        self._mark = new_mark()
+        try:
+            process = subprocess.Popen(
+                self._command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                env=marked(_worker_environment(self._memory), self._mark),
+                start_new_session=True,  # Ctrl-C is the harness's to handle
+            )
+        except OSError as error:
+            return Answer("crashed", f"the worker could not be started: {error}")
+        pipes = Pipes(process, self._mark)
+        self._process, self._pipes = process, pipes
+        answer = self._wait(process, pipes, max(self._timeout, SECONDS_TO_START))
+        if not answer.ok:
+            self.stop()
+        return answer
+
+    def request(self, operation: str, **fields: Any) -> Answer:
+        """Put one request and wait for its answer, a death, or the time limit."""
+        process, pipes = self._process, self._pipes
+        if process is None or pipes is None:
+            return Answer("crashed", "the worker is not running")
+        pipes.send({"operation": operation, **fields})
+        return self._wait(process, pipes, self._timeout)
+
+    def _wait(self, process: subprocess.Popen[bytes], pipes: Pipes, seconds: float) -> Answer:
+        try:
+            answer = pipes.answers.get(timeout=seconds)
+        except queue.Empty:
+            self.stop()
+            return Answer("timeout", f"no answer within {seconds:g} s; the worker was ended")
+        if isinstance(answer, Lost):
+            return Answer("crashed", self._post_mortem(process, pipes, answer.how))
+        if answer.get("leaves"):
+            self.stop()
+        return Answer(
+            answer["outcome"],
+            one_line(answer.get("reason", "")),
+            answer.get("result"),
+            answer.get("seconds", 0.0),
+        )
+
+    def _post_mortem(self, process: subprocess.Popen[bytes], pipes: Pipes, how: str) -> str:
+        """Say how a worker came to give no more answers. how: why it is ended, if it lives."""
+        if how:
+            end_family(process, self._mark)
+            process.wait()
+            how += "; the worker was ended"
+        else:
+            how = _ending(process.wait())
+        self._process = self._pipes = None
+        text = pipes.last_output()
+        found = f"{how}; its last words: {text}" if text else how
+        self.deaths.append(found)
+        return found
+
+    def finish(self) -> None:
+        """Let an idle worker leave by itself, so that it may tidy up; end it if it does not."""
+        process, pipes = self._process, self._pipes
+        if process is None or pipes is None:
+            return
+        if process.poll() is not None:  # it died while nobody asked it anything
+            self._post_mortem(process, pipes, "")
+            return
+        pipes.close_requests()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(timeout=SECONDS_TO_LEAVE)
+        self.stop()
+
+    def stop(self) -> None:
+        """End the process and everything it started, at once."""
+        process, self._process, self._pipes = self._process, None, None
+        if process is not None:
+            end_family(process, self._mark)
+            process.wait()
+
+
+def _ending(code: int) -> str:
+    """A process's end in words, of its return code."""
+    if code >= 0:
+        return f"ended with exit code {code}"
+    try:
+        return f"ended by signal {-code} ({signal.Signals(-code).name})"
+    except ValueError:  # the real-time signals have no names
+        return f"ended by signal {-code}"

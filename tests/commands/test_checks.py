@@ -1,0 +1,190 @@
+"""The checks: what they are called, what they say, and `omegadot check`."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from command_line import FAULTY, WRONG, omegadot, quick_scenario
+
+from omegadot.commands.check.check import arguments_of
+from omegadot.commands.check.generate import Subject, checks_of
+from omegadot.commands.check.message import failure
+from omegadot.commands.check.registry import Registry
+from omegadot.commands.check.result import Check, Result
+from omegadot.commands.check.select import Arguments, select
+from omegadot.commands.check.tally import Tally, coverage
+from omegadot.gates.rows import Row
+from omegadot.harness.arguments import case_of
+from omegadot.harness.usage import UsageError
+from omegadot.scenarios import load_builtin
+
+MUJOCO = Subject("mujoco", "4.0.0", ("RK4",), ("Euler", "RK4"))
+
+
+def test_checks_are_known_before_anything_runs() -> None:
+    case = case_of(load_builtin("t-handle"), (0.01, 1e-5))
+    names = [check.id for check in checks_of([MUJOCO], [case])]
+    assert names == [
+        "mujoco-t-handle-model",
+        "mujoco-t-handle-equation",
+        "mujoco-RK4-t-handle-0.01-scheme",
+        "mujoco-RK4-t-handle-0.01-invariants",
+        "mujoco-RK4-t-handle-0.01-trajectory",
+        "mujoco-RK4-t-handle-1e-05-scheme",
+        "mujoco-RK4-t-handle-1e-05-invariants",
+        "mujoco-RK4-t-handle-1e-05-trajectory",
+    ]
+
+
+def test_the_exact_solution_is_not_checked_against_itself() -> None:
+    case = case_of(load_builtin("t-handle"), ())
+    exact = Subject("exact", "1", ("closed-form", "series"), ("closed-form", "series"))
+    assert [check.gate for check in checks_of([exact], [case])] == [
+        "model",
+        "equation",
+        "invariants",
+    ]
+
+
+def test_coverage_counts_scenarios_gates_and_checks() -> None:
+    cases = [case_of(load_builtin(name), ()) for name in ("t-handle", "sphere")]
+    checks = checks_of([MUJOCO], cases)
+    assert coverage([MUJOCO], checks) == ["mujoco 4.0.0 (RK4): 2 scenarios x 5 gates, 22 checks"]
+    assert coverage([MUJOCO.whole], checks)[0].startswith("mujoco 4.0.0: ")
+
+
+def test_a_roster_survives_the_way_to_another_process() -> None:
+    registry = Registry((MUJOCO,), {"dart": ("not-installed", "No module named 'dartpy'")})
+    assert Registry.from_json(registry.to_json()) == registry
+
+
+def test_a_failure_names_the_worst_row_its_bound_and_the_others() -> None:
+    small = Row("trajectory", "omega", "error_max", 2e-9, "1", 1e-9, "fail", "observed order 1.00")
+    large = replace(small, channel="attitude", value=5e-3, unit="rad")
+    fine = replace(small, channel="position", value=1.0, bound=0.0, verdict="pass")
+    text = failure([small, large, fine], "the step is too long.")
+    assert text.startswith(
+        "attitude: error_max is 5.00e-3 rad, 5.0e6 times its bound of 1.0e-9 rad"
+    )
+    assert "omega fails as well" in text
+    assert "position" not in text
+    assert text.endswith("Likely cause: the step is too long.")
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_what_is_not_finite_is_the_worst_of_all(value: float) -> None:
+    row = Row("equation", "omega_dot", "residual", 1e200, "1", 1e-14, "fail")
+    broken = replace(row, channel="torque", value=value)
+    assert failure([row, broken]).startswith("torque: residual is not finite")
+
+
+def test_an_engine_is_idle_only_when_every_check_was_skipped() -> None:
+    tally = Tally()
+    for engine, verdict in (("a", "skip"), ("a", "skip"), ("b", "skip"), ("b", "pass")):
+        tally.add(engine, verdict, "unsupported: no joints")
+    (text,) = tally.only_skipped(["a", "b", "c"])
+    assert text.startswith("a: all of its 2 checks were skipped")
+    assert "no joints" in text
+
+
+def test_engines_are_named_given_or_required() -> None:
+    terms = Arguments(
+        engines=["mujoco:RK4"], adapters=[f"{WRONG}:Sound"], required=["mujoco", "dart", "nope"]
+    )
+    found = select(replace(terms, scenarios=["sphere"]))
+    assert [(c.name, c.integrators) for c in found.choices] == [
+        ("mujoco", ("RK4",)),
+        ("sound", ()),
+        ("dart", ()),
+    ]
+    assert found.unknown == ("nope",)
+    assert select(Arguments(required=["nope"], scenarios=["sphere"])).choices == []
+    everything = select(Arguments(scenarios=["sphere"])).choices
+    assert {"mujoco", "pinocchio", "dart", "reference", "exact"} <= {c.name for c in everything}
+    assert not any(choice.required for choice in everything)
+
+
+def test_a_file_is_enough_where_it_holds_one_adapter(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("class Helper: pass\nclass MineAdapter: pass\n")
+    (choice,) = select(Arguments(adapters=[str(file)], scenarios=["sphere"])).choices
+    assert (choice.name, choice.target) == ("mine", f"{file}:MineAdapter")
+    with pytest.raises(UsageError, match="which class is the adapter"):
+        select(Arguments(adapters=[str(WRONG)]))
+
+
+def test_a_sound_engine_passes_every_check(tmp_path: Path) -> None:
+    terms = ("--integrator", "RK4", "--scenario", quick_scenario(tmp_path))
+    result = omegadot("check", "mujoco", *terms, "--format", "json", folder=tmp_path)
+    assert result.code == 0, result.err
+    assert result.json["exit_code"] == 0
+    assert result.json["verdicts"] == {
+        "pass": 11,
+        "fail": 0,
+        "declared": 0,
+        "skip": 0,
+        "error": 0,
+    }
+    ids = [check["id"] for check in result.json["checks"]]
+    assert "mujoco-RK4-quick-0.005-trajectory" in ids
+
+
+def test_a_wrong_engine_fails_and_is_told_why(tmp_path: Path) -> None:
+    terms = (f"{WRONG}:NoGyroscopic", "--scenario", quick_scenario(tmp_path))
+    result = omegadot("check", *terms, folder=tmp_path)
+    assert result.code == 1, result.err
+    assert "FAIL  nogyroscopic-quick-equation" in result.out
+    assert "omega_dot: residual" in result.out
+    assert "Likely cause: the gyroscopic term is missing." in result.out
+    assert "FAIL  nogyroscopic-quick-model" not in result.out
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "text"),
+    [
+        ("Raises", 3, "raised: ArithmeticError: the solver did not converge"),
+        ("Diverges", 1, "omega: error_max is not finite"),
+        ("Unsupporting", 1, "a skip is not a pass (unsupported: this engine has no rigid bodies)"),
+        ("Missing", 3, "not-installed: "),
+    ],
+)
+def test_outcomes_stay_apart(name: str, code: int, text: str, tmp_path: Path) -> None:
+    terms = (f"{FAULTY}:{name}", "--scenario", quick_scenario(tmp_path))
+    result = omegadot("check", *terms, folder=tmp_path)
+    assert result.code == code, result.err
+    assert text in result.out
+    if name == "Raises":  # the other integrator is whole
+        assert "rk4-quaternion" not in result.out
+
+
+@pytest.mark.parametrize(
+    ("adapter", "terms", "text"),
+    [
+        ("mujocco", Arguments(), "write mujoco"),
+        ("mujoco:RK4", Arguments(), "--integrator RK4"),
+        ("mujoco", Arguments(update=True), "--baseline DIR"),
+        ("mujoco", Arguments(exceptions=["nowhere.toml"]), "nowhere.toml"),
+        ("nowhere.py", Arguments(), "no such adapter file"),
+    ],
+)
+def test_wrong_usage_is_one_sentence(adapter: str, terms: Arguments, text: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        select(arguments_of(adapter, [], terms))
+    assert text in str(caught.value)
+    assert str(caught.value).endswith(".")
+
+
+def test_wrong_usage_is_found_where_the_engine_knows_better(tmp_path: Path) -> None:
+    result = omegadot("check", "mujoco", "--integrator", "RK5", folder=tmp_path)
+    assert (result.code, result.out) == (2, "")
+    assert "write RK4" in result.err
+
+
+def test_json_gives_every_check_its_parts(tmp_path: Path) -> None:
+    terms = ("--scenario", quick_scenario(tmp_path), "--format", "json")
+    result = omegadot("check", "exact", *terms, folder=tmp_path)
+    assert result.code == 0, result.err
+    first = json.loads(result.out)["checks"][0]
+    check, verdict = Check("exact", "quick", "model"), Result("pass")
+    assert first == {"id": check.id, **vars(check), **vars(verdict)}

@@ -1,0 +1,122 @@
+"""Every command and code block in the documents runs."""
+
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from pytest_line import pytest_command
+
+from omegadot.scenarios import scenario_of
+
+ROOT = Path(__file__).parents[2]
+DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+# These make the environment that the tests run in; continuous integration runs them first.
+INSTALLING = (
+    "python3 -m venv .venv && .venv/bin/pip install -e . && .venv/bin/omegadot run",
+    ".venv/bin/pip install -e '.[test]' && .venv/bin/pytest",
+)
+
+
+def blocks(language: str) -> list[tuple[str, str]]:
+    """(document, block) for every fenced block of a language."""
+    return [
+        (file.name, text)
+        for file in DOCUMENTS
+        for kind, text in BLOCK.findall(file.read_text(encoding="utf-8"))
+        if kind == language
+    ]
+
+
+def commands() -> list[str]:
+    """The commands of every block, joined by &&: a later one may need what an earlier one left."""
+    found = []
+    for _, block in blocks("bash"):
+        # Format, lint and types are continuous integration's own lines.
+        lines = [
+            line
+            for line in block.strip().splitlines()
+            if line not in INSTALLING and "ruff" not in line
+        ]
+        if lines:
+            found.append(" && ".join(lines))
+    return found
+
+
+def in_this_environment(command: str) -> list[list[str]]:
+    """The parts of a line joined by &&, with this interpreter's programs."""
+    found = []
+    for part in command.split("&&"):
+        arguments = shlex.split(part)
+        program = arguments[0].removeprefix(".venv/bin/")
+        if program == "omegadot":
+            start = [sys.executable, "-c", "from omegadot.commands.cli import main; main()"]
+        elif program == "pytest":
+            start = pytest_command()
+        else:
+            start = [sys.executable, "-m", program]
+        found.append([*start, *arguments[1:]])
+    return found
+
+
+def test_the_two_commands_stand_at_the_top_and_in_ci() -> None:
+    readme = [block.strip() for name, block in blocks("bash") if name == "README.md"]
+    assert tuple(readme[:2]) == INSTALLING
+    script = (ROOT / ".ci" / "run").read_text()
+    assert "-e ." in script
+    assert ".venv/bin/omegadot run" in script
+    assert "-e '.[test]'" in script
+    assert ".venv/bin/pytest" in script
+
+
+@pytest.fixture(scope="module")
+def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that looks like the checkout to the commands, and takes what they write."""
+    folder = tmp_path_factory.mktemp("docs")
+    for name in ("docs", "omegadot", "tests", "benchmarks", "pyproject.toml"):
+        if (ROOT / name).exists():
+            (folder / name).symlink_to(ROOT / name)
+    return folder
+
+
+@pytest.mark.parametrize("command", commands())
+def test_commands_run(command: str, workplace: Path) -> None:
+    for arguments in in_this_environment(command):
+        done = subprocess.run(arguments, cwd=workplace, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+
+
+@pytest.mark.parametrize(("name", "text"), blocks("toml"))
+def test_toml_blocks_are_valid(name: str, text: str) -> None:
+    data = tomllib.loads(text)
+    if "schema" in data:
+        scenario_of(data, name)
+
+
+@pytest.mark.parametrize(("name", "text"), blocks("python"))
+def test_python_blocks_run(name: str, text: str, workplace: Path) -> None:
+    if "omegadot-run/" in text:  # what the first command of the README leaves
+        arguments = in_this_environment(".venv/bin/omegadot run sphere --engine mujoco")[0]
+        subprocess.run(arguments, cwd=workplace, capture_output=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", text], cwd=workplace, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_page_shows_the_toy_engine_as_it_is() -> None:
+    example = (ROOT / "docs" / "examples" / "toy_engine.py").read_text()
+    shown = [text for name, text in blocks("python") if name == "add-an-engine.md"]
+    assert shown == [example]
+    assert len(example[example.index("class ToyAdapter") :].splitlines()) <= 60
+
+
+def test_local_links_lead_somewhere() -> None:
+    for file in DOCUMENTS:
+        for target in re.findall(r"\]\(([^)#]+)[^)]*\)", file.read_text(encoding="utf-8")):
+            if not target.startswith("http"):
+                assert (file.parent / target).exists(), f"{file.name}: {target}"

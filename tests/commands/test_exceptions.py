@@ -1,0 +1,137 @@
+"""Declared exceptions: they excuse what they name, and are held to it."""
+
+from pathlib import Path
+
+import polars as pl
+import pytest
+from command_line import WRONG, Result, omegadot, quick_scenario
+
+from omegadot.commands.check.exceptions import (
+    OWN_FOLDER,
+    DeclaredException,
+    exceptions_of,
+    read_exceptions,
+    with_exceptions,
+)
+from omegadot.commands.check.result import PASSED, Check, skipped
+from omegadot.commands.check.result import Result as CheckResult
+from omegadot.harness.arguments import engine_choices
+from omegadot.harness.plan import EngineChoice
+from omegadot.harness.usage import UsageError
+
+LINK = "https://example.org/issues/17"
+NAME = "nogyroscopic"
+
+
+def declaration(*patterns: str, engine: str = NAME) -> str:
+    tables = [
+        f'[[exception]]\ncheck = "{pattern}"\nreason = "No gyroscopic term."\nlink = "{LINK}"\n'
+        for pattern in patterns
+    ]
+    return f'engine = "{engine}"\n' + "".join(tables)
+
+
+ALL = declaration(f"{NAME}-quick-equation", f"{NAME}-semi-implicit-euler-quick-*")
+
+
+def checked(text: str, folder: Path, command: str = "check") -> Result:
+    scenario, file = quick_scenario(folder), folder / "known.toml"
+    file.write_text(text)
+    if command == "check":
+        names = ("check", f"{WRONG}:NoGyroscopic", "--scenario", scenario)
+    else:
+        names = ("run", scenario, "--engine", NAME, "--adapter", f"{WRONG}:NoGyroscopic")
+    return omegadot(*names, "--exceptions", file, folder=folder)
+
+
+def test_a_declared_failure_is_declared(tmp_path: Path) -> None:
+    result = checked(ALL, tmp_path)
+    assert result.code == 0, result.out
+    assert f"DECLARED  {NAME}-quick-equation" in result.out
+    assert LINK in result.out
+    assert "FAIL " not in result.out
+
+
+def test_one_that_no_longer_fails_and_one_that_matches_nothing_fail(tmp_path: Path) -> None:
+    # The model is right; t-handle and sphere are known, and left out of this run.
+    left_out = (f"{NAME}-*-t-handle-*", f"{NAME}-*-sphere-0.01-scheme")
+    result = checked(declaration(f"{NAME}-*quick-*", f"{NAME}-quik-model", *left_out), tmp_path)
+    assert result.code == 1
+    assert f"FAIL  {NAME}-quick-model" in result.out
+    assert "passes, though" in result.out
+    assert f"'{NAME}-quik-model' matches no check" in result.out
+    assert result.out.count("FAIL") == 2
+
+
+def test_a_run_honours_them_and_gives_the_link(tmp_path: Path) -> None:
+    result = checked(ALL, tmp_path, "run")
+    assert result.code == 0, result.out
+    metrics = pl.read_parquet(tmp_path / "omegadot-run" / "metrics.parquet")
+    declared = metrics.filter(pl.col("verdict") == "declared")
+    assert set(declared["gate"]) == {"equation", "scheme", "invariants", "trajectory"}
+    assert all(LINK in note for note in declared["note"])
+    assert "fail" not in set(metrics["verdict"])
+
+
+def test_a_run_fails_where_one_no_longer_holds(tmp_path: Path) -> None:
+    patterns = (f"{NAME}-quick-*", f"{NAME}-semi-implicit-euler-quick-*", f"{NAME}-no-such")
+    result = checked(declaration(*patterns), tmp_path, "run")
+    assert result.code == 1
+    assert f"{NAME}-quick-model passes, though" in result.out
+    assert "matches no check" in result.out
+
+
+def test_only_failures_are_excused() -> None:
+    check = Check("dart", "sphere", "model")
+    known = [DeclaredException("dart", "dart-*", "known", LINK, "dart.toml")]
+    assert with_exceptions(check, CheckResult("fail", "off"), known).verdict == "declared"
+    assert with_exceptions(check, PASSED, known).verdict == "fail"
+    for other in (skipped("no joints"), CheckResult("error", "crashed: signal 9", "crashed")):
+        assert with_exceptions(check, other, known) == other
+    assert with_exceptions(Check("mujoco", "sphere", "model"), PASSED, known) == PASSED
+
+
+def test_they_stand_beside_an_adapter(tmp_path: Path) -> None:
+    (tmp_path / "mine.exceptions.toml").write_text(declaration("mine-*", engine="mine"))
+    target = f"{tmp_path / 'mine.py'}:MineAdapter"
+    (found,) = exceptions_of([EngineChoice("mine", target)], [])
+    assert (found.check, found.link) == ("mine-*", LINK)
+    assert exceptions_of([EngineChoice("other", target)], []) == []
+
+
+def test_they_stand_beside_a_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "an_engine_with_exceptions"
+    package.mkdir()
+    # Importing it would fail: it is the worker's to import, not ours.
+    (package / "__init__.py").write_text("raise RuntimeError('imported')")
+    (package / "adapter.exceptions.toml").write_text(declaration("mine-*", engine="mine"))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    target = "an_engine_with_exceptions.adapter:MineAdapter"
+    (found,) = exceptions_of([EngineChoice("mine", target)], [])
+    assert found.engine == "mine"
+
+
+def test_the_projects_own_files_are_read() -> None:
+    files = sorted(OWN_FOLDER.glob("*.toml"))
+    assert {file.stem for file in files} == {"mujoco", "pinocchio", "dart"}
+    read = [exception for file in files for exception in read_exceptions(file)]
+    assert all(exception.link.startswith("https://") for exception in read)
+    assert exceptions_of(engine_choices([]), []) == read
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("engine = ", "not a TOML file"),
+        ("[[exception]]\n", 'engine = "NAME"'),
+        (declaration("x").replace("reason", "reson"), "write reason"),
+        (declaration("x").replace(LINK, " "), "link is missing or empty"),
+        ('engine = "x"\nexceptions = []\n', "write exception"),
+    ],
+)
+def test_a_malformed_file_is_one_sentence(text: str, message: str, tmp_path: Path) -> None:
+    file = tmp_path / "known.toml"
+    file.write_text(text)
+    with pytest.raises(UsageError, match=r"known\.toml") as caught:
+        read_exceptions(file)
+    assert message in str(caught.value)

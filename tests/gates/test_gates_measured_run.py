@@ -1,0 +1,195 @@
+"""What a run shows in each channel, and what is made of several runs of a sweep."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates.case import Sweep
+from omegadot.gates.measured_run import (
+    CHANNELS,
+    Companion,
+    Declared,
+    ExactSamples,
+    MeasuredRun,
+    SchemeKey,
+    evidence_of,
+    findings_of,
+    measure,
+    order_left,
+    order_of,
+    orders_for,
+    scheme_key,
+)
+from omegadot.gates.measures import Yardstick
+from omegadot.gates.verdicts import VANISHED
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import Array, Body, Load, State, System
+
+BOUND = 1e-12
+BODY = Body(np.array(2.0), np.zeros(3), np.diag([1.0, 2.0, 2.5]))
+FREE = System((BODY,))
+OFFSET = System(
+    (replace(BODY, center_of_mass=np.array([0.1, 0.0, 0.0])),),
+    Load(gravity=np.array([0.0, 0.0, -9.0]), damping=np.array(0.1)),
+)
+
+
+def measured(
+    step: float, error: float, left: float | None = None, floor: float = 0.0
+) -> MeasuredRun:
+    """A run whose error is the same in all channels: nothing, a half, all of it."""
+
+    def shaped(size: float) -> dict[str, Array]:
+        return {channel: size * np.array([0.0, 0.5, 1.0]) for channel in CHANNELS}
+
+    bound = {channel: np.full(3, BOUND) for channel in CHANNELS}
+    against = {} if left is None else shaped(left)
+    floors = {"omega": np.full(3, floor)} if floor else {}
+    return MeasuredRun(Sweep(step, 2, 1), shaped(error), bound, against, floors)
+
+
+def sweep(order: int, left: int | None = None) -> list[MeasuredRun]:
+    return [measured(h, h**order, None if left is None else h**left) for h in (0.04, 0.02, 0.01)]
+
+
+def test_the_channels() -> None:
+    assert CHANNELS == (
+        "omega",
+        "attitude",
+        "position",
+        "energy",
+        "angular_momentum",
+        "linear_momentum",
+    )
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_the_order_of_a_sweep(order: int) -> None:
+    seen = order_of(sweep(order), "omega")
+    assert seen is not None
+    assert seen.value == pytest.approx(order)
+    assert seen.resolved
+    left = order_left(sweep(1, order), "energy")
+    assert left is not None
+    assert left.value == pytest.approx(order)
+    assert order_left(sweep(order), "energy") is None
+
+
+def test_errors_within_rounding_show_no_order() -> None:
+    two = [measured(0.04, 4e-4), measured(0.02, 2e-4)]
+    seen = order_of([*two, measured(0.01, BOUND)], "omega")
+    assert seen is not None
+    assert (seen.value, seen.resolved) == (pytest.approx(1.0), False)
+    assert order_of([two[0], measured(0.01, BOUND / 2)], "omega") is None
+
+
+def test_an_error_that_falls_into_rounding_has_vanished() -> None:
+    runs = [measured(0.04, 1e-3, 1e-3), measured(0.02, BOUND, BOUND)]
+    assert evidence_of(runs[0], runs, "omega").orders == (VANISHED, VANISHED)
+    # One that stays, or comes back at the finest step, has not; nor has one that was never there.
+    for sizes in ((1e-3, 1e-4), (BOUND, 1e-3), (BOUND, BOUND)):
+        runs = [measured(0.04, sizes[0], sizes[0]), measured(0.02, sizes[1], sizes[1])]
+        assert VANISHED not in evidence_of(runs[0], runs, "omega").orders
+
+
+def test_one_sample_above_rounding_keeps_an_error_alive() -> None:
+    late = measured(0.02, 0.0)
+    late.error["omega"][1] = 2 * BOUND
+    runs = [measured(0.04, 1e-3), late]
+    assert evidence_of(runs[0], runs, "omega").orders != (VANISHED,)
+
+
+def test_evidence_holds_what_was_measured() -> None:
+    runs = [measured(0.04, 4e-3, 1e-5, floor=1e-7), measured(0.02, 2e-3)]
+    found = evidence_of(runs[0], runs, "omega")
+    assert found.error is runs[0].error["omega"]
+    assert found.left is runs[0].against_scheme["omega"]
+    assert found.round_off is runs[0].round_off["omega"]
+    assert found.floor is runs[0].floor["omega"]
+    assert len(found.orders) == 2
+    assert found.orders[1] is None  # only one of the two has a scheme beside it
+    alone = evidence_of(runs[1], runs, "energy")
+    assert (alone.left, alone.floor, len(alone.orders)) == (None, None, 1)
+
+
+def test_findings_name_every_channel() -> None:
+    runs = sweep(1)
+    orders = dict.fromkeys(CHANNELS, 1) | {"energy": None, "position": 2}
+    found = findings_of(runs[0], Declared(None, orders), runs)
+    assert list(found) == list(CHANNELS)
+    kinds = {channel: finding.kind for channel, finding in found.items()}
+    assert kinds == dict.fromkeys(CHANNELS, "consistent") | {
+        "energy": "unexplained",
+        "position": "unexplained",
+    }
+    explained = [measured(0.04, 1e-3, BOUND)]
+    assert findings_of(explained[0], Declared("euler", orders), explained)["energy"].note == (
+        "explained by euler, to 1.0e-12"
+    )
+
+
+def states(size: float) -> State:
+    q = np.tile([1.0, 0.0, 0.0, 0.0], (3, 1))
+    spin = np.tile([0.0, size, 2.0], (3, 1))
+    return State(q, spin, np.zeros((3, 3)), np.zeros((3, 3)))
+
+
+def test_a_course_is_measured_by_the_growth_of_its_own_scheme() -> None:
+    plan, times = Sweep(0.5, 2, 1), np.array([0.0, 0.5, 1.0])
+    yardstick = Yardstick(FREE, times, states(0.0))
+    floor = {"omega": np.full(3, 1e-9)}
+    exact = ExactSamples(states(0.0), np.array([1.0, 2.0, 3.0]), floor)
+    own = Companion(states(1e-3), np.array([1.0, 20.0, 30.0]), np.zeros((3, 3)))
+    alone = measure(yardstick, plan, exact, states(3e-3), None)
+    beside = measure(yardstick, plan, exact, states(3e-3), own)
+    assert alone.error["omega"] == pytest.approx(np.full(3, 1.5e-3))
+    assert alone.against_scheme == {}
+    assert beside.against_scheme["omega"] == pytest.approx(np.full(3, 1e-3))
+    assert set(alone.error) == set(beside.against_scheme) == set(CHANNELS)
+    np.testing.assert_allclose(beside.round_off["omega"] / alone.round_off["omega"], [1, 10, 10])
+    steps = np.array([0, 1, 2])
+    expected = yardstick.round_off(0.5, steps, exact.growth)["omega"]
+    np.testing.assert_array_equal(alone.round_off["omega"], expected)
+    assert alone.floor is beside.floor is floor
+
+
+def test_which_run_of_the_reference_an_integrator_equals() -> None:
+    plain = Integrator("euler", "semi-implicit-euler", {"omega": 1})
+    at_origin = replace(plain, steps_origin=True)
+    assert scheme_key(replace(plain, scheme=None), OFFSET) is None
+    assert scheme_key(plain, OFFSET) == SchemeKey("semi-implicit-euler", False)
+    assert scheme_key(at_origin, OFFSET) == SchemeKey("semi-implicit-euler", True)
+    assert scheme_key(at_origin, FREE) == SchemeKey("semi-implicit-euler", False)
+
+
+@pytest.mark.parametrize("scheme", [None, "of-my-own"])
+def test_orders_of_an_unknown_scheme_are_as_declared(scheme: str | None) -> None:
+    declared = Integrator("mine", scheme, {"omega": 3, "energy": 2})
+    found = orders_for(declared, FREE)
+    assert found == dict.fromkeys(CHANNELS) | {"omega": 3, "energy": 2}
+
+
+def test_orders_of_a_known_scheme_are_the_schemes() -> None:
+    name = "rk4-quaternion"
+    scheme = SCHEMES[name]
+    plain = Integrator("rk4", name, {"omega": 1})
+    assert orders_for(plain, OFFSET) == {c: scheme.order(c, OFFSET) for c in CHANNELS}
+    found = orders_for(replace(plain, steps_origin=True), OFFSET)
+    for channel in CHANNELS:
+        coupled = channel in ("energy", "linear_momentum", "position")
+        expected = scheme.orders[channel] if coupled else scheme.order(channel, OFFSET)
+        assert found[channel] == expected
+    assert orders_for(replace(plain, steps_origin=True), FREE) == orders_for(plain, FREE)
+
+
+def test_translation_that_is_stepped_at_an_offset_origin_has_the_general_orders() -> None:
+    still = System((OFFSET.body,))
+    scheme = SCHEMES["semi-implicit-euler"]
+    plain = Integrator("euler", scheme.name, scheme.orders)
+    simple, coupled = (orders_for(i, still) for i in (plain, replace(plain, steps_origin=True)))
+    assert simple != coupled
+    assert {c: coupled[c] for c in ("linear_momentum", "position")} == {
+        c: scheme.orders[c] for c in ("linear_momentum", "position")
+    }

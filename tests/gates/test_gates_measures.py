@@ -1,0 +1,135 @@
+"""Distances between motions and the rounding that they may show, worked out by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS, Yardstick
+from omegadot.gates.scales import EPS, angular_size
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.system import Array, Body, Load, State, System
+
+TIMES = np.array([0.0, 1.0, 4.0])
+TENSOR = np.diag([1.0, 2.0, 2.5])
+BODY = Body(np.array(2.0), np.zeros(3), TENSOR)
+OFFSET = replace(BODY, center_of_mass=np.array([0.0, 0.0, 0.5]))
+GRAVITY = np.array([0.0, 0.0, -3.0])
+DOWN = System((BODY,), Load(gravity=GRAVITY))
+
+
+def rows(w: object, x: object = (0, 0, 0), v: object = (0, 0, 0)) -> State:
+    """Three states; the last has these, the ones before half of them."""
+    part = np.array([0.5, 0.5, 1.0])[:, None]
+    q = np.tile([1.0, 0.0, 0.0, 0.0], (3, 1))
+    return State(q, *(part * np.array(values, float) for values in (w, x, v)))
+
+
+STATES = rows((0, 0, 2.0), (0, 3.0, 0), (3.0, 0, 4.0))
+
+
+def test_the_sizes_of_a_motion() -> None:
+    yardstick = Yardstick(DOWN, TIMES, STATES)
+    assert (yardstick.rate, yardstick.speed, yardstick.reach) == (2.0, 5.0, 3.0)
+    assert yardstick.gravity == 3.0
+    found = forward_dynamics(DOWN, STATES)
+    assert yardstick.acceleration == np.max(angular_size(DOWN, STATES, found))
+    assert yardstick.sizes == pytest.approx(
+        {"energy": 0.5 * 2 * 25 + 0.5 * 2.5 * 4, "angular_momentum": 5.0, "linear_momentum": 10.0}
+    )
+
+
+def test_a_lever_adds_to_speed_and_reach() -> None:
+    yardstick = Yardstick(System((OFFSET,)), TIMES, STATES)
+    assert (yardstick.speed, yardstick.reach) == (5.0 + 2.0 * 0.5, 3.0 + 0.5)
+
+
+def test_a_body_that_starts_at_rest_is_measured_by_what_it_will_reach() -> None:
+    system = System((BODY,), Load(torque_body=np.array([0.0, 0.0, 5.0])))
+    still = rows((0, 0, 0))
+    yardstick = Yardstick(system, TIMES, still)
+    assert yardstick.rate == pytest.approx(yardstick.acceleration * 4.0)
+    # J |omega_dot| + |tau| over the smallest moment
+    assert yardstick.acceleration == pytest.approx((2.5 * 2.0 + 5.0) / 1.0)
+    assert yardstick.sizes["energy"] == pytest.approx(0.5 * 1.0 * 40.0**2)
+    assert yardstick.sizes["angular_momentum"] == pytest.approx(40.0)
+    assert yardstick.sizes["linear_momentum"] == pytest.approx(2.0 * 40.0 * np.sqrt(5.5 / 2.0))
+
+
+def test_a_body_that_never_moves_turns_once_in_its_time() -> None:
+    assert Yardstick(System((BODY,)), TIMES, rows((0, 0, 0))).rate == 1.0 / 4.0
+
+
+@pytest.mark.parametrize(
+    ("channel", "field", "change", "expected"),
+    [
+        ("omega", "angular_velocity", [3e-3, 0, 4e-3], 5e-3 / 2.0),
+        ("attitude", "orientation", [0, 1e-3, 0, 0], 2e-3),
+        ("position", "position", [3e-3, 0, 4e-3], 5e-3),
+        ("energy", "position", [0, 0, 1e-3], 2 * 3 * 1e-3 / 30.0),
+        ("energy", "linear_velocity", [0, 0, 1e-3], 2 * 4e-3 / 30.0),
+        ("angular_momentum", "angular_velocity", [0, 1e-3, 0], 2e-3 / 5.0),
+        ("linear_momentum", "linear_velocity", [0, 1e-3, 0], 2e-3 / 10.0),
+    ],
+)
+def test_distances(channel: str, field: str, change: list[float], expected: float) -> None:
+    yardstick = Yardstick(DOWN, TIMES, STATES)
+    moved = replace(STATES, **{field: getattr(STATES, field) + np.array(change)})
+    for one, other in ((moved, STATES), (STATES, moved)):
+        gap = yardstick.distance(channel, one, other)
+        assert gap.shape == (3,)
+        assert gap[2] == pytest.approx(expected, rel=1e-3)
+    np.testing.assert_array_equal(yardstick.distance(channel, STATES, STATES), 0.0)
+
+
+def test_what_overflows_is_infinitely_far() -> None:
+    yardstick = Yardstick(DOWN, TIMES, STATES)
+    far = replace(STATES, angular_velocity=1e300 * STATES.angular_velocity)
+    for channel in ("omega", "energy"):
+        assert not np.any(np.isfinite(yardstick.distance(channel, far, STATES)))
+
+
+STEPS, GROWTH = np.array([0.0, 10.0, 40.0]), np.array([1.0, 2.0, 8.0])
+
+
+def bounds(system: System, states: State) -> tuple[Yardstick, dict[str, Array], Array, Array]:
+    yardstick = Yardstick(system, TIMES, states)
+    found = yardstick.round_off(0.1, STEPS, GROWTH)
+    assert set(found) == {*TRAJECTORY_UNITS, *INVARIANT_CHANNELS}
+    amount = 16 * EPS * (STEPS + 1)
+    theta = amount * (1 + 0.1 * yardstick.acceleration / yardstick.rate) * GROWTH
+    return yardstick, found, amount, theta
+
+
+def test_rounding_grows_with_steps_and_growth() -> None:
+    _, found, amount, theta = bounds(DOWN, STATES)
+    speed = amount * (5.0 + 3.0 * 0.1 * STEPS)
+    reach = amount * 3.0 + 0.1 * STEPS * speed
+    close = {"rtol": 8 * EPS}
+    np.testing.assert_allclose(found["omega"], theta, **close)
+    np.testing.assert_allclose(found["attitude"], theta, **close)
+    np.testing.assert_allclose(found["position"], reach, **close)
+    turning = 2 * 2.5 * 2.0 * theta
+    energy = (turning * 2.0 + 2.0 * 5.0 * speed + 2.0 * 3.0 * reach) / 30.0
+    np.testing.assert_allclose(found["energy"], energy, **close)
+    np.testing.assert_allclose(found["angular_momentum"], turning / 5.0, **close)
+    np.testing.assert_allclose(found["linear_momentum"], 2.0 * speed / 10.0, **close)
+
+
+def test_rounding_of_a_hung_body_takes_its_lever_along() -> None:
+    system = System((BODY,), Load(gravity=GRAVITY, pivot=np.array([0.0, 0.0, 0.5])))
+    states = place_on_pivot(system, STATES)
+    yardstick, found, amount, theta = bounds(system, states)
+    speed = amount * (yardstick.speed + 3.0 * 0.1 * STEPS) + theta * 2.0 * 0.5
+    reach = amount * yardstick.reach + 0.1 * STEPS * speed + theta * 0.5
+    close = {"rtol": 16 * EPS}
+    np.testing.assert_allclose(found["position"], reach, **close)
+    np.testing.assert_allclose(
+        found["linear_momentum"], 2.0 * speed / yardstick.sizes["linear_momentum"], **close
+    )
+    turning = 2 * yardstick.scale.largest * 2.0 * theta
+    arm = 2.0 * (0.5 * speed + yardstick.speed * reach)
+    np.testing.assert_allclose(
+        found["angular_momentum"], (turning + arm) / yardstick.sizes["angular_momentum"], **close
+    )

@@ -1,0 +1,76 @@
+"""The sizes that errors are measured against, worked out by hand."""
+
+import numpy as np
+import pytest
+
+from omegadot.gates.scales import (
+    EPS,
+    ROUNDINGS_PER_EVALUATION,
+    ROUNDINGS_PER_STEP,
+    angular_size,
+    body_scale,
+    linear_size,
+    norm,
+    torque_size,
+)
+from omegadot.reference_impl.system import Acceleration, Body, Load, State, System
+
+BODY = Body(np.array(2.0), np.array([0.0, 0.0, 2.0]), np.diag([2.0, 3.0, 4.0]))
+LOAD = Load(gravity=np.array([0.0, 0.0, -10.0]), torque_body=np.array([0.0, 2.0, 0.0]))
+FREE = System((BODY,), LOAD)
+PIVOT = np.array([0.0, 3.0, 0.0])
+PIVOTED = System((BODY,), Load(gravity=LOAD.gravity, pivot=PIVOT, damping=np.array(0.5)))
+STATE = State(
+    np.array([1.0, 0.0, 0.0, 0.0]),
+    np.array([0.0, 0.0, 2.0]),
+    np.zeros(3),
+    np.array([0.0, 3.0, 4.0]),
+)
+ACCELERATION = Acceleration(np.array([3.0, 4.0, 0.0]), np.array([0.0, 0.0, 6.0]))
+
+
+def test_the_counts_of_roundings() -> None:
+    # Every bound is a multiple of these: to change one is to change what passes.
+    assert (ROUNDINGS_PER_EVALUATION, ROUNDINGS_PER_STEP) == (64, 16)
+    assert EPS == 2.0**-52
+
+
+def test_a_length() -> None:
+    np.testing.assert_array_equal(norm(np.array([[3.0, 4.0, 0.0], [0.0, 0.0, -2.0]])), [5.0, 2.0])
+
+
+def test_a_free_body_is_measured_about_its_origin() -> None:
+    scale = body_scale(FREE)
+    assert (scale.mass, scale.lever) == (2.0, 2.0)
+    assert scale.largest == pytest.approx(4.0 + 2.0 * 2.0**2, rel=4 * EPS)
+    assert scale.smallest == pytest.approx(2.0, rel=4 * EPS)
+
+
+def test_a_hung_body_is_measured_about_both_points() -> None:
+    scale = body_scale(PIVOTED)
+    assert scale.lever == 2.0 + 3.0
+    assert scale.largest == pytest.approx(4.0 + 2.0 * 5.0**2, rel=4 * EPS)
+    arm = np.array([0.0, -3.0, 2.0])
+    about = np.diag([2.0, 3.0, 4.0]) + 2.0 * (13.0 * np.eye(3) - np.outer(arm, arm))
+    assert scale.smallest == pytest.approx(np.linalg.eigvalsh(about)[0], rel=8 * EPS)
+
+
+def test_the_terms_of_the_equation_add_up_by_size() -> None:
+    gyroscopic, levers, moving = 12.0 * (4.0 + 5.0), 2.0 * 2.0 * (10.0 + 6.0), 2.0 * 5.0 * (5 + 4)
+    expected = gyroscopic + 2.0 + levers + moving
+    assert torque_size(FREE, STATE, ACCELERATION) == pytest.approx(expected, rel=8 * EPS)
+    assert angular_size(FREE, STATE, ACCELERATION) == pytest.approx(expected / 2.0, rel=8 * EPS)
+
+
+def test_a_hung_body_has_no_bias_of_translation() -> None:
+    weight = np.linalg.norm(
+        np.cross([0.0, -3.0, 2.0], [0.0, 0.0, -20.0]) - 0.5 * np.array([0, 0, 2])
+    )
+    expected = 54.0 * (4.0 + 5.0) + weight + 2.0 * 5.0 * (10.0 + 6.0)
+    assert torque_size(PIVOTED, STATE, ACCELERATION) == pytest.approx(expected, rel=16 * EPS)
+
+
+def test_the_centre_of_mass_is_off_by_what_the_rotation_is() -> None:
+    turning = float(angular_size(FREE, STATE, ACCELERATION))
+    expected = 6.0 + 10.0 + 2.0 * (4.0 + turning) + 2.0 * 5.0
+    assert linear_size(FREE, STATE, ACCELERATION) == pytest.approx(expected, rel=8 * EPS)

@@ -1,0 +1,116 @@
+"""Steps made ever smaller: where the states and steps come from, the limit, and what is said of it.
+
+What these tests catch: an extrapolant of the wrong level, whose difference from the best would tell
+nothing; steps that are long against the motion; a fault of one channel told as one of all.
+"""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from omegadot.gates.evaluation_states import Probe
+from omegadot.gates.vanishing_step import (
+    RADIANS,
+    STEPS,
+    Limit,
+    _extrapolants,
+    limits,
+    probe_of,
+    rows,
+)
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import Array, Body, Load, State, System
+
+UNIT = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def states(*omegas: object) -> State:
+    w = np.array(omegas, float)
+    nothing = np.zeros_like(w)
+    return State(np.broadcast_to(UNIT, (len(w), 4)), w, nothing, nothing)
+
+
+def system(*moments: float, **load: object) -> System:
+    return System((Body(np.array(1.0), np.zeros(3), np.diag(moments)),), Load(**load))
+
+
+def probe(on: System, *omegas: object) -> Probe:
+    found = states(*omegas)
+    return probe_of(on, SimpleNamespace(random=found, path=found))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("level", "degree"), [(0, 4), (1, 3), (2, 2)])
+def test_each_extrapolant_is_exact_for_its_own_degree(level: int, degree: int) -> None:
+    h = 2.0 ** -np.arange(5)
+    powers = np.arange(1, degree + 2)
+    exact = 3.0 + np.sum(h[:, None] ** powers[:-1], axis=-1)
+    beyond = 3.0 + np.sum(h[:, None] ** powers, axis=-1)
+    assert _extrapolants(exact[:, None])[level][0] == pytest.approx(3.0, abs=1e-13)
+    assert abs(_extrapolants(beyond[:, None])[level][0] - 3.0) > 1e-5
+
+
+def test_steps_are_short_against_the_fastest_that_goes_on() -> None:
+    # A sphere turns and does nothing else: |omega| = 5 rad/s.
+    found = probe(system(2.0, 2.0, 2.0), [3.0, 4.0, 0.0])
+    assert found.timesteps.shape == (2, STEPS)
+    assert np.allclose(found.timesteps[:, 0], RADIANS / 5.0, rtol=1e-15)
+    assert np.all(found.timesteps[:, :-1] == 2.0 * found.timesteps[:, 1:])
+    # From rest a torque of 32 N m on 2 kg m^2 turns it at 16 rad/s^2: sqrt(16) = 4 rad/s.
+    found = probe(system(2.0, 2.0, 2.0, torque_body=np.array([0.0, 32.0, 0.0])), [0.0, 0.0, 0.0])
+    assert np.allclose(found.timesteps[:, 0], RADIANS / 4.0, rtol=1e-15)
+    # A damping of 20 N m s/rad on 2 kg m^2 brakes at 10 per s.
+    found = probe(system(2.0, 2.0, 2.0, damping=np.array(20.0)), [1.0, 0.0, 0.0])
+    assert np.allclose(found.timesteps[:, 0], RADIANS / 10.0, rtol=1e-12)
+    # Where nothing goes on, any will do: one as for 1 rad/s.
+    assert np.all(probe(system(2.0, 2.0, 2.0), [0.0, 0.0, 0.0]).timesteps[:, 0] == RADIANS)
+
+
+def test_the_nearer_of_two_ranges_counts() -> None:
+    expected = np.array([[1.0, 0.0, 0.0], [0.0, 2.0, 0.0]])
+    apart = np.array([[[0, 0, 0], [0, 6e-3, 0]], [[1e-3, 0, 0], [0, 0, 2e-3]]])
+    found = expected + apart
+    limit = Limit(found, expected, np.full((2, 2), 1e-3))
+    assert limit.shares() == pytest.approx([0.0, 2.0])
+    assert limit.off == pytest.approx(1e-3)
+    assert Limit(found, expected, np.full((2, 2), np.nan)).shares().tolist() == [0.0, np.inf]
+
+
+def reported(
+    on: System, requested: Probe, stretch: float = 1.0, omega: float = 1.0
+) -> dict[str, str]:
+    """The notes of failing channels where steps and omega's changes are longer than they say."""
+
+    def lane(k: int) -> State:
+        return SCHEMES["lie-rk4"].step(acceleration_of(on), requested.states, stretch * h[:, k])
+
+    h = requested.timesteps
+    lanes = [lane(k) for k in range(STEPS)]
+    stepped = State(*(np.stack(v, 1) for v in zip(*(vars(s).values() for s in lanes), strict=True)))
+    before: Array = requested.states.angular_velocity[:, None]
+    w = before + omega * (stepped.angular_velocity - before)
+    stepped = State(stepped.orientation, w, stepped.position, stepped.linear_velocity)
+    assert set(limits(on, requested, stepped)) == {
+        "attitude",
+        "omega",
+        "position",
+        "linear_momentum",
+    }
+    return {row.channel: row.note for row in rows(on, requested, stepped) if row.verdict == "fail"}
+
+
+def test_what_is_said_of_the_limit() -> None:
+    on = system(1.0, 2.0, 3.5)
+    requested = probe(on, [0.4, -1.0, 0.7], [1.2, 0.3, -0.5])
+    assert reported(on, requested) == {}
+    assert reported(on, requested, stretch=1.001) == {
+        "attitude": "steps are 0.1 % too long",
+        "omega": "steps are 0.1 % too long",
+    }
+    assert set(reported(on, requested, stretch=0.5).values()) == {"steps are 50 % too short"}
+    assert reported(on, requested, omega=1.01) == {
+        "omega": "as the step vanishes, its rate is not the equation's: it is off by 1.0e-02"
+    }

@@ -1,0 +1,169 @@
+"""The edges of the verdicts: which side of each bound an error falls on, and what is said of it."""
+
+import numpy as np
+import pytest
+
+from omegadot.gates.verdicts import (
+    ORDER_TOLERANCE,
+    VANISHED,
+    Evidence,
+    Finding,
+    ObservedOrder,
+    is_whole,
+    judge,
+    observed_order,
+)
+
+BOUND = np.array([1e-15, 1e-12, 1e-11])
+SLOW = ObservedOrder(0.1, True)
+
+
+def evidence(error: object, left: object = None, floor: object = None, *orders: object) -> Evidence:
+    beside = None if left is None else np.array(left, float)
+    below = None if floor is None else np.array(floor, float)
+    return Evidence(np.array(error, float), BOUND, beside, orders or (SLOW,), below)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("kind", "verdict"),
+    [
+        ("round-off", "pass"),
+        ("explained", "pass"),
+        ("consistent", "pass"),
+        ("beyond", "info"),
+        ("unresolved", "fail"),
+        ("unexplained", "fail"),
+    ],
+)
+def test_what_a_kind_comes_to(kind: str, verdict: str) -> None:
+    assert Finding(kind, "").verdict == verdict
+
+
+def test_round_off_holds_at_every_sample() -> None:
+    found = judge(evidence(BOUND), "euler", 1)
+    assert found == Finding("round-off", "within round-off")
+    for place in range(3):
+        error = BOUND.copy()
+        error[place] *= 1.01
+        assert judge(evidence(error), "euler", 1).kind == "unexplained"
+
+
+def test_a_scheme_explains_at_every_sample() -> None:
+    error = [0.0, 1e-3, 1e-3]
+    found = judge(evidence(error, BOUND), "euler", 1)
+    assert found == Finding("explained", "explained by euler, to 1.0e-11")
+    for place in range(3):
+        left = BOUND.copy()
+        left[place] *= 1.01
+        assert judge(evidence(error, left, None, SLOW, SLOW), "euler", 1).kind == "unexplained"
+
+
+def test_a_floor_is_added_to_rounding() -> None:
+    floor = np.array([1e-14, 1e-9, 1e-8])
+    found = judge(evidence(BOUND + floor, None, floor), "euler", 1)
+    assert found == Finding("beyond", "not judged: below the resolvable floor of this motion")
+    assert judge(evidence(1.01 * (BOUND + floor), None, floor), "euler", 1).kind == "unexplained"
+    assert judge(evidence(BOUND, None, floor), "euler", 1).kind == "round-off"
+    assert judge(evidence(BOUND + floor, BOUND, floor), "euler", 1).kind == "explained"
+
+
+def test_where_a_scheme_blows_up_there_is_nothing_to_judge_by() -> None:
+    error, bounds = np.array([0.0, 1.0, 2.0]), np.array([1e-15, np.inf, np.inf])
+    found = judge(Evidence(error, bounds, None, (SLOW,)), "euler", 1)
+    assert found.note == "not judged: the scheme itself blows up at so large a step"
+    # A bound at the end alone is enough to judge by; the start, where nothing happened, is not.
+    partly = Evidence(error, np.array([np.inf, np.inf, 1e-12]), None, (SLOW,))
+    assert judge(partly, "euler", 1).kind == "unexplained"
+    within = Evidence(np.zeros(3), np.array([1e-15, 1e-12, np.inf]), None, (SLOW,))
+    assert judge(within, "euler", 1).kind == "unexplained"
+    explained = Evidence(error, np.array([1e-15, 1e-12, np.inf]), np.array([0, 1e-13, 9]), (SLOW,))
+    assert judge(explained, "euler", 1).note == (
+        "explained by euler, to 1.0e-13, until the scheme blows up"
+    )
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+@pytest.mark.parametrize("place", range(3))
+def test_one_sample_that_is_no_number_fails(bad: float, place: int) -> None:
+    error = np.zeros(3)
+    error[place] = bad
+    found = judge(evidence(error, np.zeros(3), np.ones(3)), "euler", 1)
+    assert found == Finding("unexplained", "not finite")
+
+
+def by_order(*orders: ObservedOrder | None, declared: int | None = 2) -> Finding:
+    return judge(evidence([0.0, 1.0, 1.0], None, None, *orders), "euler", declared)
+
+
+def test_the_tolerance_of_an_order() -> None:
+    assert ORDER_TOLERANCE == 0.15
+    assert by_order(ObservedOrder(2 - ORDER_TOLERANCE, True)).kind == "consistent"
+    assert by_order(ObservedOrder(1.849, True)).kind == "unresolved"
+    assert by_order(ObservedOrder(1.845, True, 0.01)).kind == "unresolved"
+    assert by_order(ObservedOrder(1.15, True, 0.69)).kind == "unexplained"
+    assert by_order(ObservedOrder(1.15, True, -0.71)).kind == "unexplained"
+    assert by_order(VANISHED).kind == "consistent"
+
+
+@pytest.mark.parametrize(
+    ("order", "whole"), [(1.0, True), (1.15, True), (1.16, False), (0.5, False), (0.84, False)]
+)
+def test_only_a_whole_number_is_an_order(order: float, whole: bool) -> None:
+    """An energy that drifts with 3.41 is neither of order 3 nor of order 4: finer steps decide."""
+    assert is_whole(order) is whole
+    assert by_order(ObservedOrder(order, True)).kind == ("unexplained" if whole else "unresolved")
+    assert by_order(ObservedOrder(-order, True)).kind == ("unexplained" if whole else "unresolved")
+
+
+def test_the_lowest_order_counts() -> None:
+    high, low = ObservedOrder(3.0, True), ObservedOrder(1.0, True)
+    for orders in ((high, low), (low, high)):
+        assert by_order(*orders) == Finding("unexplained", "observed order 1.00, declared 2")
+    assert by_order(high, high) == Finding(
+        "consistent", "consistent: observed order 3.00, declared 2"
+    )
+
+
+def test_what_is_not_known_is_unresolved() -> None:
+    high = ObservedOrder(3.0, True)
+    assert by_order(None).note == "one step size cannot show an order"
+    assert by_order(high, None).kind == by_order(None, high).kind == "unresolved"
+    note = "the sweep does not resolve the order: observed order 1.00, declared 2"
+    for orders in ((high, ObservedOrder(1.0, False)), (ObservedOrder(1.0, False), high)):
+        assert by_order(*orders) == Finding("unresolved", note)
+    rising = ObservedOrder(1.8, True, 0.1)
+    assert by_order(rising).note.startswith("the sweep does not resolve the order: observed")
+
+
+def test_what_is_conserved_may_not_drift_at_any_order() -> None:
+    found = by_order(VANISHED, declared=None)
+    assert found == Finding("unexplained", "declared conserved, and it drifts")
+
+
+def test_the_order_is_that_of_the_finest_steps() -> None:
+    seen = observed_order([0.01, 0.04, 0.02], [1.0, 32.0, 4.0])  # in any order of the steps
+    assert seen == ObservedOrder(pytest.approx(2.0), False, pytest.approx(-1.0))
+    assert observed_order([0.02, 0.01], [4.0, 1.0]) == ObservedOrder(pytest.approx(2.0), False, 0.0)
+    three = observed_order([0.01, 0.03], [1.0, 9.0])
+    assert three is not None
+    assert three.value == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(("last", "resolved"), [(2.14, True), (2.16, False), (1.86, True)])
+def test_neighbouring_slopes_agree_within_the_tolerance(last: float, resolved: bool) -> None:
+    seen = observed_order([0.04, 0.02, 0.01], [2.0 ** (2 + last), 2.0**last, 1.0])
+    assert seen is not None
+    assert (seen.value, seen.resolved) == (pytest.approx(last), resolved)
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, np.inf, np.nan])
+def test_what_is_no_size_is_left_out(bad: float) -> None:
+    seen = observed_order([0.08, 0.04, 0.02, 0.01], [bad, 16.0, 4.0, 1.0])
+    assert seen == ObservedOrder(pytest.approx(2.0), True, pytest.approx(0.0))
+    assert observed_order([0.02, 0.01], [bad, 1.0]) is None
+    assert observed_order([], []) is None
+
+
+def test_every_step_needs_its_error() -> None:
+    with pytest.raises(ValueError, match="zip"):
+        observed_order([0.02, 0.01], [1.0])

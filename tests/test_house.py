@@ -1,0 +1,108 @@
+"""The house: imports run downwards between the rooms, and in no circle between the files."""
+
+import ast
+import sys
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+import omegadot
+
+ROOT = Path(omegadot.__file__).parent
+# From the ground up. A room imports from the rooms named, which are all above it in this list.
+ROOMS = {
+    "scenarios": set(),
+    "reference_impl": {"scenarios"},
+    "adapters": {"reference_impl", "scenarios"},
+    "workers": {"adapters", "reference_impl", "scenarios"},
+    "reports": {"reference_impl", "scenarios"},
+    "gates": {"adapters", "reference_impl", "scenarios"},
+    "harness": {"gates", "reports", "workers", "adapters", "reference_impl", "scenarios"},
+    "diagnosis": {"harness", "gates", "workers", "adapters", "reference_impl", "scenarios"},
+}
+ROOMS["commands"] = set(ROOMS)
+# What a worker that serves one old engine has beside it.
+THIRD_PARTY = {
+    "scenarios": {"numpy", "scipy", "pydantic", "pydantic_core"},
+    "reference_impl": {"numpy", "scipy"},
+    "adapters": {"numpy", "scipy", "mujoco", "pinocchio", "dartpy"},
+    "workers/engine_end": {"numpy", "scipy"},
+}
+STANDARD = set(sys.stdlib_module_names)
+
+
+def module_of(file: Path) -> str:
+    """The dotted name of a file of the package."""
+    parts = file.relative_to(ROOT.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def imported(nodes: ast.AST) -> set[str]:
+    """Dotted names of every module that is imported anywhere below a node."""
+    names: set[str] = set()
+    for node in ast.walk(nodes):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "relative import"
+            assert node.module is not None
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    return names
+
+
+def parsed(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+def files_of(room: str) -> list[Path]:
+    return sorted((ROOT / room).rglob("*.py"))
+
+
+def test_every_folder_is_a_room() -> None:
+    folders = {path.name for path in ROOT.iterdir() if (path / "__init__.py").is_file()}
+    assert folders == set(ROOMS)
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_rooms_import_downwards(room: str) -> None:
+    for file in files_of(room):
+        for name in imported(parsed(file)):
+            parts = name.split(".")
+            if parts[0] == "omegadot" and len(parts) > 1 and parts[1] in ROOMS:
+                assert parts[1] in {room, *ROOMS[room]}, f"{file.name} imports {name}"
+
+
+def test_no_circle_of_files() -> None:
+    """Of all imports, those within functions too: a circle that is put off is one."""
+    modules = {module_of(file): file for file in ROOT.rglob("*.py")}
+    graph = {}
+    for module, file in modules.items():
+        named = imported(parsed(file)) & set(modules)
+        # A package is named with every import from it; its own file depends on what it imports.
+        graph[module] = {n for n in named if n != module and not module.startswith(f"{n}.")}
+    try:
+        tuple(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        pytest.fail(f"files import one another: {' -> '.join(error.args[1])}")
+
+
+@pytest.mark.parametrize("room", THIRD_PARTY)
+def test_lower_rooms_stay_small(room: str) -> None:
+    for file in files_of(room):
+        outside = {name.split(".")[0] for name in imported(parsed(file))} - STANDARD - {"omegadot"}
+        assert outside <= THIRD_PARTY[room], f"{file.name} imports {outside}"
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pinocchio", "dartpy"])
+def test_engines_are_imported_in_functions_only(engine: str) -> None:
+    for file in files_of("adapters"):
+        for node in parsed(file).body:
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                named = [a.name for a in node.names] + [getattr(node, "module", "") or ""]
+                assert all(name.split(".")[0] != engine for name in named), file.name
+
+
+def test_no_module_is_called_after_nothing() -> None:
+    for file in ROOT.rglob("*.py"):
+        assert file.stem not in {"utils", "helpers", "common", "misc"}

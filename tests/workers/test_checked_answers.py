@@ -1,0 +1,127 @@
+"""Answers that are not of the protocol's types and shapes do not leave the worker."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from omegadot.adapters.protocol import Description, Integrator, Trajectory
+from omegadot.reference_impl.system import Acceleration, Body, State
+from omegadot.workers.engine_end.checked import (
+    AnswerError,
+    checked_acceleration,
+    checked_bodies,
+    checked_description,
+    checked_state,
+    checked_torque,
+    checked_trajectory,
+)
+from omegadot.workers.engine_end.worker import failure
+from omegadot.workers.plain_text import one_line
+
+EULER = Integrator("euler", "semi-implicit-euler", {"omega": 1, "energy": None})
+ENGINE = Description("engine", "1.0", (EULER,), features=frozenset({"free"}))
+BODY = Body(np.array(1.0), np.zeros(3), np.eye(3))
+
+
+def state(*lead: int) -> State:
+    return State(np.ones((*lead, 4)), np.ones((*lead, 3)), np.ones((*lead, 3)), np.ones((*lead, 3)))
+
+
+def test_what_is_right_passes_as_it_is() -> None:
+    assert checked_description(ENGINE) is ENGINE
+    assert checked_state("state", state(), ()).orientation.shape == (4,)
+    assert checked_trajectory(Trajectory(np.arange(5.0), state(5))).time.shape == (5,)
+    assert checked_acceleration(Acceleration(np.ones((2, 3)), np.ones((2, 3))), (2,)).linear.all()
+    assert checked_torque(np.ones((2, 3)), (2,)).shape == (2, 3)
+    assert checked_bodies((Body(1.0, [0, 0, 0], np.eye(3)),), 1)[0].mass == 1.0  # type: ignore[arg-type]
+
+
+def test_single_precision_and_whole_numbers_are_numbers() -> None:
+    found = checked_torque(np.ones((2, 3), np.float32), (2,))
+    assert found.dtype == float
+    assert checked_torque(np.ones((2, 3), int), (2,)).dtype == float
+
+
+@pytest.mark.parametrize(
+    ("check", "value", "text"),
+    [
+        (checked_torque, None, "holds object"),
+        (checked_torque, np.ones(3), r"has the shape \(3,\); answer with \(2, 3\)"),
+        (checked_torque, np.ones((2, 3), complex), "holds complex128"),
+        (checked_torque, np.ones((2, 3), bool), "holds bool"),
+        (checked_torque, [[1.0], [1.0, 2.0]], "is no array"),
+        (checked_acceleration, np.ones((2, 3)), "is of type ndarray"),
+        (checked_acceleration, Acceleration(np.ones((2, 3)), np.ones((1, 3))), "linear has the"),
+        (checked_acceleration, Acceleration(np.ones((1, 3)), np.ones((2, 3))), "angular has the"),
+    ],
+)
+def test_what_is_asked_of_two_states_is_answered_for_two(check: Any, value: Any, text: str) -> None:
+    with pytest.raises(AnswerError, match=text):
+        check(value, (2,))
+
+
+@pytest.mark.parametrize("field", list(vars(state())))
+def test_every_field_of_a_state_is_checked(field: str) -> None:
+    with pytest.raises(AnswerError, match=f"state.{field} has the shape"):
+        checked_state("state", replace(state(2), **{field: np.ones((2, 5))}), (2,))
+
+
+@pytest.mark.parametrize(
+    ("bodies", "text"),
+    [
+        ([BODY], "is of type list"),
+        ((), "has 0 bodies; answer with 1"),
+        ((BODY, BODY), "has 2 bodies; answer with 1"),
+        ((None,), "is of type NoneType"),
+        ((replace(BODY, mass=np.ones(1)),), "mass has the shape"),
+        ((replace(BODY, center_of_mass=np.ones(2)),), "center_of_mass has the shape"),
+        ((replace(BODY, inertia=np.ones(3)),), "inertia has the shape"),
+    ],
+)
+def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
+    with pytest.raises(AnswerError, match=text):
+        checked_bodies(bodies, 1)
+
+
+@pytest.mark.parametrize(
+    ("fields", "text"),
+    [
+        ({"name": None}, "description.name is of type NoneType"),
+        ({"version": (1, 0)}, "description.version is of type tuple"),
+        ({"precision": "float16"}, "write float64 or float32"),
+        ({"features": frozenset({1})}, "an item of description.features"),
+        ({"integrators": ("euler",)}, "an item of description.integrators"),
+        ({"integrators": (EULER, EULER)}, "has a name twice, of euler, euler"),
+        ({"integrators": (replace(EULER, name=1),)}, "an integrator's name"),
+        ({"integrators": (replace(EULER, scheme=1),)}, "the scheme of euler"),
+        ({"integrators": (replace(EULER, orders={"speed": 1}),)}, "'speed'; give one of omega_dot"),
+        ({"integrators": (replace(EULER, orders={"omega": 1.5}),)}, "the order of euler in omega"),
+    ],
+)
+def test_a_description_is_what_it_says(fields: dict[str, Any], text: str) -> None:
+    with pytest.raises(AnswerError, match=text):
+        checked_description(replace(ENGINE, **fields))
+
+
+def test_words_become_one_printable_line() -> None:
+    assert one_line("two\nlines\tand  \x1b\x00 spaces\ud800") == "two lines and spaces"
+    assert one_line("a" * 500) == "a" * 500
+    assert one_line("a" * 501) == "a" * 496 + " ..."
+    assert one_line("\n" * 10_000_000 + "late") == " ..."
+    assert one_line("") == ""
+
+
+def raised(error: BaseException) -> str:
+    try:
+        raise error
+    except BaseException as caught:
+        return str(failure(caught)["reason"])
+
+
+def test_a_failure_names_its_type_and_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert raised(ValueError("no")).startswith("ValueError: no (test_checked_answers.py:")
+    assert raised(KeyboardInterrupt()).startswith("KeyboardInterrupt (test_checked_answers.py:")
+    monkeypatch.setenv("OMEGADOT_WORKER_MEMORY", str(2**31))
+    assert raised(MemoryError()).endswith("the limit is 2 GiB, --memory sets another")

@@ -1,0 +1,97 @@
+"""The harness's side of a worker, beside workers that are none."""
+
+import os
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from omegadot.workers.harness_end import process as worker_process
+from omegadot.workers.harness_end.process import WorkerProcess
+from omegadot.workers.machine import memory_of_machine
+from omegadot.workers.wire import encode_frame
+
+WELCOME = encode_frame({"outcome": "ok", "result": {}})
+PRINT = "import os, time; os.write(1, {said!r}); "
+NAMES_ITS_LIMIT = (
+    "import resource, omegadot.workers.engine_end.worker as w; w.limit_memory(int(w.os.environ"
+    "[w.MEMORY_VARIABLE])); r = str(resource.getrlimit(resource.RLIMIT_DATA)[0]); "
+    "w.os.write(1, w.encode_frame({'outcome': 'ok', 'result': r}))"
+)
+
+
+def worker_of(code: str, timeout: float = 1.0, memory: int | None = None) -> WorkerProcess:
+    command = [sys.executable, "-c", code]
+    return WorkerProcess("none", "physics", timeout, command, memory)
+
+
+def test_a_worker_that_does_not_read_blocks_nobody() -> None:
+    worker = worker_of(PRINT.format(text=WELCOME) + "time.sleep(3600)")
+    assert worker.start().ok
+    started = time.monotonic()
+    answer = worker.request("forward", states=np.zeros(10_000_000))  # far more than a pipe holds
+    assert answer.outcome == "timeout"
+    assert time.monotonic() - started < 30.0
+    assert not worker.started
+
+
+def test_a_start_has_its_own_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(worker_process, "SECONDS_TO_START", 2.0)
+    late = worker_of("import time; time.sleep(3600)", timeout=0.1).start()
+    assert (late.outcome, late.reason) == (
+        "timeout",
+        "no answer within 2 s; the worker was ended",
+    )
+
+
+def test_a_slow_start_is_no_slow_answer() -> None:
+    worker = worker_of("import time; time.sleep(0.5); " + PRINT.format(text=WELCOME), timeout=0.1)
+    assert worker.start().ok
+    worker.stop()
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        (b"", "ended with exit code 0"),
+        (b"\0\0", "ended with exit code 0"),
+        (b"\0" * 8, "its answer cannot be read"),
+        (b"welcome to the engine", "its answer cannot be read: a header of"),
+        (encode_frame({"a": np.ones(9)})[:-8], "ended with exit code 0"),
+    ],
+)
+def test_what_is_no_frame_is_a_crash(text: bytes, reason: str) -> None:
+    worker = worker_of(PRINT.format(text=text))
+    answer = worker.start()
+    assert answer.outcome == "crashed"
+    assert answer.reason.startswith(reason)
+    assert len(worker.deaths) == 1
+
+
+def test_a_program_that_is_not_there_is_said_so() -> None:
+    answer = WorkerProcess("none", "physics", 1.0, ["/nowhere/python"]).start()
+    assert answer.outcome == "crashed"
+    assert "could not be started" in answer.reason
+
+
+def test_who_is_not_running_is_not_asked() -> None:
+    assert worker_of("").request("model").reason == "the worker is not running"
+
+
+@pytest.mark.parametrize("memory", [None, 2**30])
+def test_a_worker_has_half_of_the_memory_or_what_it_is_given(memory: int | None) -> None:
+    worker = worker_of(NAMES_ITS_LIMIT, 20.0, memory)
+    assert worker.start().result == str(memory or memory_of_machine() // 2)
+    worker.stop()
+
+
+def test_a_death_between_requests_is_counted() -> None:
+    worker = worker_of(PRINT.format(text=WELCOME) + "time.sleep(3600)")
+    worker.start()
+    assert worker.pid is not None
+    os.kill(worker.pid, 9)
+    while worker._process is not None and worker._process.poll() is None:
+        time.sleep(0.01)
+    worker.finish()
+    assert worker.deaths == ["ended by signal 9 (SIGKILL)"]
