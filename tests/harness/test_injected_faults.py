@@ -55,7 +55,7 @@ BROKEN = {
     "WrongShape": ("raised", "run().state.orientation has the shape (11, 3); answer with (11, 4)"),
     "FewerStatesThanTimes": ("raised", "has the shape (10, 4); answer with (11, 4)"),
     "ComplexNumbers": ("raised", "angular_velocity holds complex128; answer with real numbers"),
-    "Words": ("raised", "run().state.angular_velocity holds str"),
+    "Strings": ("raised", "run().state.angular_velocity holds str"),
     "RaggedRows": ("raised", "run().state.angular_velocity is no array"),
     "NoSamples": ("raised", "run().time has the shape (0,)"),
     "TooFewSamples": ("ok", ""),

@@ -13,7 +13,7 @@ from omegadot.workers.machine import memory_of_machine
 from omegadot.workers.wire import encode_frame
 
 WELCOME = encode_frame({"outcome": "ok", "result": {}})
-PRINT = "import os, time; os.write(1, {said!r}); "
+PRINT = "import os, time; os.write(1, {text!r}); "
 NAMES_ITS_LIMIT = (
     "import resource, omegadot.workers.engine_end.worker as w; w.limit_memory(int(w.os.environ"
     "[w.MEMORY_VARIABLE])); r = str(resource.getrlimit(resource.RLIMIT_DATA)[0]); "

@@ -208,7 +208,7 @@ class ComplexNumbers(Faulty):
         return _with_omega(trajectory, trajectory.state.angular_velocity + 0j)
 
 
-class Arguments(Faulty):
+class Strings(Faulty):
     def fail(self, trajectory: Trajectory) -> Trajectory:
         return _with_omega(trajectory, trajectory.state.angular_velocity.astype(str))
 
