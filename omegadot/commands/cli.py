@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -12,6 +13,7 @@ from omegadot.commands.choose.command import choose
 from omegadot.commands.compare.command import compare
 from omegadot.commands.engines.command import engines
 from omegadot.commands.faults.command import faults
+from omegadot.commands.plain_help import PlainHelp
 from omegadot.commands.report.command import report
 from omegadot.commands.run.command import run
 from omegadot.commands.scenarios.command import scenarios
@@ -32,18 +34,22 @@ app = typer.Typer(
 )
 
 
-# Short enough for a line of 80 columns beside the longest name.
-app.command(short_help="Run scenarios on engines, judge them, write a report.")(run)
-app.command(short_help="List the engines and what each is set to.")(engines)
-app.command(short_help="List the built-in scenarios and what each shows.")(scenarios)
-app.command(short_help="Name the scheme of every integrator, from its steps.")(schemes)
-app.command(short_help="Put one engine, your own too, through every check.")(check)
-app.command(short_help="Break sound engines in known ways: what catches it?")(faults)
-app.command(short_help="Find engine, integrator and step for a requirement.")(choose)
-app.command(short_help="Draw the page of a stored run again, or of two runs.")(report)
-app.command(short_help="Score a trajectory of any simulator, or a log.")(score)
-app.command(short_help="Say what changed from one run to another.")(compare)
-app.command(short_help="Tell what changed between releases of an engine.")(versions)
+def _add(command: Callable[..., None], short_help: str) -> None:
+    app.command(cls=PlainHelp, short_help=short_help)(command)
+
+
+# Short enough for one line of 80 columns, the longest name included.
+_add(run, "Run scenarios on engines, judge them, write a report.")
+_add(engines, "List the engines, their integrators and settings.")
+_add(scenarios, "List the built-in scenarios and what each shows.")
+_add(schemes, "Identify the scheme of every integrator by its steps.")
+_add(check, "Check one engine, built in or your own.")
+_add(faults, "Inject known faults and show which gate catches them.")
+_add(choose, "Find engine, integrator and step for a requirement.")
+_add(report, "Draw the report of a stored run, or of two runs.")
+_add(score, "Score a trajectory or log of any simulator.")
+_add(compare, "Compare two runs: what improved, what got worse.")
+_add(versions, "Find what changed between releases of an engine.")
 
 
 def _version(show: bool) -> None:
@@ -75,19 +81,19 @@ def main() -> None:
             raise
         print(f"omegadot: {sentence}", file=sys.stderr)
         sys.exit(3 if _is_our_own(error) else 2)
-    if code == INTERRUPTED:  # the parser makes this number of Ctrl-C, and says nothing
+    if code == INTERRUPTED:  # the parser makes this number of Ctrl-C, and prints nothing
         print("omegadot: interrupted.", file=sys.stderr)
     sys.exit(code if isinstance(code, int) else 0)
 
 
 def _is_our_own(error: Exception) -> bool:
-    """Whether a worker of ours failed to start, rather than the words being wrong."""
+    """Whether a worker of ours failed to start, rather than the arguments being wrong."""
     engines = sys.modules.get("omegadot.harness.engines")
     return engines is not None and isinstance(error, engines.NoTruthError)
 
 
 def _sentence(error: Exception) -> str | None:
-    """The sentence of an error that is the user's to mend; None of any other."""
+    """The sentence of an error that the user can correct; None for any other."""
     if hasattr(error, "format_message"):  # what the command-line parser raises
         text = " ".join(str(error.format_message()).split())
         return text if text.endswith(".") else f"{text}."

@@ -26,7 +26,7 @@ def worker_command(python: str) -> list[str]:
 
 
 def interpreters(arguments: Sequence[str], engines: Sequence[str]) -> dict[str, str]:
-    """The interpreters of ``NAME=PATH`` words, by engine. Raises UsageError."""
+    """The interpreters of ``NAME=PATH`` arguments, by engine. Raises UsageError."""
     found: dict[str, str] = {}
     for argument in arguments:
         name, separator, path = argument.partition("=")

@@ -1,4 +1,4 @@
-"""The words of ``omegadot check``."""
+"""The arguments of ``omegadot check``."""
 
 from __future__ import annotations
 
@@ -16,30 +16,38 @@ def check(
     ],
     scenario: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="A built-in's name or a path; repeatable. Default: all."),
+        typer.Option(
+            metavar="NAME",
+            help="A built-in name or a path; repeatable. Default: all built-in scenarios.",
+        ),
     ] = None,
     integrator: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Repeatable. Default: all.")
+        list[str] | None,
+        typer.Option(metavar="NAME", help="An integrator; repeatable. Default: all."),
     ] = None,
     exceptions: Annotated[
         list[str] | None,
         typer.Option(metavar="FILE", help="Known failures, declared in TOML; repeatable."),
     ] = None,
     baseline: Annotated[
-        str | None, typer.Option(metavar="DIR", help="Compare with the figures stored there.")
+        str | None, typer.Option(metavar="DIR", help="Compare with the figures stored in DIR.")
     ] = None,
     update_baseline: Annotated[
-        bool, typer.Option("--update-baseline", help="Store the figures instead.")
+        bool,
+        typer.Option(
+            "--update-baseline", help="Store the figures in --baseline DIR instead of comparing."
+        ),
     ] = False,
     timeout: Annotated[
-        float, typer.Option(metavar="S", min=0.1, help="Limit for one request to an engine.")
+        float,
+        typer.Option(metavar="S", min=0.1, help="Time limit in s for one request to an engine."),
     ] = 60.0,
-    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
 ) -> None:
-    """Put one engine, built in or your own, through every check.
+    """Check one engine, built in or your own, at every gate.
 
     Exit codes: 0 every check holds, 1 one fails or all were skipped, 2 wrong usage or input, 3 the
-    engine crashed, hung or could not be started.
+    engine crashed, timed out or could not be started.
     """
     from omegadot.commands.check.check import check_engine
     from omegadot.commands.check.select import Arguments

@@ -1,4 +1,4 @@
-"""``omegadot choose``: from the words on the command line to a ranking and an exit code."""
+"""``omegadot choose``: from its arguments to a ranking and an exit code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The words of ``omegadot choose``."""
+"""The arguments of ``omegadot choose``."""
 
 from __future__ import annotations
 
@@ -15,104 +15,117 @@ def choose(
         list[str] | None, typer.Argument(metavar="[SCENARIO]...", help="Built-in names or paths.")
     ] = None,
     scenario: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="The same; repeatable.")
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A built-in name or a path; repeatable."),
     ] = None,
     body: Annotated[
         str | None,
         typer.Option(
-            metavar="FILE#LINK", help="Your own body: a link of a URDF, MJCF or SDF, or a TOML."
+            metavar="FILE#LINK", help="A body: a link of a URDF, MJCF or SDF file, or a TOML file."
         ),
     ] = None,
     angular_velocity: Annotated[
         tuple[float, float, float] | None,
-        typer.Option(metavar="X Y Z", help="The start, rad/s in body axes."),
+        typer.Option(metavar="X Y Z", help="Initial angular velocity, rad/s, body axes."),
     ] = None,
     orientation: Annotated[
         tuple[float, float, float, float] | None,
-        typer.Option(metavar="W X Y Z", help="The start, a quaternion."),
+        typer.Option(
+            metavar="W X Y Z", help="Initial orientation, a unit quaternion, world from body."
+        ),
     ] = None,
     duration: Annotated[
         str | None,
-        typer.Option(metavar="T", help="The horizon: 60, 1min. Default: the scenario's."),
+        typer.Option(
+            metavar="T", help="Simulated time, such as 60 or 1min. Default: the scenario's."
+        ),
     ] = None,
     requirements: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="The options below in TOML; those given here win."),
+        typer.Option(metavar="FILE", help="Requirements in TOML; options given here override it."),
     ] = None,
     attitude: Annotated[
         str | None,
-        typer.Option(metavar="ANGLE", help="Greatest error of attitude: 0.1deg."),
+        typer.Option(metavar="ANGLE", help="Largest attitude error, such as 0.1deg."),
     ] = None,
     omega: Annotated[
         str | None,
-        typer.Option(metavar="RATE", help="Greatest error of omega: 0.01rad/s."),
+        typer.Option(metavar="RATE", help="Largest error of omega, such as 0.01rad/s."),
     ] = None,
     energy_drift: Annotated[
-        str | None, typer.Option(metavar="RATIO", help="Greatest drift of energy: 1e-6.")
+        str | None,
+        typer.Option(metavar="RATIO", help="Largest relative drift of energy, such as 1e-6."),
     ] = None,
     momentum_drift: Annotated[
         str | None,
-        typer.Option(metavar="RATIO", help="Greatest drift of angular momentum."),
+        typer.Option(metavar="RATIO", help="Largest relative drift of angular momentum."),
     ] = None,
     linear_momentum_drift: Annotated[
-        str | None, typer.Option(metavar="RATIO", help="Greatest drift of momentum.")
+        str | None, typer.Option(metavar="RATIO", help="Largest relative drift of linear momentum.")
     ] = None,
     flip_time: Annotated[
         str | None,
-        typer.Option(metavar="TIME", help="Greatest error of a flip: 1ms."),
+        typer.Option(metavar="TIME", help="Largest error of a flip's time, such as 1ms."),
     ] = None,
     real_time_factor: Annotated[
         str | None,
-        typer.Option(metavar="X", help="Least simulated over elapsed seconds."),
+        typer.Option(metavar="X", help="Smallest ratio of simulated to elapsed time."),
     ] = None,
     precision: Annotated[
-        str | None, typer.Option(metavar="P", help="What it computes in: double or single.")
+        str | None, typer.Option(metavar="P", help="Floating-point precision: double or single.")
     ] = None,
     feature: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME",
-            help="What it must have: pivot, batch, inverse-dynamics; repeatable.",
+            help="A required feature: pivot, batch, inverse-dynamics; repeatable.",
         ),
     ] = None,
     licence: Annotated[
         list[str] | None,
-        typer.Option(metavar="SPDX", help="One that is allowed, by its SPDX name; repeatable."),
+        typer.Option(metavar="SPDX", help="An allowed licence by its SPDX name; repeatable."),
     ] = None,
     python: Annotated[
-        str | None, typer.Option(metavar="3.N", help="A Python that its package must not refuse.")
+        str | None,
+        typer.Option(metavar="3.N", help="Python version that the package must support."),
     ] = None,
     engine: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME[:INTEGRATOR]", help="Choose among these; repeatable."),
+        typer.Option(metavar="NAME[:INTEGRATOR]", help="Consider only these engines; repeatable."),
     ] = None,
     adapter: Annotated[
         list[str] | None,
         typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
     ] = None,
     budget: Annotated[
-        float, typer.Option(metavar="S", min=0.01, help="What one run of the search may take.")
+        float,
+        typer.Option(metavar="S", min=0.01, help="Time limit in s for one run of the search."),
     ] = 2.0,
     timeout: Annotated[
-        float, typer.Option(metavar="S", min=0.1, help="Limit for one request to an engine.")
+        float,
+        typer.Option(metavar="S", min=0.1, help="Time limit in s for one request to an engine."),
     ] = 60.0,
     jobs: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Engines at the same time. Default: cores."),
+        typer.Option(
+            metavar="N",
+            min=1,
+            help="Number of engines that run at the same time. Default: all cores.",
+        ),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Write the choice there; in the folder of a run, into its report too.",
+            help="Folder for the choice; in a run's folder it becomes part of its report.",
         ),
     ] = None,
-    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
 ) -> None:
     """Find the engines, integrators and largest steps that meet requirements, cheapest first.
 
     Exit codes: 0 something qualifies, 1 nothing does, 2 wrong usage or input, 3 an engine crashed,
-    hung or could not be started.
+    timed out or could not be started.
     """
     from omegadot.commands.choose.choose import Arguments, choose_and_print
 

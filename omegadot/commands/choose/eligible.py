@@ -22,13 +22,13 @@ def unmet(description: Description, wanted: Requirements) -> list[str]:
 def _clauses(description: Description, wanted: Requirements) -> Iterator[str]:
     own = PRECISION[description.precision]
     if wanted.precision not in (None, own):
-        yield f"precision: it computes in {own} precision, {wanted.precision} is asked for"
+        yield f"precision: it computes in {own} precision, {wanted.precision} is required"
     lacking = [f for f in wanted.features if f.replace("-", "_") not in description.features]
     for name in lacking:
         yield f"feature: it has no {name.replace('-', ' ')}"
     allowed = {name.casefold() for name in wanted.licences}
     if allowed and description.licence.casefold() not in allowed:
-        text = description.licence or "not told"
+        text = description.licence or "not stated"
         yield f"licence: its own is {text}, allowed is {' or '.join(wanted.licences)}"
     if wanted.python is not None:
         yield _python_refused(description.name, wanted.python)
@@ -54,7 +54,7 @@ def _python_refused(engine: str, python: str) -> str:
         return ""
     if all(_holds(python, part.strip()) for part in required.split(",")):
         return ""
-    return f"python: its package requires {required}, {python} is asked for"
+    return f"python: its package requires {required}, {python} is required"
 
 
 def _holds(python: str, clause: str) -> bool:

@@ -51,7 +51,7 @@ def _bare(motion: Motion) -> dict[str, Any]:
         (motion.duration, "--duration S"),
     ):
         if given is None:
-            raise UsageError(f"--body: no scenario says how it moves; give one, or {option}.")
+            raise UsageError(f"--body: no scenario defines its motion; give one, or {option}.")
     return {"schema": 1, "name": "body", "initial": {}, "run": {}}
 
 

@@ -101,7 +101,7 @@ def requirements_of(given: Mapping[str, Any], places: Mapping[str, str]) -> Requ
             requested[key] = str(given[key])
     if not limits:
         named = ", ".join(f"--{key}" for key in ACCURACY)
-        raise UsageError(f"nothing is asked of the accuracy; give at least one of {named}.")
+        raise UsageError(f"no accuracy is required; give at least one of {named}.")
     read: dict[str, tuple[str, Callable[[Any, str], Any]]] = {
         "real_time_factor": ("real-time-factor", partial(_quantity, "factor")),
         "precision": ("precision", _precision),

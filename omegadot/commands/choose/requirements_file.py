@@ -32,7 +32,7 @@ def read_requirements(path: Path) -> dict[str, Any]:
         if isinstance(error, UsageError):
             raise
         reason = str(error).splitlines()[0].rstrip(".")
-        raise UsageError(f"{path}: not valid TOML ({reason}); mend it there.") from None
+        raise UsageError(f"{path}: not valid TOML ({reason}); correct it there.") from None
     found: dict[str, Any] = {}
     for argument, value in data.items():
         key = known_key(argument, str(path))

@@ -1,4 +1,4 @@
-"""The words of ``omegadot compare``."""
+"""The arguments of ``omegadot compare``."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ from omegadot.commands.options import PageFormat
 
 
 def compare(
-    first: Annotated[Path, typer.Argument(metavar="RUN", help="The folder of the earlier run.")],
-    second: Annotated[Path, typer.Argument(metavar="RUN", help="The folder of the later run.")],
+    first: Annotated[
+        Path, typer.Argument(metavar="EARLIER", help="The folder of the earlier run.")
+    ],
+    second: Annotated[Path, typer.Argument(metavar="LATER", help="The folder of the later run.")],
     output: Annotated[
-        PageFormat, typer.Option("--format", help="What to print.")
+        PageFormat, typer.Option("--format", help="Output format.")
     ] = PageFormat.text,
 ) -> None:
-    """Say what got better, worse, appeared and vanished from one stored run to another.
+    """Compare two stored runs: what got better, got worse, appeared or vanished.
 
     Exit codes: 0 nothing got worse, 1 something did, 2 wrong usage or input.
     """

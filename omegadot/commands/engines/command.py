@@ -1,4 +1,4 @@
-"""The words of ``omegadot engines``."""
+"""The arguments of ``omegadot engines``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from omegadot.commands.options import Format
 
 
 def engines(
-    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
     adapter: Annotated[
         list[str] | None,
         typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),

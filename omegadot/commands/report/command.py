@@ -1,4 +1,4 @@
-"""The words of ``omegadot report``."""
+"""The arguments of ``omegadot report``."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ import typer
 
 def report(
     runs: Annotated[
-        list[Path], typer.Argument(metavar="RUN [RUN]", help="The folder of a run, or of two.")
+        list[Path], typer.Argument(metavar="RUN [RUN]", help="The folder of one run, or of two.")
     ],
     out: Annotated[
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Where the page goes. Default: into the run's folder; of two runs, two-runs.html.",
+            help="File for the page. Default: report.html in the run's folder, or two-runs.html.",
         ),
     ] = None,
     figures: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Write the charts there, as SVG and PNG, for papers."),
+        typer.Option(metavar="DIR", help="Folder for the charts as SVG and PNG."),
     ] = None,
     markdown: Annotated[
-        bool, typer.Option("--markdown", help="Print a summary for a pull request's comment.")
+        bool, typer.Option("--markdown", help="Print a summary in Markdown, for a pull request.")
     ] = False,
 ) -> None:
-    """Draw the page of a stored run again, or two runs side by side on one page."""
+    """Draw the report of a stored run again, or of two runs side by side."""
     from omegadot.commands.report.report import report_of
 
     typer.echo(report_of(runs, out, figures, markdown))

@@ -1,4 +1,4 @@
-"""The words of ``omegadot run``."""
+"""The arguments of ``omegadot run``."""
 
 from __future__ import annotations
 
@@ -14,20 +14,28 @@ from omegadot.commands.options import Format, Setup
 def run(
     scenarios: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[SCENARIO]...", help="Built-in names or paths; default: all."),
+        typer.Argument(
+            metavar="[SCENARIO]...",
+            help="Built-in names or paths. Default: all built-in scenarios.",
+        ),
     ] = None,
     engine: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME[:INTEGRATOR]", help="An engine; repeat for more. Default: all."),
+        typer.Option(
+            metavar="NAME[:INTEGRATOR]",
+            help="An engine, or one of its integrators; repeatable. Default: all installed.",
+        ),
     ] = None,
     timestep: Annotated[
         list[float] | None,
-        typer.Option(metavar="S", help="A time step in s, instead of the scenario's; repeatable."),
+        typer.Option(metavar="S", help="A time step in s instead of the scenario's; repeatable."),
     ] = None,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the record goes.")] = Path(
-        "omegadot-run"
-    ),
-    setup: Annotated[Setup, typer.Option(help="How engines are configured.")] = Setup.physics,
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", help="Folder for the record and its report.")
+    ] = Path("omegadot-run"),
+    setup: Annotated[
+        Setup, typer.Option(help="Defaults that spoil physics switched off, or left as shipped.")
+    ] = Setup.physics,
     adapter: Annotated[
         list[str] | None,
         typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
@@ -37,23 +45,34 @@ def run(
         typer.Option(metavar="FILE", help="Known failures, declared in TOML; repeatable."),
     ] = None,
     timeout: Annotated[
-        float, typer.Option(metavar="S", min=0.1, help="Limit for one request to an engine.")
+        float,
+        typer.Option(metavar="S", min=0.1, help="Time limit in s for one request to an engine."),
     ] = 60.0,
     jobs: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Engines at the same time. Default: cores."),
+        typer.Option(
+            metavar="N",
+            min=1,
+            help="Number of engines that run at the same time. Default: all cores.",
+        ),
     ] = None,
     memory: Annotated[
         float | None,
-        typer.Option(metavar="GIB", min=0.1, help="Limit for one engine. Default: half of it all."),
+        typer.Option(
+            metavar="GIB",
+            min=0.1,
+            help="Memory limit for one engine. Default: half of the machine's.",
+        ),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="For the random states.")] = 0,
-    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+    seed: Annotated[
+        int, typer.Option(metavar="INTEGER", min=0, help="Seed of the random states.")
+    ] = 0,
+    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
 ) -> None:
     """Run scenarios on engines, judge them, and write a record with its report.
 
     Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
-    hung or could not be started.
+    timed out or could not be started.
     """
     import os
 

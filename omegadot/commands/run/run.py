@@ -1,4 +1,4 @@
-"""``omegadot run``: from the words on the command line to a record and an exit code."""
+"""``omegadot run``: from its arguments to a record and an exit code."""
 
 from __future__ import annotations
 

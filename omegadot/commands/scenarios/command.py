@@ -1,4 +1,4 @@
-"""The words of ``omegadot scenarios``."""
+"""The arguments of ``omegadot scenarios``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from omegadot.commands.options import Format
 
 
 def scenarios(
-    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
 ) -> None:
     """List the built-in scenarios and what each shows."""
     from omegadot.commands.scenarios.scenarios import print_scenarios

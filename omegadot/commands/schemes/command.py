@@ -1,4 +1,4 @@
-"""The words of ``omegadot schemes``."""
+"""The arguments of ``omegadot schemes``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def schemes(
         list[str] | None,
         typer.Option(
             metavar="NAME[:INTEGRATOR]",
-            help="An engine; repeat for more. Default: all but exact and reference.",
+            help="An engine; repeatable. Default: all but exact and reference.",
         ),
     ] = None,
     adapter: Annotated[
@@ -25,18 +25,18 @@ def schemes(
         list[str] | None,
         typer.Option(
             metavar="NAME=PATH",
-            help="The interpreter that an engine runs under, so that an other version of it in its "
-            "own environment, beside NumPy and SciPy, can be studied; repeatable.",
+            help="A Python interpreter for one engine: another version of it, installed there with "
+            "NumPy and SciPy; repeatable.",
         ),
     ] = None,
     output: Annotated[
-        PageFormat, typer.Option("--format", help="What to print.")
+        PageFormat, typer.Option("--format", help="Output format.")
     ] = PageFormat.text,
 ) -> None:
-    """Name the scheme of every integrator, from its steps alone, with its orders and defects.
+    """Identify the scheme of every integrator by its steps, with its orders and defects.
 
-    Exit codes: 0 all is as declared, 1 something is not, 2 wrong usage, 3 an engine crashed, hung
-    or could not be started.
+    Exit codes: 0 all is as declared, 1 something is not, 2 wrong usage, 3 an engine crashed,
+    timed out or could not be started.
     """
     from omegadot.commands.schemes.schemes import print_schemes
 

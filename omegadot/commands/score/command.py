@@ -1,4 +1,4 @@
-"""The words of ``omegadot score``."""
+"""The arguments of ``omegadot score``."""
 
 from __future__ import annotations
 
@@ -13,52 +13,71 @@ from omegadot.commands.options import Format
 def score(
     trace: Annotated[Path, typer.Argument(metavar="TRACE", help="A CSV or Parquet file.")],
     scenario: Annotated[
-        str, typer.Option(metavar="SCENARIO", help="What it is a motion of: a name or a path.")
+        str,
+        typer.Option(
+            metavar="SCENARIO", help="The scenario of the motion: a built-in name or a path."
+        ),
     ],
     column: Annotated[
         list[str] | None,
         typer.Option(
             metavar="ROLE=NAME",
-            help="Which column is what: t, wx.., qw.., e1.. (or yaw, pitch, roll), r11.., px.., "
-            "vx.., ax.. (omega-dot), or a whole group, like w=A,B,C; #3 is the third. Repeatable.",
+            help="Assign a column to a role: t, wx.., qw.., e1.. (or yaw, pitch, roll), r11.., "
+            "px.., vx.., ax.. (omega-dot), or a group, as w=A,B,C; #3 is the third column. Repeatable.",
         ),
     ] = None,
     map_file: Annotated[
         Path | None, typer.Option("--map", metavar="FILE", help="Columns and units in TOML.")
     ] = None,
-    time_unit: Annotated[str | None, typer.Option(help="s, ms, us, ns, min or h.")] = None,
-    angle_unit: Annotated[str | None, typer.Option(help="rad, deg, mrad or rev.")] = None,
-    rate_unit: Annotated[str | None, typer.Option(help="rad/s, deg/s, rpm, ...")] = None,
-    length_unit: Annotated[str | None, typer.Option(help="m, ft, in, cm, mm or km.")] = None,
-    omega_frame: Annotated[str | None, typer.Option(help="body or world.")] = None,
+    time_unit: Annotated[
+        str | None, typer.Option(metavar="UNIT", help="Unit of time: s, ms, us, ns, min or h.")
+    ] = None,
+    angle_unit: Annotated[
+        str | None, typer.Option(metavar="UNIT", help="Unit of angles: rad, deg, mrad or rev.")
+    ] = None,
+    rate_unit: Annotated[
+        str | None, typer.Option(metavar="UNIT", help="Unit of omega: rad/s, deg/s, rpm, ...")
+    ] = None,
+    length_unit: Annotated[
+        str | None, typer.Option(metavar="UNIT", help="Unit of lengths: m, ft, in, cm, mm or km.")
+    ] = None,
+    omega_frame: Annotated[
+        str | None, typer.Option(metavar="FRAME", help="Frame of omega: body or world.")
+    ] = None,
     attitude_is: Annotated[
-        str | None, typer.Option(help="world-from-body or body-from-world.")
+        str | None,
+        typer.Option(
+            metavar="SENSE", help="Sense of the attitude: world-from-body or body-from-world."
+        ),
     ] = None,
     euler: Annotated[
         str | None,
-        typer.Option(metavar="ZYX", help="Sequence of the angles: capitals intrinsic, else not."),
+        typer.Option(metavar="ZYX", help="Sequence of Euler angles: ZYX intrinsic, zyx extrinsic."),
     ] = None,
     quaternion: Annotated[
-        str | None, typer.Option(help="Order of the four columns of q: wxyz or xyzw.")
+        str | None, typer.Option(metavar="ORDER", help="Order of the columns of q: wxyz or xyzw.")
     ] = None,
     point: Annotated[
-        str | None, typer.Option(help="Whose position it is: center-of-mass or origin.")
+        str | None,
+        typer.Option(metavar="POINT", help="Point of the position: center-of-mass or origin."),
     ] = None,
     world_axes: Annotated[
         str | None,
-        typer.Option(metavar="x,-y,-z", help="Which of the trace's world axes the scenario's are."),
+        typer.Option(metavar="x,-y,-z", help="The scenario's world axes, named by the trace's."),
     ] = None,
     body_axes: Annotated[
-        str | None, typer.Option(metavar="x,-y,-z", help="The same for the body's.")
+        str | None,
+        typer.Option(metavar="x,-y,-z", help="The scenario's body axes, named by the trace's."),
     ] = None,
     time_offset: Annotated[
-        float | None, typer.Option(metavar="S", help="The trace's time at the scenario's start.")
+        float | None,
+        typer.Option(metavar="S", help="Time in the trace at which the scenario starts."),
     ] = None,
     integrator_scheme: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The scheme that it was stepped with.")
+        str | None, typer.Option(metavar="NAME", help="Integration scheme that produced the trace.")
     ] = None,
     timestep: Annotated[
-        float | None, typer.Option(metavar="S", help="The step that it was stepped with.")
+        float | None, typer.Option(metavar="S", help="Time step that produced the trace, s.")
     ] = None,
     attitude: Annotated[
         str | None, typer.Option(metavar="0.1deg", help="Required: the largest attitude error.")
@@ -78,24 +97,30 @@ def score(
     flip_time: Annotated[
         str | None, typer.Option(metavar="1ms", help="Required: the largest error of a flip.")
     ] = None,
-    name: Annotated[str, typer.Option(help="What the trace is called in the report.")] = "trace",
+    name: Annotated[
+        str, typer.Option(metavar="NAME", help="Name of the trace in the report.")
+    ] = "trace",
     with_engine: Annotated[
         list[str] | None,
-        typer.Option("--with", metavar="NAME[:INTEGRATOR]", help="An engine to run beside it."),
+        typer.Option(
+            "--with",
+            metavar="NAME[:INTEGRATOR]",
+            help="An engine to run on the same scenario; repeatable.",
+        ),
     ] = None,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the record goes.")] = Path(
-        "omegadot-score"
-    ),
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", help="Folder for the record and its report.")
+    ] = Path("omegadot-score"),
     detect: Annotated[
-        bool, typer.Option("--detect", help="Say which conventions fit, and write nothing.")
+        bool, typer.Option("--detect", help="Report which conventions fit, and write nothing.")
     ] = False,
-    output: Annotated[Format, typer.Option("--format", help="What to print.")] = Format.text,
+    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
 ) -> None:
     """Score a trajectory of any simulator against the exact solution of a scenario.
 
     Exit codes: 0 nothing fails, 1 a requirement is missed, a declared scheme is not the one that
-    was stepped, or (--detect) no single convention fits, 2 wrong usage or input, 3 an engine run
-    beside it crashed, hung or could not be started.
+    produced the trace, or (--detect) no single convention fits, 2 wrong usage or input, 3 an engine
+    run with it crashed, timed out or could not be started.
     """
     from omegadot.commands.score.score import Arguments, score
 

@@ -1,4 +1,4 @@
-"""The words of ``omegadot versions``."""
+"""The arguments of ``omegadot versions``."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def versions(
         list[str] | None,
         typer.Argument(
             metavar="VERSION...",
-            help="1.2.3, a range 1.2.0..1.4.0 of the releases that there are, or 1.2.3=PYTHON, "
-            "an interpreter that has it already.",
+            help="1.2.3, a range 1.2.0..1.4.0 of published releases, or 1.2.3=PYTHON, an "
+            "interpreter that has this version.",
         ),
     ] = None,
     scenario: Annotated[
@@ -41,47 +41,56 @@ def versions(
     ] = None,
     timestep: Annotated[
         float | None,
-        typer.Option(metavar="S", help="A step in s, instead of each scenario's middle one."),
+        typer.Option(metavar="S", help="A time step in s instead of each scenario's middle one."),
     ] = None,
     bisect: Annotated[
         str | None,
-        typer.Option(metavar="METRIC", help="Find the release in which it changed."),
+        typer.Option(metavar="METRIC", help="Find the release in which METRIC changed."),
     ] = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write versions.json and versions.html.")
     ] = None,
     output: Annotated[
-        PageFormat, typer.Option("--format", help="What to print.")
+        PageFormat, typer.Option("--format", help="Output format.")
     ] = PageFormat.text,
     cache: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Where environments are kept.")
+        Path | None, typer.Option(metavar="DIR", help="Folder of the environments.")
     ] = None,
-    offline: Annotated[bool, typer.Option("--offline", help="Use the cache alone.")] = False,
+    offline: Annotated[
+        bool, typer.Option("--offline", help="Use only environments in the cache.")
+    ] = False,
     installer: Annotated[
-        With, typer.Option(help="What makes environments; auto: uv where there is one.")
+        With, typer.Option(help="Installer of the environments; auto: uv where it is installed.")
     ] = With.auto,
     setup: Annotated[Setup, typer.Option(help="How engines are configured.")] = Setup.physics,
     adapter: Annotated[
         str | None,
-        typer.Option(metavar="FILE.py:CLASS", help="The adapter of an engine of your own."),
+        typer.Option(metavar="FILE.py:CLASS", help="The adapter of your own engine."),
     ] = None,
     package: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="With --adapter: what its releases are installed from."),
+        typer.Option(
+            metavar="NAME", help="With --adapter: the package whose releases are installed."
+        ),
     ] = None,
-    speed: Annotated[bool, typer.Option(help="Time the steps too.")] = True,
+    speed: Annotated[bool, typer.Option(help="Measure the time per step.")] = True,
     timeout: Annotated[
-        float, typer.Option(metavar="S", min=0.1, help="Limit for one request to an engine.")
+        float,
+        typer.Option(metavar="S", min=0.1, help="Time limit in s for one request to an engine."),
     ] = 60.0,
     jobs: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Versions at the same time. Default: cores."),
+        typer.Option(
+            metavar="N",
+            min=1,
+            help="Number of versions measured at the same time. Default: all cores.",
+        ),
     ] = None,
 ) -> None:
-    """Tell what changed between releases of an engine, each in an environment of its own.
+    """Find what changed between releases of an engine, each in an environment of its own.
 
     Exit codes: 0 done, whatever changed, 1 some version is not as its adapter declares, or the
-    ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be asked.
+    ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be measured.
     """
     import os
 

@@ -56,7 +56,7 @@ def shown(name: Name, figure: Figure | None) -> str:
     if isinstance(figure.value, str):
         return figure.value
     if figure.value is None:
-        return "not told"
+        return "not stated"
     if name[0] == "order":
         return f"{figure.value:.2f}"
     if name[-1] == RATIO:
