@@ -23,7 +23,7 @@ def score(
         typer.Option(
             metavar="ROLE=NAME",
             help="Assign a column to a role: t, wx.., qw.., e1.. (or yaw, pitch, roll), r11.., "
-            "px.., vx.., ax.. (omega-dot), or a group, as w=A,B,C; #3 is the third column. Repeatable.",
+            "px.., vx.., ax.. (omega-dot), or a group, as w=A,B,C; #3 is the third. Repeatable.",
         ),
     ] = None,
     map_file: Annotated[
