@@ -1,4 +1,4 @@
-"""The likeliest cause of a failing check, asked once for each integrator that fails."""
+"""The likeliest cause of a failing check, requested once for each integrator that fails."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class Cluster:
     """Runs of one scenario and step that turn alike, as ``engine:integrator``.
 
     scheme: the reference's that they equal, None where they equal none.  also: others that they
-    equal too, where the motion does not tell schemes apart; `scheme` is then the one that most
+    equal too, where the motion does not distinguish schemes; `scheme` is then the one that most
     members declare.
     """
 
@@ -148,7 +148,7 @@ def clusters_of(case: Case, truth: Truth, engines: Sequence[EngineCase]) -> list
 
 
 def clusters_of_run(cases: Iterable[JudgedCase]) -> list[Cluster]:
-    """The clusters of every case that has an exact course to be measured by."""
+    """The clusters of every case that has an exact trajectory to be measured by."""
     return [
         cluster
         for judged in cases

@@ -1,8 +1,9 @@
-"""The likeliest cause of what the gates found, in words.
+"""The likeliest cause of what the gates found, as text.
 
 ``diagnose(case, truth, questions, result, runs) -> list[str]`` is a pure function of what the
 harness has after judging one engine on one case: the `Case`, its `Truth` (with the companions of
-the schemes in question), the `Questions` that were asked, the `CaseResult` with the engine's own
+the schemes in question), the `EvaluationStates`, the `CaseResult` with the engine's
+own
 answers, and the `JudgedRun` list of `judge_case`. Each sentence names a cause that was tried on
 those answers and explains them within the gates' own bounds. Where nothing does, or nothing failed,
 the list is empty: no guess is better than a wrong one.
@@ -70,9 +71,9 @@ def _causes(
 
 
 def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list[str]:
-    """What is told of one run, then how it is stepped, then where it is sound and where it isn't.
+    """Causes in what one run reports, then in its stepping, then in where it is sound.
 
-    Where nothing but the omega-dot told along it failed, only that is looked at.
+    Where nothing but the omega-dot reported along it failed, only that is looked at.
     """
     reported = reported_run(case, truth, result, run)
     if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
@@ -86,7 +87,7 @@ def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> lis
 
 
 def _shortest_failed(runs: Sequence[JudgedRun]) -> list[JudgedRun]:
-    """Of each integrator the failed run of the fewest steps, for hypotheses are stepped anew."""
+    """Of each integrator the failed run of the fewest steps, for hypotheses are stepped again."""
     failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
     shortest: dict[str, JudgedRun] = {}
     for run in sorted(failed, key=lambda run: run.sweep.steps):

@@ -77,7 +77,7 @@ def _forward(match: Match) -> list[str]:
 
 
 def _reported(match: Match) -> Iterator[tuple[str, Acceleration]]:
-    """Accelerations that are right and told in another frame, or of another point."""
+    """Accelerations that are right and reported in another frame, or of another point."""
     q, true, system = match.states.orientation, match.true, match.system
     world = Acceleration(rotate(q, true.angular), true.linear)
     yield "omega-dot looks like world axes: it matches after R^T", world
@@ -112,7 +112,7 @@ def _other_systems(match: Match) -> Iterator[tuple[str, Acceleration]]:
     if load.pivot is not None:
         loads["the pivot is ignored: the body moves freely"] = replace(load, pivot=None)
         at_origin = replace(load, pivot=np.zeros_like(load.pivot))
-        loads["the body hangs by its origin instead of the pivot"] = at_origin
+        loads["the body is pivoted at its origin instead of the pivot"] = at_origin
         loads["the pivot has the wrong sign"] = replace(load, pivot=-load.pivot)
     for text, other in loads.items():
         yield text, forward_dynamics(replace(system, load=other), states)

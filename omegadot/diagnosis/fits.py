@@ -59,7 +59,7 @@ def _spoken(what: str, factor: float, words: dict[int, str]) -> str:
 
 
 def scaled_terms(match: Match) -> str:
-    """One of the equation's terms times a number, or a damping that nobody asked for."""
+    """One of the equation's terms times a number, or a damping that was not requested."""
     system, states = match.system, match.states
     w = states.angular_velocity
     gyroscopic = -cross(w, apply(moving_inertia(system), w))
@@ -79,12 +79,12 @@ def scaled_terms(match: Match) -> str:
             return f"{text}: it is divided by the mass" if over_mass else text
     k = _fit(match, _term(match, -w, 0.0))
     if k is not None:
-        return f"a damping of {k:.3g} N m s/rad acts that nobody asked for"
+        return f"a damping of {k:.3g} N m s/rad acts that was not requested"
     return _gravity_vector(match)
 
 
 def _gravity_vector(match: Match) -> str:
-    """Another constant gravity than the one asked for, by least squares."""
+    """Another constant gravity than the one requested, by least squares."""
     system, states = match.system, match.states
     rest = _weighted(match, _difference(match.found, match.true))
     lines = []
@@ -98,12 +98,12 @@ def _gravity_vector(match: Match) -> str:
     if not match.fits(forward_dynamics(other, states), SLACK):
         return ""
     return (
-        f"gravity is {_vector(requested + change)} m/s^2, where {_vector(requested)} was asked for"
+        f"gravity is {_vector(requested + change)} m/s^2, where {_vector(requested)} was requested"
     )
 
 
 def other_pivot(match: Match) -> str:
-    """Another pivot than the one asked for, by Gauss-Newton."""
+    """Another pivot than the one requested, by Gauss-Newton."""
     system, requested = match.system, match.system.load.pivot
     if requested is None:
         return ""
@@ -118,7 +118,7 @@ def other_pivot(match: Match) -> str:
         here = there(pivot)
         if match.fits(here, SLACK):
             off = _vector(pivot - requested)
-            return f"the pivot lies at {_vector(pivot)} m, {off} m from where it was asked for"
+            return f"the pivot lies at {_vector(pivot)} m, {off} m from where it was requested"
         rest = _weighted(match, _difference(match.found, here))
         lines = [
             _weighted(match, _difference(there(pivot + delta * unit), here)) / delta
@@ -148,7 +148,7 @@ def _vector(values: Array) -> str:
 def constant_inertia(match: Match) -> str:
     """Another inertia, the same at every state: ``I w_dot + w x I w = tau`` solved for I.
 
-    Without any torque its size stays open, and is taken to be the asked one's.
+    Without any torque its size stays open, and is taken to be the requested one's.
     """
     w, w_dot = match.states.angular_velocity, match.found.angular
     basis = _symmetric_basis()

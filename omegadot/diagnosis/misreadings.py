@@ -16,10 +16,10 @@ Change = Callable[[State], State]
 
 @dataclass(frozen=True)
 class Misreading:
-    """A state told in another convention.
+    """A state reported in another convention.
 
-    says: what it looks like.  right: from the state as told to the one that is meant.  wrong: the
-    inverse, from the state that is meant to the one told.
+    statement: the cause as text.  right: from the state as reported to the one that is meant.
+    wrong: the inverse, from the state that is meant to the one reported.
     """
 
     statement: str
@@ -90,7 +90,7 @@ NOT_UNIT = Misreading(
 
 
 def of_origin(system: System) -> tuple[Misreading, ...]:
-    """Position or velocity told at the body's origin instead of the centre of mass."""
+    """Position or velocity reported at the body's origin instead of the centre of mass."""
 
     def position(state: State) -> State:
         return replace(state, position=from_origin(system, state).position)

@@ -31,13 +31,13 @@ def causes(case: Case, evaluation: EvaluationStates, result: CaseResult) -> list
     if "inertia" in failed:
         found += _inertia(case, held)
     first = State(*(values[0] for values in vars(evaluation.random).values()))
-    # Of a wrong body the state follows: where it hangs, where its centre of mass is.
+    # Of a wrong body the state follows: where it is pivoted, where its centre of mass is.
     return found or _state(case, first, state_from(result.model.result["state"]))
 
 
 def _mass(requested: Body, held: Body) -> list[str]:
     factor = float(held.mass) / float(requested.mass)
-    return [f"the mass is {factor:.6g} times what was asked"]
+    return [f"the mass is {factor:.6g} times what was requested"]
 
 
 def _center(requested: Body, held: Body) -> list[str]:
@@ -55,11 +55,11 @@ def _alike(one: Array, other: Array, condition: float) -> bool:
 
 
 def _inertia(case: Case, held: Body) -> list[str]:
-    """The first tensor that matches within the gate's bound, times the asked one's condition."""
+    """The first tensor that matches within the gate's bound times the requested one's condition."""
     requested, back = np.asarray(case.system.body.inertia), np.asarray(held.inertia)
     factor = float(np.sum(requested * back) / np.sum(requested * requested))
     if _alike(factor * requested, back, 1.0):
-        return [f"the inertia is {factor:.6g} times what was asked"]
+        return [f"the inertia is {factor:.6g} times what was requested"]
     condition = float(np.linalg.cond(requested))
     for text, tensor in mistaken_inertias(case.system.body, case.system):
         if _alike(tensor, back, condition) and not _alike(tensor, requested, condition):

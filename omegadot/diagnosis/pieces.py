@@ -80,5 +80,5 @@ def _intervals(reported: ReportedRun) -> str:
 def _one_sample(reported: ReportedRun, sample: int) -> str:
     pairs = (values[sample] == values[sample - 1] for values in vars(reported.state).values())
     if sample > 0 and all(bool(np.all(pair)) for pair in pairs):
-        return f"the sample at t = {reported.time[sample]:.4g} s is the one before, told twice"
+        return f"the sample at t = {reported.time[sample]:.4g} s is the one before, reported twice"
     return f"the sample at t = {reported.time[sample]:.4g} s alone does not belong to the run"

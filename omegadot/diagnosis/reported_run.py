@@ -1,4 +1,4 @@
-"""One run as it was told, beside the same run stepped by the reference."""
+"""One run as it was reported, next to the same run stepped by the reference."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def rows(state: State, which: slice | NDArray[Any]) -> State:
 
 @dataclass(frozen=True)
 class ReportedRun:
-    """time and state as told; own: the reference's run of the declared scheme, with the samples.
+    """time and state as reported; own: the reference's run of the declared scheme at the samples.
 
     growth: (n,), how far rounding may have grown along it.
     """
@@ -56,7 +56,7 @@ class ReportedRun:
     def agrees(
         self, state: State, other: State, samples: slice = slice(None), slack: float = 1.0
     ) -> bool:
-        """Whether two courses are the same within rounding, at these samples."""
+        """Whether two trajectories are the same within rounding, at these samples."""
         bounds, yardstick = self.bounds, self.truth.yardstick
         with np.errstate(all="ignore"):
             return all(
@@ -111,8 +111,8 @@ def reported_run(
 def _until_it_shows(reported: ReportedRun) -> ReportedRun:
     """The beginning of a run, until it has departed from the reference's beyond any doubt.
 
-    Causes are tried by stepping anew: a short course is quicker, and followed more surely where the
-    motion magnifies what is not quite right yet.
+    Causes are tried by stepping again: a short trajectory is quicker, and followed more surely
+    where the motion magnifies what is not quite right yet.
     """
     numbers, bounds = reported.sweep.sample_steps, reported.bounds
     distances = {

@@ -1,4 +1,4 @@
-"""Causes in what is told of a run: frames, orders, samples, clocks; the stepping is sound."""
+"""Causes in what is reported of a run: frames, orders, samples, clocks; the stepping is sound."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _samples(reported: ReportedRun) -> str:
         return _counted(missing, "first")
     if missing > 0 and np.allclose(reported.time, expected[:-missing], rtol=1e-12, atol=0.0):
         return _counted(missing, "last")
-    return f"{came} samples came back, {len(expected)} were asked for"
+    return f"{came} samples came back, {len(expected)} were requested"
 
 
 def _counted(missing: int, which: str) -> str:
@@ -79,13 +79,11 @@ def _clock(reported: ReportedRun) -> str:
         return ""
     if np.all(np.abs(late - late[0]) <= tolerance):
         steps = late[0] / reported.sweep.timestep
-        return f"every time is told {late[0]:.4g} s late, {steps:.3g} steps"
+        return f"every time is reported {late[0]:.4g} s late, {steps:.3g} steps"
     ratio = reported.time[-1] / reported.sweep.times[-1]
     if np.all(np.abs(reported.time - ratio * reported.sweep.times) <= tolerance):
         wrong = "fast" if ratio < 1.0 else "slow"
-        return (
-            f"the clock is told {abs(ratio - 1.0):.3g} too {wrong}: every time is off in proportion"
-        )
+        return f"the clock runs {abs(ratio - 1.0):.3g} too {wrong}: every time is off in proportion"
     return ""
 
 

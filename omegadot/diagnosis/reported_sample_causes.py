@@ -59,10 +59,10 @@ def half_step(reported: ReportedRun) -> str:
     for sign, when in ((-0.5, "before"), (0.5, "after")):
         turned = _but_for_the_start(q, turn_in_body(q, w, sign * h))
         if reported.agrees(reported.state, replace(reported.own, orientation=turned)):
-            return f"the attitude told is that of half a step {when}"
+            return f"the attitude reported is that of half a step {when}"
         moved = _but_for_the_start(w, w + sign * h * w_dot)
         if reported.agrees(reported.state, replace(reported.own, angular_velocity=moved)):
-            return f"omega is told as of half a step {when}"
+            return f"omega is reported as of half a step {when}"
     return ""
 
 
@@ -80,5 +80,5 @@ def omega_dot_late(reported: ReportedRun, result: CaseResult) -> str:
     for shift, when in ((1, "before"), (-1, "after")):
         apart = norm(np.roll(true.angular, shift, axis=0) - omega_dot)
         if np.all(apart[inner] <= np.maximum(bound, np.roll(bound, shift))[inner]):
-            return f"the omega-dot told along the run is that of the sample {when}"
+            return f"the omega-dot reported along the run is that of the sample {when}"
     return ""

@@ -29,7 +29,7 @@ def on_rows(forward: AccelerationOf) -> AccelerationOf:
 
 
 def at_origin(system: System, of_center: AccelerationOf) -> AccelerationOf:
-    """The same accelerations of states told at the body's origin."""
+    """The same accelerations of states reported at the body's origin."""
     c = system.body.center_of_mass
 
     def acceleration(state: State) -> Acceleration:

@@ -33,7 +33,7 @@ ENDS: dict[str, End] = {
     "the attitude turns by the step's last omega alone": turned_by_last_omega,
 }
 MOST_TRIES = 8
-MOST_STEPS = 5000  # causes are tried by stepping anew, and a step takes about 0.1 ms
+MOST_STEPS = 5000  # causes are tried by stepping again, and a step takes about 0.1 ms
 # A fitted run has come out of a search that ends within rounding, and bounds are of one run.
 SLACK = 4.0
 
@@ -96,7 +96,7 @@ def _asleep(reported: ReportedRun) -> str:
 
 
 def _held(reported: ReportedRun) -> str:
-    """The greatest |omega| that is told is a limit, and nearly the one that the steps keep to."""
+    """The greatest |omega| reported is a limit, and nearly the one that the steps keep to."""
     greatest = float(np.max(norm(reported.state.angular_velocity[1:])))
     if not 0.0 < greatest < float(np.max(norm(reported.own.angular_velocity[1:]))):
         return ""
@@ -110,7 +110,7 @@ def _held(reported: ReportedRun) -> str:
 
 
 def _clipped(reported: ReportedRun) -> str:
-    """The greatest component of omega that is told is a limit to each of them."""
+    """The greatest component of omega that is reported is a limit to each of them."""
     greatest = float(np.max(np.abs(reported.state.angular_velocity[1:])))
     if not 0.0 < greatest < float(np.max(np.abs(reported.own.angular_velocity[1:]))):
         return ""
@@ -147,9 +147,9 @@ def _other_end(reported: ReportedRun) -> str:
 
 
 def _search(reported: ReportedRun, stepped: Callable[[float], State], delta: float) -> float | None:
-    """The number with which a run comes to the told one, by Gauss-Newton; None if none does.
+    """The number with which a run comes to the reported one, by Gauss-Newton; None if none does.
 
-    delta: a small change of the number, of which one per cent is still told from rounding.
+    delta: a small change of the number, of which one per cent is still distinguished from rounding.
     """
     rate, found = reported.truth.yardstick.rate, 0.0
 
@@ -189,4 +189,4 @@ def _damped(reported: ReportedRun) -> str:
     found = _search(reported, stepped, 1e-6 * scale)
     if found is None or found == 0.0:
         return ""
-    return f"a damping of {found:.3g} N m s/rad acts in the steps that nobody asked for"
+    return f"a damping of {found:.3g} N m s/rad acts in the steps that was not requested"

@@ -94,7 +94,7 @@ def forward_rows(system: System, states: State, found: Acceleration, metric: str
 
 
 def reported_rows(system: System, states: State, omega_dot: Array) -> list[Row]:
-    """The omega-dot told along a run, against equation (8) at the very states that it tells.
+    """The omega-dot reported along a run, against equation (8) at the very states that it reports.
 
     States that are not finite, or whose squares overflow, have no omega-dot to be held against.
     """

@@ -1,4 +1,4 @@
-"""The states that every engine's equations are asked at."""
+"""The states that every engine's equations are evaluated at."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PATH_STATES = 200
 
 @dataclass(frozen=True)
 class EvaluationStates:
-    """States to put to an engine's equations: random ones, and ones along the exact course."""
+    """States to put to an engine's equations: random ones, and ones along the exact trajectory."""
 
     random: State
     path: State
@@ -31,7 +31,7 @@ class Probe:
 
 
 def evaluation_states_of(case: Case, truth: Truth, seed: int) -> EvaluationStates:
-    """The states that every engine is asked about; the same for all, and for every run."""
+    """The states that every engine is queried about; the same for all, and for every run."""
     own = [seed, *case.name.encode()]
     states = random_states(case, RANDOM_STATES, own)
     path = path_states(case, truth, PATH_STATES)

@@ -1,4 +1,4 @@
-"""Gate 4, invariants: energy and momenta against their exact course, over three horizons."""
+"""Gate 4, invariants: energy and momenta against their exact trajectory, over three horizons."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def rows(
     """The largest error up to a quarter, half and the whole of the run, relative, per channel.
 
     For a free body without load that is the drift of a constant; under load it is the distance
-    from the exact course.
+    from the exact trajectory.
     """
     found = []
     for channel in channels:

@@ -1,4 +1,4 @@
-"""What one run shows in each channel: its distance from the exact course and from its scheme's."""
+"""A run measured in each channel: its distance from the exact solution and from its scheme."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class MeasuredRun:
 
 @dataclass(frozen=True)
 class ExactSamples:
-    """The exact course at one sweep's samples, the growth of rounding along it, and its floor."""
+    """The exact trajectory at the samples of a sweep, its growth of rounding and its floor."""
 
     state: State
     growth: Array
@@ -56,7 +56,7 @@ class ExactSamples:
 def measure(
     yardstick: Yardstick, sweep: Sweep, exact: ExactSamples, state: State, own: Companion | None
 ) -> MeasuredRun:
-    """Distances of `state` from the exact course and, where there is one, the scheme's own."""
+    """Distances of `state` from the exact trajectory and, where there is one, the scheme's own."""
     growth = own.growth if own else exact.growth
     return MeasuredRun(
         sweep=sweep,
@@ -72,7 +72,7 @@ def measure(
 def _order(
     measured_runs: list[MeasuredRun], sizes: list[float], channel: str
 ) -> ObservedOrder | None:
-    """The order of some sizes, one a course, where they stand above rounding."""
+    """The order of some sizes, one a trajectory, where they stand above rounding."""
     bounds = [float(np.max(measured.round_off[channel])) for measured in measured_runs]
     steps = [measured.sweep.timestep for measured in measured_runs]
     clear = [(h, e) for h, e, b in zip(steps, sizes, bounds, strict=True) if e > b]

@@ -25,7 +25,7 @@ def _spectral_norm(matrix: Array) -> float:
 
 
 def body_rows(case: Case, body: Body) -> list[Row]:
-    """Mass, centre of mass and inertia read back, against what was asked.
+    """Mass, centre of mass and inertia read back, against what was requested.
 
     The inertia's bound counts an eigendecomposition and its inverse, at the size of the tensor.
     """

@@ -82,7 +82,8 @@ def best_shift(exact: Hermite, omega: Array) -> Shift:
 def _bend(exact: Hermite) -> float:
     """rad/s: the gap to the fourth times omega's fourth derivative, by differences of omega-dot.
 
-    The third difference is an average over three gaps; the fourth says how far it may be exceeded.
+    The third difference is an average over three gaps; the fourth states how far it may be
+    exceeded.
     """
     gap = float(exact.times[1] - exact.times[0])
     third = np.diff(exact.slopes[:-1], 3, axis=0)  # the last gap may be a shorter one
@@ -133,7 +134,7 @@ def _spoken(shift: float) -> str:
 def rows(truth: Truth, measured: MeasuredRun, state: State) -> list[Row]:
     """Time shift, what is left after it, and the flips' error; none where omega is constant.
 
-    Nothing is judged. The bounds are no limits: they say what rounding and the cubic between the
+    Nothing is judged. The bounds are no limits: they state what rounding and the cubic between the
     exact samples leave open.
     """
     place = np.searchsorted(truth.times, measured.sweep.times)

@@ -1,7 +1,7 @@
-"""Gate 5, trajectory: a run tells what the contract asks, whatever the scheme and its order.
+"""Gate 5, trajectory: a run reports what the contract asks, whatever the scheme and its order.
 
 It begins at the state that it was given, its quaternions are of unit length, and an engine that
-works in double precision tells numbers of double precision. No step size excuses any of these.
+works in double precision reports numbers of double precision. No step size excuses any of these.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ def rows(truth: Truth, measured: MeasuredRun, state: State, precision: str) -> l
 
 
 def omega_dot_rows(system: System, state: State, omega_dot: Array) -> list[Row]:
-    """The omega-dot told along a run, held to the equation's bound at the states it tells."""
+    """The omega-dot reported along a run, held to the equation's bound at the states it reports."""
     found = [replace(row, gate=GATE) for row in equation.reported_rows(system, state, omega_dot)]
-    note = "the omega-dot told along the run is not that of its states"
+    note = "the omega-dot reported along the run is not that of its states"
     return [replace(row, note=note) if row.verdict == "fail" else row for row in found]
 
 
@@ -71,7 +71,7 @@ def _length(sweep: Sweep, state: State) -> Row:
 
 
 def _is_single(state: State, exact: State) -> bool:
-    """Whether attitude or omega move, and every one told after the start is a single's number."""
+    """Whether attitude or omega move, and every value after the start is a single's number."""
     pairs = (
         (state.orientation[1:], exact.orientation[1:]),
         (state.angular_velocity[1:], exact.angular_velocity[1:]),

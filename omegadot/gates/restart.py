@@ -1,9 +1,9 @@
-"""Gate 3 for a scheme that nobody knows: a run begun anew at a sample of its own must go on alike.
+"""Gate 3 for a scheme that no one knows: a run restarted at a sample of its own must go on alike.
 
 The motion is that of an autonomous system, so a step depends on the state alone: not on the clock,
-nor on how the state was come by. A run from the state told at one sample then tells the same
-samples after it. It does not where a sample is not the state that was stepped (told late, or made
-up afterwards), where something acts for a while only, and where there is noise.
+nor on how the state was come by. A run from the state reported at one sample then reports the same
+samples after it. It does not where a sample is not the state that was stepped (reported late, or
+made up afterwards), where something acts for a while only, and where there is noise.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ def restart_of(sweep: Sweep) -> tuple[int, Sweep] | None:
 
 
 def refused(reason: str) -> Row:
-    """A run that cannot be begun anew where it has been."""
-    note = f"a run cannot be begun anew at its own sample: {reason}"
+    """A run that cannot be restarted where it has been."""
+    note = f"a run cannot be restarted at its own sample: {reason}"
     return Row(GATE, "omega", METRIC, float("inf"), "1", 1.0, "fail", note)
 
 
@@ -44,7 +44,8 @@ def row(
 ) -> Row:
     """The largest distance between the two runs, in parts of what rounding allows.
 
-    Each lies within the round-off bound of one course, so that they differ by twice that at most.
+    Each lies within the round-off bound of one trajectory, so that they differ by twice that at
+    most.
     """
     yardstick = truth.yardstick
     rest = State(*(values[sample:] for values in vars(state).values()))
@@ -65,7 +66,7 @@ def row(
     if not integrator.one_step:
         return Row(GATE, *reported, "info", "steps use earlier ones, as is declared")
     when = f"t = {sweep.times[sample]:.4g} s"
-    note = f"a run begun anew at its own sample at {when} goes elsewhere: samples are not the"
+    note = f"a run restarted at its own sample at {when} goes elsewhere: samples are not the"
     return Row(
         GATE, *reported, "fail", f"{note} state that is stepped, or steps depend on the past"
     )

@@ -139,9 +139,9 @@ def match_row(
     """The largest distance from the declared scheme, in parts of its round-off bound.
 
     An engine that declares a scheme and steps another fails, even where its error shrinks as it
-    should: what it says of itself is wrong. What is left may stand where it shrinks faster than
+    should: what it reports of itself is wrong. What is left may stand where it shrinks faster than
     the scheme's own error by an order at least: that is the same scheme, less finely computed.
-    One that declares none is told what it equals.
+    One that declares none is reported what it equals.
     """
     if measured.against_scheme:
         found = likeness(measured.against_scheme, measured.round_off)
@@ -193,5 +193,5 @@ def _declared_row(
     alike = like_schemes(truth, measured.sweep, state)
     others = dict.fromkeys(key.scheme for key, one in alike.items() if one.agree)
     instead = f"equals {' and '.join(others)}" if others else "steps otherwise"
-    text = f"declares {integrator.scheme}, but {instead}: {found.channel} parts from it"
+    text = f"declares {integrator.scheme}, but {instead}: {found.channel} diverges from it"
     return _row(found, "fail", f"{text} {found.share:.0e} times as far as rounding can")

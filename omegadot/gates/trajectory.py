@@ -19,7 +19,7 @@ def time_row(sweep: Sweep, times: Array) -> Row:
     """Whether the samples stand at the engine's own steps: n times the step, none missing."""
     expected = sweep.times
     if len(times) != len(expected):
-        note = f"{len(times)} samples came back, {len(expected)} were asked for"
+        note = f"{len(times)} samples came back, {len(expected)} were requested"
         return Row(GATE, "time", "sample_times", float("inf"), "s", 0.0, "fail", note)
     late = float(np.max(np.abs(times - expected)))
     return within(GATE, "time", "sample_times", late, "s", 2 * EPS * float(expected[-1]))

@@ -1,4 +1,4 @@
-"""The exact course of a case at its sample times, and the reference's companions."""
+"""The exact trajectory of a case at its sample times, and the reference's companions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from omegadot.reference_impl.system import Array, State
 class Truth:
     """The exact solution of one case.
 
-    source: "closed-form" or "series".  growth: (n,), of rounding along the exact course.
+    source: "closed-form" or "series".  growth: (n,), of rounding along the exact trajectory.
     floor: (n,) per channel, how far a perfect answer in double may be off: omega relative to the
     yardstick's rate, attitude in rad.
     """
@@ -47,6 +47,6 @@ class Truth:
 
 
 def path_states(case: Case, truth: Truth, most: int) -> State:
-    """At most `most` states spread evenly along the exact course, both ends among them."""
+    """At most `most` states spread evenly along the exact trajectory, both ends among them."""
     rows = np.unique(np.linspace(0, len(truth.times) - 1, most).round().astype(int))
     return State(*(values[rows] for values in vars(truth.state).values()))

@@ -1,4 +1,4 @@
-"""Gate 3 for a scheme that nobody knows: steps made ever smaller must follow the equation.
+"""Gate 3 for a scheme that no one knows: steps made ever smaller must follow the equation.
 
 One step from a state x leads to ``Phi_h(x)``, and for every consistent scheme, whatever its order,
 ``(Phi_h(x) - x) / h`` tends to the equation's rate at x. The limit is extrapolated from halved
@@ -29,7 +29,7 @@ from omegadot.reference_impl.system import Array, State, System
 
 GATE = "scheme"
 METRIC = "rate_at_no_step"
-PROBES = 6  # of the random states, and as many along the exact course
+PROBES = 6  # of the random states, and as many along the exact trajectory
 # Of five steps, what is left is about the longest's radians to the fifth power over 2^10.
 RADIANS = 2.0**-7
 # A scheme may take short turns by a shorter formula, which breaks the smoothness at one length of
@@ -131,7 +131,7 @@ def _limit(h: Array, change: Array, expected: Array, rounding: Array, reported: 
 
 
 def _common_factor(found: dict[str, Limit]) -> float | None:
-    """By which all rates are off alike: the step is that much longer than it says."""
+    """By which all rates are off alike: the step is that much longer than it states."""
     weights = [np.where(one.bound[0] > 0.0, 1.0 / one.bound[0], 0.0) for one in found.values()]
     pairs = list(zip(found.values(), weights, strict=True))
     rates = np.concatenate([np.ravel(one.found[0] * part[:, None]) for one, part in pairs])

@@ -1,7 +1,7 @@
 """Why an error may stand: it is rounding, it is the scheme's own, or it shrinks as declared.
 
 A drift of the declared scheme is not a fault. An error passes where it is
-*round-off* (within what rounding may grow to), *explained* (the engine's course equals, to
+*round-off* (within what rounding may grow to), *explained* (the engine's trajectory equals, to
 round-off growth, that of the reference stepping the declared scheme), or *consistent* (it shrinks
 with the step at the declared order). Otherwise it fails.
 """
@@ -29,7 +29,7 @@ class Finding:
 
     kind: "round-off", "explained", "consistent", "beyond" (there is nothing to judge by),
     "unresolved" or "unexplained".
-    note: the reason in words.
+    note: the reason as text.
     """
 
     kind: str
@@ -37,7 +37,7 @@ class Finding:
 
     @property
     def verdict(self) -> str:
-        """Whether the error may stand: pass, fail, or info where that cannot be said."""
+        """Whether the error may stand: pass, fail, or info where that cannot be reported."""
         if self.kind == "beyond":
             return "info"
         return "pass" if self.kind in ("round-off", "explained", "consistent") else "fail"
@@ -90,7 +90,8 @@ def observed_order(timesteps: Sequence[float], errors: Sequence[float]) -> Obser
 class Evidence:
     """What is known of one channel of one run.
 
-    error: (n,), the distance from the exact course.  round_off: (n,), what rounding may grow to.
+    error: (n,), the distance from the exact trajectory.  round_off: (n,), what rounding may grow
+    to.
     left: (n,), the distance from the reference stepping the declared scheme, where there is one.
     orders: the observed orders of `error` and, where there is one, of `left`.
     floor: (n,), how far a perfect answer may be off, where that is known.

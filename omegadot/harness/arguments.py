@@ -1,4 +1,4 @@
-"""Wrong usage, told in one sentence, and what is made of the words on the command line."""
+"""Wrong usage, reported in one sentence, and what is made of the arguments."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def engine_choices(wanted: Sequence[str], extra: Sequence[str] = ()) -> list[Eng
 
 
 def check_integrators(choice: EngineChoice, description: Description) -> None:
-    """Raise UsageError where an integrator is asked for that the engine does not have."""
+    """Raise UsageError where an integrator is requested that the engine does not have."""
     names = [integrator.name for integrator in description.integrators]
     for wanted in choice.integrators:
         if wanted not in names:

@@ -20,7 +20,7 @@ from omegadot.reference_impl.system import Array, State
 from omegadot.reports.record import schema
 from omegadot.workers.wire import state_from
 
-# Causes are tried by stepping anew, which takes seconds: a run asks about so many of an engine's
+# Causes are tried by stepping again, which takes seconds: a run asks about so many of an engine's
 # failed integrators, in the order of the scenarios. `omegadot check` asks about all.
 MOST_CAUSES = 12
 COLUMNS = {
@@ -58,7 +58,7 @@ def _gates(rows: list[Row]) -> dict[str, str]:
 
 
 class _Causes:
-    """Asks for the likeliest causes, as long as an engine has not had its share."""
+    """Requests the likeliest causes, as long as an engine has not had its share."""
 
     def __init__(self, causes_of: CausesOf, seed: int) -> None:
         self._causes_of, self._seed = causes_of, seed
@@ -177,7 +177,7 @@ def _metric(
 
 
 def _floors(case: JudgedCase, setup: str) -> list[dict[str, Any]]:
-    """The exact solution's resolvable floors, which stand there whatever engines were asked for."""
+    """The exact solution's resolvable floors, which stand there whatever engines were requested."""
     if case.truth is None:
         return []
     labels = _labels(case.case.name, "exact", setup, case.truth.source, None)
@@ -229,7 +229,7 @@ def _labels(
 
 
 def trajectories_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
-    """Every run's samples, and the exact course of every case beside them."""
+    """Every run's samples, and the exact trajectory of every case beside them."""
     frames = []
     for case in outcome.cases:
         name, truth = case.case.name, case.truth

@@ -1,7 +1,7 @@
 """Put one engine through one scenario: load, read back, equation, every integrator and step.
 
-A request that kills or hangs the worker costs its own task; the worker is started again and the
-next request goes on.
+A request that kills or is pivoted the worker costs its own task; the worker is started again and
+the next request goes on.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ class CaseResult:
     """What one engine answered for one scenario; answers that failed are kept as such.
 
     integrators: those that are run, as the engine declares them for this system.
-    first_steps, restarts: of integrators whose scheme is unknown, what was asked and what came:
-    steps from several states, and the sample from which a run was begun anew with the rest of it.
+    first_steps, restarts: of integrators whose scheme is unknown, what was requested and what came:
+    steps from several states, and the sample from which a run was restarted with the rest of it.
     """
 
     engine: str
@@ -52,7 +52,7 @@ class CaseResult:
         named = {
             "reading the model back": self.model,
             "forward dynamics": self.forward,
-            "forward dynamics along the course": self.path,
+            "forward dynamics along the trajectory": self.path,
             "inverse dynamics": self.inverse,
         }
         for name, answer in named.items():

@@ -97,7 +97,7 @@ def _why(findings: dict[str, Finding]) -> str:
 def _measured_runs(
     truth: Truth, integrator: Integrator, answers: dict[float, Answer], sweeps: list[Sweep]
 ) -> dict[float, MeasuredRun]:
-    """The runs of one integrator that can be measured: finite, with the samples asked for."""
+    """The runs of one integrator that can be measured: finite, with the samples requested."""
     measured_runs, key = {}, scheme_key(integrator, truth.yardstick.system)
     for sweep in sweeps:
         answer = answers[sweep.timestep]
@@ -113,7 +113,7 @@ def _measured_runs(
 
 
 def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
-    """A task without a course to measure: its outcome, and what can be said of its times."""
+    """A task without a trajectory to measure: its outcome, and the verdict on its times."""
     if not answer.ok:
         return JudgedRun(integrator, sweep, answer.outcome, answer.reason)
     rows = [trajectory.time_row(sweep, answer.result["time"])]

@@ -1,4 +1,4 @@
-"""What is asked of a run, what is on its way, and what comes of it."""
+"""What is measured of a run, what is on its way, and what comes of it."""
 
 from __future__ import annotations
 

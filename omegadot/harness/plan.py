@@ -9,7 +9,7 @@ from omegadot.adapters.protocol import Description, Integrator
 
 @dataclass(frozen=True)
 class EngineChoice:
-    """An engine asked for, and which of its integrators (all of them when empty)."""
+    """An engine requested, and which of its integrators (all of them when empty)."""
 
     name: str
     target: str
@@ -31,7 +31,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Engine:
-    """An engine that started: its choice, what it says of itself, what is run of it."""
+    """An engine that started: its choice, what it reports of itself, what is run of it."""
 
     choice: EngineChoice
     description: Description

@@ -179,7 +179,7 @@ class Runner:
         return Outcome(engines.started, engines.missing, judged, interrupted, engines.deaths())
 
     def _leftover(self, pending: PendingCase) -> JudgedCase:
-        """A case that the interruption caught: none of it is judged, and it says so."""
+        """A case that the interruption caught: none of it is judged, and it states so."""
         engines = [
             EngineCase(engine, CaseResult(engine.name, pending.case.name), [], [])
             for engine in self.engines.started

@@ -17,7 +17,7 @@ STEPS_TIMED = 64
 
 
 def case_truth(exact: Driver, case: Case) -> Truth | str:
-    """The exact course of a case, or the sentence that says why there is none."""
+    """The exact trajectory of a case, or the sentence that states why there is none."""
     times = case.sample_times
     fields = {"system": case.system, "initial": case.initial, "times": times}
     answer = exact.request(case, "solve", **fields)

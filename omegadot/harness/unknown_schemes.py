@@ -1,4 +1,4 @@
-"""What an integrator is asked beside its runs where no scheme is known that they should equal."""
+"""What an integrator is queried beside its runs where no scheme is known that they should equal."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def is_unknown(integrator: Integrator) -> bool:
 def probe_unknown_schemes(
     driver: Driver, case: Case, evaluation: EvaluationStates, result: CaseResult
 ) -> None:
-    """Have unknown schemes take first steps, and begin their runs anew, into `result`."""
+    """Have unknown schemes take first steps, and begin their runs again, into `result`."""
     for integrator in filter(is_unknown, result.integrators):
         runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
@@ -56,7 +56,7 @@ def _begin_anew(
 def rows_of_unknown(
     truth: Truth, system: System, integrator: Integrator, sweep: Sweep, result: CaseResult
 ) -> list[Row]:
-    """What these answers tell of one run; nothing where they were not asked for, or failed."""
+    """What these answers tell of one run; nothing where they were not requested, or failed."""
     found = []
     probe, steps = result.first_steps.get(integrator.name, (None, None))
     if probe is not None and steps is not None and steps.ok:

@@ -8,7 +8,7 @@ SHOWN = 60  # characters of a value that a sentence can carry
 
 
 class ScenarioError(ValueError):
-    """A scenario that cannot be run, told in one sentence.
+    """A scenario that cannot be run, reported in one sentence.
 
     file: the path as given, or the built-in's name.  key: dotted path such as
     ``body.part[1].radius`` (lists count from 0), or None where the file as a whole is at fault.

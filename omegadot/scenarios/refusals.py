@@ -24,7 +24,7 @@ TABLES: dict[str, type[BaseModel]] = {
 
 
 def scenario_error(file: str, error: ValidationError) -> ScenarioError:
-    """The fault to mend first: a wrong schema number, then unknown keys, then the rest in order.
+    """The fault to fix first: a wrong schema number, then unknown keys, then the rest in order.
 
     A mistyped key is also a missing one; naming the typing error helps more.
     """

@@ -66,5 +66,5 @@ def _parse(text: str, file: str) -> dict[str, Any]:
         reason = "brackets nested too deep"
     except ValueError as error:  # TOMLDecodeError, or an integer of thousands of digits
         reason = re.split(r"[\n;]", str(error))[0].rstrip(".")
-    advice = "mend it there, as toml.io describes the format"
+    advice = "correct it there, as toml.io describes the format"
     raise ScenarioError(file, None, f"not valid TOML ({printable(reason)})", advice) from None

@@ -1,4 +1,4 @@
-"""What a record says of the machine and the packages that made it."""
+"""What a record states of the machine and the packages that made it."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def package_versions() -> dict[str, str]:
 def memory_of_machine() -> int:
     """Bytes of memory that there are: the machine's, or those that its container may have.
 
-    Zero where the system does not tell.
+    Zero where the system does not report.
     """
     try:
         found = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
@@ -59,5 +59,5 @@ def memory_of_machine() -> int:
     try:
         with open("/sys/fs/cgroup/memory.max", encoding="ascii") as file:
             return min(found, int(file.read()))
-    except (OSError, ValueError):  # there is no such file, or it says "max"
+    except (OSError, ValueError):  # there is no such file, or it states "max"
         return found

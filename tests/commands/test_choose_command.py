@@ -137,7 +137,7 @@ def test_a_choice_beside_a_run_is_a_section_of_its_report(tmp_path: Path) -> Non
     for _ in range(2):
         page = (run / "report.html").read_text()
         assert 'href="#choice"' in page
-        assert "Asked: attitude error within 1e-3" in page
+        assert "Required: attitude error within 1e-3" in page
         omegadot("report", run, folder=tmp_path)
     for broken in ("[]", "{", '{"scenarios": [{}]}', "[" * 100_000):
         (run / "choice.json").write_text(broken)
@@ -190,7 +190,7 @@ def test_a_crash_is_told_from_a_miss(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "statement"),
     [
-        ([], "nothing is asked of the accuracy"),
+        ([], "nothing is required of the accuracy"),
         (["--attitude", "1"], "nothing to simulate"),
         (["t-handle", "--attitude", "1 degg"], "write deg"),
         (["t-handel", "--attitude", "1deg"], "t-handle"),

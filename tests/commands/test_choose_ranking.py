@@ -63,7 +63,7 @@ def test_spreads_follow_their_rounds() -> None:
     assert total([spread, spread.scaled(2.0)]).rounds == pytest.approx((3.0, 6.0, 12.0))
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells")
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux reports")
 def test_memory_is_that_of_a_process_with_numpy_in_it() -> None:
     found = peak_memory(os.getpid())
     assert found is not None

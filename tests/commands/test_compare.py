@@ -82,7 +82,7 @@ def run_of(tmp_path_factory):
 
 
 def compared(was: Path, now: Path) -> Any:
-    """What the command says to machines, and that its exit code says the same."""
+    """What the command states to machines, and that its exit code states the same."""
     message, code = compare_folders(was, now, "json")
     found = json.loads(message)
     assert code == (1 if found["regressed"] else 0)
@@ -164,7 +164,7 @@ def test_one_run_as_figures_and_as_a_comment(run_of, tmp_path: Path) -> None:
 
 
 def _damaged(folder: Path, whole: Path) -> dict[Path, str]:
-    """Folders that are no run, each with what must be said of it."""
+    """Folders that are no run, each with what must be reported of it."""
     cut, other = folder / "cut", folder / "other"
     for copy in (cut, other):
         shutil.copytree(whole, copy)

@@ -1,4 +1,4 @@
-"""An engine that dies, hangs, raises or diverges costs its own tasks and nothing else."""
+"""An engine that dies, is pivoted, raises or diverges costs its own tasks and nothing else."""
 
 import json
 import os
@@ -176,7 +176,7 @@ def test_a_worker_killed_from_outside_is_replaced(tmp_path: Path) -> None:
         text=True,
     )
     worker = wait_for_worker(process, "faulty.py")
-    time.sleep(5.0)  # by now it hangs in its first run
+    time.sleep(5.0)  # by now it is pivoted in its first run
     os.kill(worker, signal.SIGKILL)
     _, err = process.communicate(timeout=120)
     assert process.returncode == 3, err

@@ -1,4 +1,4 @@
-"""--detect finds the convention of a trace, says by how much, and never guesses."""
+"""--detect finds the convention of a trace, states by how much, and never guesses."""
 
 import shlex
 
@@ -106,7 +106,7 @@ def test_a_body_that_has_not_turned_yet_is_ambiguous(capsys, tmp_path):
     path = write_brick(tmp_path / "trace.csv", times, tumble(times), "%.6f")
     result = detected(capsys, path)
     assert result.code == 1
-    assert "too little to tell them apart" in result.out
+    assert "too little to distinguish them" in result.out
 
 
 def test_equal_rates_about_all_axes_are_ambiguous(capsys, tmp_path):

@@ -1,4 +1,4 @@
-"""Traces of the tumbling brick, made elsewhere: measured rightly, and told what is wrong."""
+"""Traces of the tumbling brick, made elsewhere: measured rightly, and reported what is wrong."""
 
 import numpy as np
 import polars as pl
@@ -155,7 +155,7 @@ def test_omega_alone_is_a_trace_and_the_rest_is_not_green(tmp_path, capsys):
     stored = pl.read_parquet(out / "trajectories.parquet")
     assert stored.filter(engine="gyro").get_column("qw").is_nan().all()
     assert np.array_equal(stored.filter(engine="exact").get_column("time"), TIMES)
-    # The folder is a record like any other, and its page says what the trace is.
+    # The folder is a record like any other, and its page states what the trace is.
     record = read_record(out)
     assert "gyro on nesc-checkcase-2 is off at most: omega by" in draw_page(record)
     (task,) = summarise(record).runs.elements()

@@ -72,7 +72,7 @@ def test_an_end_that_does_not_run_gives_way() -> None:
 @given(st.lists(st.sampled_from(["a", "b", "c", BROKEN]), min_size=2, max_size=24))
 @settings(derandomize=True, max_examples=200, deadline=None)
 def test_what_is_found_is_there(values: list[str]) -> None:
-    """Whatever the releases do, a step told of has two sides that differ and none between."""
+    """Whatever the releases do, a step reported of has two sides that differ and none between."""
     found = bisected(values)
     for before, after in steps(found):
         low, high = int(before[2:]), int(after[2:])

@@ -1,4 +1,4 @@
-"""Environments: whole or not there, kept, made anew where they must be, never the user's."""
+"""Environments: whole or not there, kept, made again where they must be, never the user's."""
 
 from __future__ import annotations
 
@@ -139,10 +139,10 @@ import re, sys
 words = sys.argv[1:]
 if words[:2] != ["pip", "compile"]:
     sys.exit("unexpected")
-asked = sys.stdin.read()
+requested = sys.stdin.read()
 there = [(1, 0), (1, 1), (1, 2), (2, 0)]
 number = lambda text: tuple(int(part) for part in text.split("."))
-for sign, text in re.findall(r"(>=|<=|!=)([0-9.]+)", asked):
+for sign, text in re.findall(r"(>=|<=|!=)([0-9.]+)", requested):
     keep = {">=": lambda v: v >= number(text), "<=": lambda v: v <= number(text),
             "!=": lambda v: v != number(text)}[sign]
     there = [version for version in there if keep(version)]

@@ -1,4 +1,4 @@
-"""What engines themselves do is measured past their adapters, and told in the same words."""
+"""What engines themselves do is measured past their adapters, and reported in the same words."""
 
 from __future__ import annotations
 

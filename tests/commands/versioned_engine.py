@@ -2,7 +2,7 @@
 
 Until 1.1 it steps Euler's scheme, until 1.3 a Runge-Kutta of order 2 in attitude, then one of
 order 4. From 1.2 on its velocities are in world axes, from 1.4 on it has a second integrator. 1.5
-dies as it starts, 1.6 cannot be imported, 1.7 dies when it is asked anything, and 1.8 declares
+dies as it starts, 1.6 cannot be imported, 1.7 dies when it is queried anything, and 1.8 declares
 what it does not do.
 """
 

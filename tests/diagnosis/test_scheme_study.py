@@ -104,7 +104,7 @@ OWN_DEFECT = {"frozen-torque-midpoint": 3, "body-axes-midpoint": 3}
 
 
 def test_each_reference_scheme_identifies_itself_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    # Following what is left says nothing here: it is the same computation.
+    # Following what is left reports nothing here: it is the same computation.
     monkeypatch.setattr(fingerprint, "FOLLOWING", ((0.02, 60, 20),))
     reference = ReferenceAdapter()
     for integrator in reference.description.integrators:
@@ -241,7 +241,7 @@ def test_an_order_is_not_seen_where_it_cannot_be() -> None:
     assert observe([]) == Observed("unresolved")
     assert observe(points(list(h**4)[:3])).kind == "unresolved"
     assert observe(points([1.0, 0.5, 0.1, 0.09, 0.01])).kind == "unresolved"
-    # What is below the floor says nothing, however regular it looks.
+    # What is below the floor reports nothing, however regular it looks.
     sunk = observe(points([*(h**4), 1e-16, 1e-16, 1e-16]))
     assert sunk.order == pytest.approx(4, abs=1e-9)
 

@@ -1,4 +1,4 @@
-"""What a run tells is held to the contract: its start, unit quaternions, doubles, omega-dot.
+"""What a run reports is held to the contract: its start, unit quaternions, doubles, omega-dot.
 
 What these tests catch: a bound that grows with the motion where it must not, a sample left out, an
 accusation of numbers that are singles by chance.
@@ -34,7 +34,7 @@ def prepared() -> Prepared:
 
 
 class Reported(ReferenceAdapter):
-    """The reference with one thing told otherwise."""
+    """The reference with one thing reported otherwise."""
 
     def reports_found(self, state: State) -> State:
         return state

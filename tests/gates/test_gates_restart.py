@@ -1,4 +1,4 @@
-"""A run begun anew: what rounding grows to is allowed, and no more.
+"""A run restarted: what rounding grows to is allowed, and no more.
 
 What these tests catch: a bound without the growth of rounding, which would accuse sound engines,
 and one that is not tightened where nothing grows.
@@ -44,7 +44,7 @@ def begun(prepared: Prepared) -> tuple[Sweep, State, int, State]:
 
 
 def reported(prepared: Prepared, off: float, integrator: Integrator = ONE_STEP) -> Row:
-    """What is said where omega's last sample is off by so many rad/s."""
+    """What is reported where omega's last sample is off by so many rad/s."""
     sweep, state, sample, anew = begun(prepared)
     w = anew.angular_velocity.copy()
     w[-1, 0] += off

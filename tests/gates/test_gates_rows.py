@@ -1,4 +1,4 @@
-"""What the gates of invariants and trajectory write of a course."""
+"""What the gates of invariants and trajectory write of a trajectory."""
 
 from dataclasses import is_dataclass
 from importlib import import_module
@@ -109,7 +109,7 @@ def test_a_bound_in_time_is_one_of_the_whole_run() -> None:
 def test_a_sample_too_few_or_too_many_fails(count: int) -> None:
     row = trajectory.time_row(Sweep(0.5, 2, 1), np.linspace(0.0, 1.0, count))
     assert (row.value, row.bound, row.verdict) == (np.inf, 0.0, "fail")
-    assert row.note == f"{count} samples came back, 3 were asked for"
+    assert row.note == f"{count} samples came back, 3 were requested"
     assert (row.gate, row.channel, row.metric, row.unit) == (
         "trajectory", "time", "sample_times", "s"
     )  # fmt: skip

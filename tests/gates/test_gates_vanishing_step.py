@@ -1,7 +1,7 @@
-"""Steps made ever smaller: where the states and steps come from, the limit, and what is said of it.
+"""Steps made ever smaller: where the states and steps come from, the limit, and its notes.
 
 What these tests catch: an extrapolant of the wrong level, whose difference from the best would tell
-nothing; steps that are long against the motion; a fault of one channel told as one of all.
+nothing; steps that are long against the motion; a fault of one channel reported as one of all.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The edges of the verdicts: which side of each bound an error falls on, and what is said of it."""
+"""The edges of the verdicts: which side of each bound an error falls on, and the note."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Right but late is told from wrong: shifts, what is left of them, flips."""
+"""Right but late is distinguished from wrong: shifts, what is left of them, flips."""
 
 from dataclasses import replace
 

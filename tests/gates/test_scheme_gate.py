@@ -48,7 +48,7 @@ def test_a_scheme_that_is_stepped_as_declared_passes(case, truth, scheme):
 
 
 def test_another_scheme_than_the_declared_one_fails_and_is_named(case, truth):
-    # Both are of order 1, so nothing but the scheme tells them apart.
+    # Both are of order 1, so nothing but the scheme distinguishes them.
     integrator = declared("own", "semi-implicit-euler")
     runs = judged(case, truth, integrator, steps="linearly-implicit-euler")
     assert gates(runs) == {"scheme": "fail", "trajectory": "pass"}

@@ -71,7 +71,7 @@ def answers_of(case: Case, adapter: Any, integrator: str) -> dict[float, Answer]
 
 
 def declared(name: str, scheme: str | None = None, order: int | None = None) -> Integrator:
-    """An integrator that says of itself what one likes."""
+    """An integrator that reports of itself what one likes."""
     orders = dict.fromkeys(SCHEMES["lie-rk4"].orders, order) if order else {}
     return Integrator(name, scheme, orders)
 

@@ -147,7 +147,7 @@ class TwoStep(OwnScheme):
 
 
 class TwoStepUntold(TwoStep):
-    """The same, and it says that a step depends on the state alone."""
+    """The same, and it states that a step depends on the state alone."""
 
     one_step = True
 
@@ -212,12 +212,12 @@ def test_a_run_that_cannot_be_begun_anew_fails(pool: Pool) -> None:
 
     prepared = pool.prepare(pool.having({"asymmetric"}, 1)[0])
     found = judge(pool, prepared, "own", OnlyFromTheStart(ReferenceAdapter()), (EULER,))
-    text = "a run cannot be begun anew at its own sample: ValueError: not from here"
+    text = "a run cannot be restarted at its own sample: ValueError: not from here"
     assert set(rows_of(found, "begun_anew")) == {text}
 
 
 def test_loads_are_no_time(pool: Pool) -> None:
-    """A body that is driven, damped and hung is autonomous too: begun anew, it goes on alike."""
+    """A body that is driven, damped and pivoted is autonomous too: restarted, it goes on alike."""
     for needs in ({"torque", "damping"}, {"pivot", "gravity"}):
         found = judged(pool, TwoStepUntold(), needs)
         assert rows_of(found, "begun_anew")

@@ -44,7 +44,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a property can be asked of. damped: with damping, which time reversal lacks."""
+    """What a property can be requested of. damped: with damping, which time reversal lacks."""
 
     pivoted: bool = True
     damped: bool = True
@@ -137,9 +137,10 @@ def trajectory_gap(
     expected: State,
     found: State,
 ) -> float:
-    """The distance of two courses of a motion over what rounding may grow to in both.
+    """The distance of two trajectories of a motion over what rounding may grow to in both.
 
-    The growth is that of the declared scheme along its own course; where none is declared, of RK4.
+    The growth is that of the declared scheme along its own trajectory; where none is declared, of
+    RK4.
     """
     system = motion.system
     times = timestep * np.arange(STEPS + 1)

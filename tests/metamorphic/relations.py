@@ -1,4 +1,4 @@
-"""Ways to tell of the same motion in other words, and what becomes of its accelerations."""
+"""Ways to report of the same motion in another form, and what becomes of its accelerations."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ StateMap = Callable[[State], State]
 
 @dataclass(frozen=True)
 class Retold:
-    """The motion in other words.
+    """The motion in another form.
 
     state and acceleration: what maps an answer about the first motion to one about this.
     time: what a duration is multiplied by.  drift: m/s, of the new frame.
@@ -44,7 +44,7 @@ def _on_pivot(system: System, reported: StateMap) -> StateMap:
 
 
 def rotated_world(motion: Motion, random: np.random.Generator) -> Retold:
-    """Another world frame: ``S R``, ``S x``, ``S g``; what is told in body axes stays."""
+    """Another world frame: ``S R``, ``S x``, ``S g``; what is reported in body axes stays."""
     turn = normalize(random.standard_normal(4))
     matrix = rotation_matrix(turn)
     load = replace(
@@ -71,7 +71,7 @@ def rotated_world(motion: Motion, random: np.random.Generator) -> Retold:
 
 
 def rotated_body(motion: Motion, random: np.random.Generator) -> Retold:
-    """Other body axes: ``R P^T``, ``P omega``, ``P I P^T``; what is told in the world stays."""
+    """Other body axes: ``R P^T``, ``P omega``, ``P I P^T``; what is reported in the world stays."""
     turn = normalize(random.standard_normal(4))
     matrix = rotation_matrix(turn)
     body, load = motion.system.body, motion.system.load

@@ -1,4 +1,4 @@
-"""The course of a motion does not depend on the words it is told in, step by step.
+"""The trajectory of a motion does not depend on the words it is reported in, step by step.
 
 Catches, over what the equation shows: an update of the attitude in the wrong frame (rotated world
 and body), a body put to sleep below so many rad/s (scaled units) or m/s (Galilean shift). The
@@ -68,7 +68,7 @@ NAMES = [f"{relation.__name__}-{fault.__name__}" for relation, _, fault in RELAT
 
 
 def gap(adapter: Adapter, relation, motion: Motion, integrator: str, seed: int) -> float:
-    """How far the retold motion's course is from the course, retold."""
+    """How far the retold motion's trajectory is from the trajectory, retold."""
     retold = relation(motion, np.random.default_rng(seed))
     step = timestep_of(motion)
     expected = retold.state(trajectory(adapter, motion, integrator, step))

@@ -1,6 +1,6 @@
 """The film of a motion without friction, run backwards, is a motion too.
 
-Catches friction that nobody asked for, a torque that is taken a step late, and a scheme that is
+Catches friction that was not requested, a torque that is taken a step late, and a scheme that is
 called symmetric and is not. The exact solution is reversible always, of the reference's schemes
 the implicit midpoint rule.
 """
@@ -39,7 +39,7 @@ def last(states: State) -> State:
 
 
 def exact_gap(motion: Motion, of: System | None = None) -> float:
-    """How far the exact course there and back ends from its start, over what doubles resolve.
+    """How far the exact trajectory there and back ends from its start, over what doubles resolve.
 
     Either way the answer is off by its floor, and what was off on the way there grows on the way
     back. of: the system that is solved instead of the motion's own.
@@ -78,7 +78,7 @@ def test_a_hidden_friction_does_not_come_back() -> None:
 
 
 def scheme_gap(motion: Motion, scheme: str) -> float:
-    """How far a scheme's course there and back ends from its start, over what rounding allows."""
+    """How far a scheme's trajectory there and back ends from its start, over rounding's bound."""
     reference, step = engine("reference"), timestep_of(motion)
     there = trajectory(reference, motion, scheme, step)
     start = reversed_state(last(there))

@@ -1,4 +1,4 @@
-"""Every built-in is what its title says: axes, spins, units and budgets."""
+"""Every built-in is what its title states: axes, spins, units and budgets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every fault is told in one sentence that names file, key and value, and writes nothing."""
+"""Every fault is reported in one sentence that names file, key and value, and writes nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Faults of a worker, one a class: each strikes where its docstring says and nowhere else.
+"""Faults of a worker, one a class: each strikes where its docstring states and nowhere else.
 
 Those over `Unwell` strike in the runs of its first scheme; its second scheme stays well.
 """
@@ -395,7 +395,7 @@ class HoldsTheLock(Faulty):
 
 
 class SleepsWithAChild(Faulty):
-    """It hangs, and so does a program that it started."""
+    """It is pivoted, and so does a program that it started."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         os.spawnlp(os.P_WAIT, "sleep", "sleep", "3600")
@@ -403,7 +403,7 @@ class SleepsWithAChild(Faulty):
 
 
 class SleepsWithADaemon(Faulty):
-    """It hangs, and a program that it started is in a session of its own."""
+    """It is pivoted, and a program that it started is in a session of its own."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         subprocess.Popen(["sleep", "3600"], start_new_session=True).wait()

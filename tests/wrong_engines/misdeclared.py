@@ -1,4 +1,4 @@
-"""Engines that step another scheme than they say, or one that nobody knows."""
+"""Engines that step another scheme than they say, or one that no one knows."""
 
 from __future__ import annotations
 

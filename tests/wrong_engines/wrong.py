@@ -83,7 +83,7 @@ class GyroscopicSlightlyOff(Gyroscopic):
 
 
 class OmegaDotInWorld(Wrong):
-    """omega-dot is right and told in the wrong axes."""
+    """omega-dot is right and reported in the wrong axes."""
 
     def forward_dynamics(self, states: State) -> Acceleration:
         found = super().forward_dynamics(states)
@@ -116,7 +116,7 @@ class GravityUpwards(Wrong):
 
 
 class SecretDamping(Wrong):
-    """1e-4 N m s/rad that nobody asked for, in the stepping only."""
+    """1e-4 N m s/rad that was not requested, in the stepping only."""
 
     def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
         return acceleration_of(replace(system, load=replace(system.load, damping=np.array(1e-4))))
@@ -126,7 +126,7 @@ class SecretDamping(Wrong):
 
 
 class StepSlightlyLong(Wrong):
-    """Steps are 0.1 % longer than it says."""
+    """Steps are 0.1 % longer than it states."""
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int

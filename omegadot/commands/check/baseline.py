@@ -1,8 +1,8 @@
 """Figures of an engine now, against those that were stored: what left its band.
 
 A band is rounding and nothing else. Two runs of one scheme each lie within the round-off bound R of
-its exact course, so that no distance from the truth differs by more than 2 R between them; to that
-comes half a unit of the last digit that is stored. Timings are no part of a baseline.
+its exact trajectory, so that no distance from the truth differs by more than 2 R between them; to
+that comes half a unit of the last digit that is stored. Timings are no part of a baseline.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from omegadot.gates.rows import Row
 from omegadot.harness.outcome import EngineCase
 from omegadot.reports.text.numbers import short
 
-# Those whose bound is one of rounding. One horizon says what the three do.
+# Those whose bound is one of rounding. One horizon states what the three do.
 OF_A_SCENARIO = {"model", "equation"}
 OF_A_RUN = {"error_max", "drift_full"}
 
@@ -76,7 +76,7 @@ def _figures(rows: Iterable[Row], scheme: str = "") -> Figures:
 
 
 def answered(found: EngineCase) -> bool:
-    """Whether an engine answered all that it was asked, if only by a refusal."""
+    """Whether an engine answered all that it was requested, if only by a refusal."""
     outcomes = {run.outcome for run in found.runs} - {"ok", "diverged", "unsupported"}
     return not outcomes and found.result.first_failure() is None
 

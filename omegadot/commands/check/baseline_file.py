@@ -134,5 +134,5 @@ def read_baseline(folder: Path, engine: str) -> Baseline | None:
     try:
         return from_text(path.read_text(encoding="utf-8"))
     except (ValueError, TypeError, KeyError, AttributeError) as problem:
-        message = f"{path}: not a baseline: {problem}; write it anew with --update-baseline."
+        message = f"{path}: not a baseline: {problem}; write it again with --update-baseline."
         raise UsageError(message) from None

@@ -24,7 +24,7 @@ Results = dict[Check, Result]
 
 
 def arguments_of(adapter: str, integrators: Sequence[str], names: Arguments) -> Arguments:
-    """The words of the command line, with ADAPTER taken for a name or for a class.
+    """The arguments of the command line, with ADAPTER taken for a name or for a class.
 
     Raises UsageError.
     """

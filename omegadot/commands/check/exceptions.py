@@ -35,7 +35,7 @@ class DeclaredException:
     source: str
 
     def matches(self, check: Check) -> bool:
-        """Whether it speaks of this check."""
+        """Whether it refers to this check."""
         return check.engine == self.engine and fnmatchcase(check.id, self.check)
 
 
@@ -105,7 +105,7 @@ def exceptions_of(
 
 
 def no_longer_fails(exception: DeclaredException) -> str:
-    """What is said of a declared exception whose check passes."""
+    """What is reported of a declared exception whose check passes."""
     return (
         f"passes, though {exception.source} declares that it fails ({exception.reason}): "
         "take the exception out, or narrow its pattern."
@@ -113,8 +113,8 @@ def no_longer_fails(exception: DeclaredException) -> str:
 
 
 def matches_nothing(exception: DeclaredException) -> str:
-    """What is said of a declared exception that speaks of no check."""
-    return f"{exception.source}: {exception.check!r} matches no check; mend it or take it out."
+    """What is reported of a declared exception that refers to no check."""
+    return f"{exception.source}: {exception.check!r} matches no check; correct it or remove it."
 
 
 def with_exceptions(

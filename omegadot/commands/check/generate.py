@@ -10,7 +10,7 @@ from omegadot.gates.case import Case
 
 GATES_OF_A_SCENARIO = ("model", "equation")
 GATES_OF_A_RUN = ("scheme", "invariants", "trajectory")
-# The exact solution is not stepped: beside the first two gates it has its invariants to show.
+# The exact solution is not stepped: next to the first two gates it has its invariants to show.
 GATES_OF_THE_EXACT = (*GATES_OF_A_SCENARIO, "invariants")
 
 

@@ -14,7 +14,7 @@ from omegadot.harness.judge import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
 from omegadot.workers.harness_end.process import Answer
 
-# What a gate is asked of an engine beside its runs.
+# The answers, besides runs, that a gate of a scenario judges.
 REQUESTED = {"model": ("model",), "equation": ("forward", "path", "inverse")}
 MEASURED = ("ok", "diverged")
 
@@ -78,8 +78,8 @@ def _judgements(
 
 
 def results_of(judged: JudgedCase, found: EngineCase, cause: Cause) -> dict[Check, Result]:
-    """The results of every check of one engine on one case; none without an exact course.
+    """The results of every check of one engine on one case; none without an exact trajectory.
 
-    cause: is asked only where a check fails; it says "" where it has no idea.
+    cause: called only where a check fails; "" where no cause is found.
     """
     return {} if judged.truth is None else dict(_judgements(judged, found, cause))

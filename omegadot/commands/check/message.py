@@ -1,4 +1,4 @@
-"""What a failing gate says: what is off, by how much, and against which bound."""
+"""What a failing gate states: what is off, by how much, and against which bound."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from omegadot.reports.text.numbers import listed, short
 # Their notes are the whole sentence, with the figures in it.
 SPOKEN_FOR = ("match", "observed_order", "sample_times")
 
-# Of these the note says it better than the figure, in parts of its bound, would.
+# For these the note is clearer than the figure, a fraction of its bound.
 SPOKEN_IN_PARTS = ("begun_anew", "rate_at_no_step", "start", "precision")
 
 
@@ -29,7 +29,7 @@ def _unit(row: Row) -> str:
 
 
 def sentence(row: Row) -> str:
-    """One failing row in words."""
+    """One failing row as text."""
     if row.metric in (*SPOKEN_FOR, *SPOKEN_IN_PARTS) and row.note:
         return f"{row.channel}: {row.note}"
     message = f"{row.channel}: {row.metric} is {short(row.value, 3)}{_unit(row)}"

@@ -17,7 +17,7 @@ ENGINE, VERDICT, MESSAGE = "engine", "verdict", "message"
 
 
 class CheckFailedError(Exception):
-    """A check failed, or the engine did not answer; the message says all there is to say."""
+    """A check failed, or the engine did not answer; the message is complete."""
 
 
 class ScenarioNode(pytest.Collector):
@@ -45,7 +45,7 @@ class CheckItem(pytest.Item):
         self.check, self.suite = check, suite
 
     def runtest(self) -> None:
-        """Ask for the result: the scenario is run when its first check is."""
+        """Request the result: the scenario is run when its first check is."""
         result = self.suite.result_of(self.check)
         # Properties travel with the report, also from another process, and stand in JUnit's file.
         found = ((ENGINE, self.check.engine), (VERDICT, result.verdict))
@@ -62,7 +62,7 @@ class CheckItem(pytest.Item):
             raise CheckFailedError(result.message)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """The message alone: where in the harness it was raised helps nobody."""
+        """The message alone: where in the harness it was raised helps no reader."""
         if isinstance(excinfo.value, CheckFailedError):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)

@@ -32,7 +32,7 @@ def _is_among(option: str, args: list[str]) -> bool:
 
 
 def _is_free(option: str, parser: pytest.Parser) -> bool:
-    """Whether nobody has taken an option: it is then unknown to the parser."""
+    """Whether no one has taken an option: it is then unknown to the parser."""
     try:
         return option in parser.parse_known_and_unknown_args([option, "0"])[1]
     except pytest.UsageError:  # somebody knows it, and does not like its value

@@ -48,7 +48,7 @@ def _is_typed(config: pytest.Config) -> bool:
 def _take_paths(config: pytest.Config) -> tuple[tuple[str, ...], bool]:
     """The checks named among the paths, and whether nothing besides checks is to be collected.
 
-    Checks stand alone where they were asked for on the command line and no path was.
+    Checks stand alone where they were requested on the command line and no path was.
     """
     named = tuple(arg for arg in config.args if arg.startswith(f"{ROOT}::"))
     config.args = [arg for arg in config.args if arg not in named]
@@ -60,7 +60,7 @@ def _take_paths(config: pytest.Config) -> tuple[tuple[str, ...], bool]:
 
 
 def start_session(config: pytest.Config) -> None:
-    """Select, start the engines, and register the session's door. Wrong usage ends pytest."""
+    """Select, start the engines, and register the session. Wrong usage ends pytest."""
     shared: dict[str, Any] = getattr(config, "workerinput", {})
     named, alone = _take_paths(config)
     if alone and getattr(config.option, "dist", "no") == "load":
@@ -104,7 +104,7 @@ class PytestSession:
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_configure_node(self, node: Any) -> None:
-        """Give what the engines said to a worker of xdist, so that all collect the same."""
+        """Give what the engines reported to a worker of xdist, so that all collect the same."""
         node.workerinput[SHARED] = self.suite.registry.to_json()
 
     @pytest.hookimpl(optionalhook=True)
@@ -139,7 +139,7 @@ class PytestSession:
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
-        """Say what was stored, and which engine was skipped throughout."""
+        """State what was stored, and which engine was skipped throughout."""
         if self.remarks:
             terminalreporter.section("omegadot")
             for remark in self.remarks:

@@ -1,4 +1,4 @@
-"""What the engines of a selection said when they were started."""
+"""What the engines of a selection reported when they were started."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class Registry:
         return cls(subjects, missing)
 
     def to_json(self) -> str:
-        """The roster as a string that another process makes it of again."""
+        """The registry as a string that another process makes it of again."""
         return json.dumps(asdict(self))
 
     @classmethod
     def from_json(cls, text: str) -> Registry:
-        """The roster that `to_json` wrote."""
+        """The registry that `to_json` wrote."""
         data: dict[str, Any] = json.loads(text)
         subjects = [
             Subject(s["name"], s["version"], tuple(s["integrators"]), tuple(s["declared"]))

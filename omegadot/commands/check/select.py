@@ -1,4 +1,4 @@
-"""What is to be checked: engines, scenarios, exceptions and a baseline, from a user's words."""
+"""What is checked: engines, scenarios, exceptions and a baseline, from the arguments."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from omegadot.harness.usage import UsageError
 
 @dataclass(frozen=True)
 class Arguments:
-    """What a user asks for, as it was typed."""
+    """The selection as it was typed."""
 
     engines: Sequence[str] = ()
     adapters: Sequence[str] = ()
@@ -32,7 +32,7 @@ class Arguments:
 
 @dataclass(frozen=True)
 class Selection:
-    """What to check. unknown: engines that must be there and that nobody has heard of."""
+    """What to check. unknown: engines that are required and unknown."""
 
     choices: list[EngineChoice]
     cases: list[Case]
@@ -67,13 +67,13 @@ def target_of(argument: str) -> str:
 
 
 def select(terms: Arguments) -> Selection:
-    """Make ready what was asked for. Raises UsageError and ScenarioError.
+    """Make ready what was requested. Raises UsageError and ScenarioError.
 
-    Without a word about engines these are all that are registered; otherwise those that are named,
-    given by an adapter, or required.
+    Without an argument about engines these are all that are registered; otherwise those that are
+    named, given by an adapter, or required.
     """
     if terms.update and terms.baseline is None:
-        raise UsageError("--update-baseline: say where the baselines are with --baseline DIR.")
+        raise UsageError("--update-baseline: give the folder of the baselines with --baseline DIR.")
     adapters = [target_of(argument) for argument in terms.adapters]
     known = {**registered(), **adapters_named(adapters)}
     unknown = tuple(name for name in terms.required if name not in known)

@@ -25,10 +25,10 @@ SEED = 0
 
 
 class Suite:
-    """The checks of a selection and their results; each scenario is run once, when first asked.
+    """The checks of a selection and their results; each scenario is run once, when first requested.
 
-    roster: what the engines said when they started; given where somebody else has started them
-    before, so that all who share the work have the same checks.
+    registry: what the engines reported when they started; given where somebody else has started
+    them before, so that all who share the work have the same checks.
     """
 
     def __init__(self, selection: Selection, registry: Registry | None = None) -> None:
@@ -61,7 +61,7 @@ class Suite:
         return Registry.of(runner.engines)
 
     def finish(self) -> None:
-        """End the workers; they are started again if another result is asked for."""
+        """End the workers; they are started again if another result is requested."""
         if self._runner is not None:
             self._runner.engines.finish()
             self._runner = None
@@ -85,7 +85,7 @@ class Suite:
         return {**self.registry.missing, **unknown}
 
     def _unmatched_exceptions(self) -> dict[str, list[str]]:
-        """What is said of exceptions that match no check, by engine."""
+        """What is reported of exceptions that match no check, by engine."""
         found = {}
         for subject in self.registry.subjects:
             stored = self._stored.get(subject.name)
@@ -119,13 +119,13 @@ class Suite:
         try:
             return self._runner.run_case(case)
         except BaseException:
-            self._runner.engines.stop()  # nobody waits for what they are busy with
+            self._runner.engines.stop()  # no one waits for what they are busy with
             raise
 
     def _run(self, case: Case) -> None:
         """Run one scenario on every engine and keep what its checks say, not the trajectories."""
         with warnings.catch_warnings():
-            # An engine that diverges overflows on its way; the gates say so.
+            # An engine that diverges overflows on its way; the gates state so.
             warnings.simplefilter("ignore", RuntimeWarning)
             judged = self._judge(case)
             for found in judged.engines:

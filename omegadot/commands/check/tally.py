@@ -25,7 +25,7 @@ class Tally:
             self.reasons.setdefault(engine, message)
 
     def only_skipped(self, named: Iterable[str]) -> list[str]:
-        """A sentence for each engine asked for by name of which every check was skipped."""
+        """A sentence for each engine requested by name of which every check was skipped."""
         return [
             f"{engine}: all of its {times(sum(self.verdicts[engine].values()), 'check')} "
             f"{'was' if sum(self.verdicts[engine].values()) == 1 else 'were'} skipped, and a skip "

@@ -1,4 +1,4 @@
-"""Exceptions that speak of no check at all, not even of one that a narrowed run leaves out."""
+"""Exceptions that refer to no check at all, not even of one that a narrowed run leaves out."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine
 from omegadot.workers.wire import state_from
 
-LARGEST_TURN = math.pi  # rad a step; beyond half a turn attitudes cannot be told apart
+LARGEST_TURN = math.pi  # rad a step; beyond half a turn attitudes cannot be distinguished
 FEWEST_STEPS = 2
 UNDECLARED = 2.0  # the order to begin with where none is declared
 MOST_RECHECKS = 8
@@ -57,7 +57,7 @@ class Candidate:
         return f"{self.engine.name}:{self.integrator.name}"
 
     def declared_order(self, limits: Mapping[str, float]) -> float:
-        """The lowest order that is declared in the channels asked for."""
+        """The lowest order that is declared in the channels requested."""
         orders = self.integrator.orders
         named = {"attitude": "attitude", "energy-drift": "energy"}
         named |= {"momentum-drift": "angular_momentum", "linear-momentum-drift": "linear_momentum"}

@@ -36,7 +36,7 @@ class CaseDocument:
         return None if spread is None else spread.scaled(steps)
 
     def _fast_enough(self, candidate: Candidate, trial: Trial) -> bool:
-        """Whether the median speed meets what is asked for, if anything is."""
+        """Whether the median speed meets what is requested, if anything is."""
         least, seconds = self._wanted.real_time_factor, self._seconds(candidate, trial.steps)
         if seconds is None:
             return False

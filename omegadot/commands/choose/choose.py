@@ -37,7 +37,7 @@ BROKEN = ("crashed", "timeout", "raised")
 
 @dataclass(frozen=True)
 class Arguments:
-    """What was written on the command line. asked: requirements by name, None or empty if not."""
+    """The arguments. requested: requirements by name, None or empty where not given."""
 
     scenarios: Sequence[str] = ()
     body: str | None = None

@@ -1,4 +1,4 @@
-"""What can be told of an engine before it steps: precision, features, licence, Python."""
+"""What can be reported of an engine before it steps: precision, features, licence, Python."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _required(engine: str) -> str | None:
 
 
 def _python_refused(engine: str, python: str) -> str:
-    """The clause that says the package refuses this Python; empty where it does not."""
+    """The clause that states the package refuses this Python; empty where it does not."""
     required = _required(engine)
     if required is None or python == _running():
         return ""

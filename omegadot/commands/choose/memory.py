@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def peak_memory(pid: int | None) -> int | None:
-    """Bytes that a living process had in memory at its peak; None where the system does not tell.
+    """Bytes that a living process had in memory at its peak; None where the system does not report.
 
     It is Linux's VmHWM: Python, NumPy and the engine's libraries are in it.
     """

@@ -12,12 +12,12 @@ from omegadot.harness.usage import UsageError
 from omegadot.scenarios import Scenario, scenario_of
 from omegadot.scenarios.links import body_of_word
 
-STEPS_TO_BEGIN = (500, 1000, 2000)  # a horizon, where no scenario says which steps are usual
+STEPS_TO_BEGIN = (500, 1000, 2000)  # a horizon, where no scenario states which steps are usual
 
 
 @dataclass(frozen=True)
 class Motion:
-    """The words of the command line that say what moves and how.
+    """The arguments of the command line that state what moves and how.
 
     body: ``FILE#LINK`` or a TOML file.  duration: s, over the scenarios' own.
     """

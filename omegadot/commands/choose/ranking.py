@@ -1,4 +1,4 @@
-"""Who is cheaper than whom, who is not told apart, and who is beaten by nobody in everything."""
+"""Candidates by cost: ranks, ties within the spread of the timing, and the Pareto front."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Key = TypeVar("Key", bound=Hashable)
 
 @dataclass(frozen=True)
 class Place(Generic[Key]):
-    """rank: 1 for the cheapest; those that cannot be told from a rank's first share it."""
+    """rank: 1 for the cheapest; those that cannot be distinguished from a rank's first share it."""
 
     key: Key
     rank: int

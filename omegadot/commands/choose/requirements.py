@@ -1,4 +1,4 @@
-"""What is asked of an engine: how exact, how fast, and what it must be."""
+"""What is required of an engine: how exact, how fast, and which properties."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ PRECISIONS: dict[str, Precision] = {
 class Requirements:
     """limits: the greatest error by requirement, SI.  duration: s, None for the scenario's own.
 
-    asked: every limit as it was written.  licences: those allowed, any when empty.
+    requested: every limit as it was written.  licences: those allowed, any when empty.
     """
 
     limits: dict[str, float]
@@ -91,7 +91,7 @@ def _licences(value: object, where: str) -> tuple[str, ...]:
 def requirements_of(given: Mapping[str, Any], places: Mapping[str, str]) -> Requirements:
     """The requirements of keys and values as they were written.
 
-    places: where each key stands, for errors.  Raises UsageError, also where none asks for an
+    places: where each key stands, for errors.  Raises UsageError, also where none requests an
     accuracy: without one every step is good enough, and the largest is no answer.
     """
     limits, requested = {}, {}

@@ -29,12 +29,12 @@ CHANNELS = {
 SAMPLES_A_TURN = 24
 FEWEST_SAMPLES, MOST_SAMPLES = 500, 4000
 DENSEST = {"closed-form": 40_000, "series": 8_000}
-KEPT = 24  # exact courses that are kept for the next engine that takes the same steps
+KEPT = 24  # exact trajectories that are kept for the next engine that takes the same steps
 Solve = Callable[[Array], Answer]
 
 
 class NoTruthError(Exception):
-    """There is no exact motion to measure by; the message says why."""
+    """There is no exact motion to measure by; the message states why."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Exact:
 
 
 class Ruler:
-    """Measures one case's runs in the channels that are asked for.
+    """Measures one case's runs in the channels that are requested.
 
     solve: puts times to the exact solution. Raises NoTruthError where it does not answer.
     """

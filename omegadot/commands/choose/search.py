@@ -1,6 +1,6 @@
 """The largest step that meets the limits, sought over whole numbers of steps a horizon.
 
-Observed orders say where to look next; only runs decide. With `steps` counting the steps of the
+Observed orders state where to look next; only runs decide. With `steps` counting the steps of the
 horizon, more of them are a smaller step. An error need not rise with the step, so what is found is
 the largest step of which this holds: it passes, every smaller one that was tried passes, and the
 next larger one that was tried fails.
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from omegadot.commands.choose.trial import Trial
 
 EDGE = 1.05  # how far apart a passing step and a failing larger one may be left
-ASIDE = 1.015  # how far beside the edge that the order predicts to look
+ASIDE = 1.015  # how far next to the edge that the order predicts to look
 LEAP = 32.0  # the order of two coarse runs is not trusted any further
 BLIND = 4.0  # the leap where no order shows
 WORTH = 1.25  # how much finer a last run must be that shows the nearest an integrator comes
@@ -90,7 +90,7 @@ def _outward(trials: Trials, limits: Mapping[str, float], known: Trial, declared
 
 
 def _inward(edge: tuple[Trial, Trial], limits: Mapping[str, float], blindly: bool) -> int:
-    """Steps between a failing and a passing run: beside the predicted edge, or in the middle."""
+    """Steps between a failing and a passing run: next to the predicted edge, or in the middle."""
     failing, passing = edge
     order = order_between(failing, passing, limits)
     if blindly or order is None:
@@ -143,7 +143,7 @@ def largest_step(
 def confirmed(
     trials: Trials, evaluate: Evaluate, limits: Mapping[str, float], among: Range, declared: float
 ) -> Edge:
-    """As `largest_step`, and then runs beside the edge that could prove it wrong, until none does.
+    """As `largest_step`, and then runs next to the edge that could prove it wrong, until none does.
 
     A step of a tenth more is tried, and steps of a tenth and a third less.
     """

@@ -65,7 +65,7 @@ def missed_rows(trial: Trial | None, limits: dict[str, float]) -> list[Row]:
 
 
 def predicted_row(candidate: Candidate, limits: dict[str, float]) -> Row | None:
-    """Where the order says the limits would be met: a guess, not a verdict.
+    """Where the order states the limits would be met: a guess, not a verdict.
 
     order: that of the two finest runs, or the declared one where there is but one.  seconds: what
     one such run would take. It lies beyond the search's budget.

@@ -1,4 +1,4 @@
-"""``omegadot engines``: what is installed, and what each engine says of itself."""
+"""``omegadot engines``: what is installed, and what each engine reports of itself."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _print_entry(entry: dict[str, Any]) -> None:
 
 
 def _integrator_line(integrator: dict[str, Any]) -> str:
-    """Its name, the scheme that it is declared to equal, and its order, told once if it is one."""
+    """Its name, its declared scheme and its order, printed once where all channels share it."""
     orders, scheme = integrator["orders"], integrator["scheme"]
     if not orders:
         return f"{integrator['name']}: {integrator['note']}"

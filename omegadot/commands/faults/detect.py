@@ -20,7 +20,7 @@ GATES = ("model", "equation", "scheme", "invariants", "trajectory")
 
 @dataclass(frozen=True)
 class Judgement:
-    """failed: the gates that fail.  broken: what could not be asked at all, in words."""
+    """failed: the gates that fail.  broken: what could not be measured at all, as text."""
 
     failed: frozenset[str]
     broken: str

@@ -25,13 +25,13 @@ class Spoiled:
 
     @property
     def description(self) -> Description:
-        """The sound engine's description, under a name that tells the fault."""
+        """The sound engine's description, under a name with the fault in it."""
         sound = self.inner.description
         return replace(sound, name=f"{sound.name}+{type(self).__name__}")
 
     @property
     def system(self) -> System:
-        """The system as it was asked for. Raises RuntimeError before `load`."""
+        """The system as requested. Raises RuntimeError before `load`."""
         if self._system is None:
             raise RuntimeError("no system is loaded; call load first")
         return self._system
@@ -45,11 +45,11 @@ class Spoiled:
         return state
 
     def read_back(self, state: State) -> State:
-        """What is told instead of the engine's present state."""
+        """What is reported instead of the engine's present state."""
         return state
 
     def logged(self, trajectory: Trajectory) -> Trajectory:
-        """What is told instead of a run."""
+        """What is reported instead of a run."""
         return trajectory
 
     def load(self, system: System) -> None:
@@ -109,7 +109,7 @@ Class = TypeVar("Class", bound=type[Spoiled])
 
 
 def fault(kind: Kind, gates: str, needs: str = "") -> Callable[[Class], Class]:
-    """Enter a class among the faults; its docstring is the sentence. Words are set apart by blanks.
+    """Enter a class among the faults; its docstring is the sentence. Names are separated by blanks.
 
     Raises ValueError where the docstring is missing or a name comes twice.
     """

@@ -1,4 +1,4 @@
-"""The detection matrix in words: tables for the terminal and the page, plain values for JSON."""
+"""The detection matrix as text: tables for the terminal and the page, plain values for JSON."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HEADS = (
 
 @dataclass(frozen=True)
 class Settings:
-    """engines, bodies and seed as they were asked for."""
+    """engines, bodies and seed as they were requested."""
 
     engines: tuple[str, ...]
     bodies: int
@@ -38,7 +38,7 @@ class Settings:
 
 
 def share(value: float | None) -> str:
-    """A share in per cent; a dash where there is none to tell."""
+    """A share in per cent; a dash where there is none to report."""
     return "–" if value is None else f"{100 * value:.0f}"
 
 
@@ -125,9 +125,9 @@ This page is the output of `{command}`.
 **How to read it.** Every fault is put into a sound engine, and the engine through the gates on
 {bodies} random bodies that have what the fault needs to show at all: masses and rates over two
 decades, sizes over one, tensors in any axes, centres of mass off the origin or on it, free, driven,
-damped and hung. A number is the share of these bodies, in per cent, on which a gate fails;
+damped and pivoted. A number is the share of these bodies, in per cent, on which a gate fails;
 *any gate* is what decides. What a finer step could still decide is not counted. *Cause named* is
-the share on which `omegadot` says in words what is wrong, and is right. *No scheme* is *any gate*
+the share on which `omegadot` states as text what is wrong, and is right. *No scheme* is *any gate*
 again, of the same engine with integrators that declare their orders only, so that there is no run
 of the reference to hold them against; a fault that makes another scheme of the same order is none
 then (`PositionByFirstVelocity` of an engine of order 1). Each engine runs with one integrator of
@@ -135,8 +135,9 @@ order 1 and, where it has one, one of order 4.
 
 **The published checks** beside them are tests that engines ship with, put to the same faulty
 engines as they stand: the same body, rates, step, length and bounds, from {bodies} random
-attitudes. A dash says that the check's scenarios, or the engine's integrators, lack what the fault
-needs. The facts of Drake's check were read in its repository (`free_body.h` beside the test gives
+attitudes. A dash states that the check's scenarios, or the engine's integrators, lack what the
+fault
+needs. The facts of Drake's check were read in its repository (`free_body.h` next to the test gives
 the moments); its own integrator is of order 3 with error control and integrates from one attitude,
 and here one of order 4 takes its largest step.
 """

@@ -22,7 +22,7 @@ MOST_DRAWN = 1000  # for each case that is wanted: rarer features are as good as
 
 @dataclass(frozen=True)
 class Prepared:
-    """A case with its features, its exact course and the states that engines are asked at."""
+    """A case with its features, its exact trajectory and its evaluation states."""
 
     case: Case
     features: frozenset[str]
@@ -47,7 +47,7 @@ class Pool:
         return self._drawn[index]
 
     def prepare(self, index: int) -> Prepared:
-        """The case of this number, solved. Raises RuntimeError where it has no exact course."""
+        """The case of this number, solved. Raises RuntimeError where it has no exact trajectory."""
         if index not in self._prepared:
             case, features = self._draw(index)
             truth = case_truth(self._exact, case)

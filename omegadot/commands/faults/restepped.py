@@ -18,7 +18,7 @@ class Restepped(Spoiled):
     """
 
     def sound_acceleration(self) -> AccelerationOf:
-        """The engine's forward dynamics; the reference's without forming its constants anew."""
+        """The engine's forward dynamics; the reference's without forming its constants again."""
         if isinstance(self.inner, ReferenceAdapter):
             return acceleration_of(self.inner.system)
         return on_rows(self.inner.forward_dynamics)
@@ -47,7 +47,7 @@ class Restepped(Spoiled):
 
 
 class Accelerated(Restepped):
-    """A fault in the dynamics: both what is told of the acceleration and what is stepped."""
+    """A fault in the dynamics: both what is reported of the acceleration and what is stepped."""
 
     def changed(self, state: State, sound: Acceleration) -> Acceleration:
         """The wrong acceleration in place of a sound one."""

@@ -1,4 +1,4 @@
-"""``omegadot report``: a stored run drawn again, as a page, as figures, or in words; or two."""
+"""``omegadot report``: a stored run drawn again, as a page, as figures, or as text; or two."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def report_of(folders: list[Path], out: Path | None, figures: Path | None, markd
 
 
 def redraw(folder: Path, out: Path | None = None) -> Path:
-    """Draw the page anew, into the run's folder or where `out` says. Raises RecordError.
+    """Draw the page again, into the run's folder or where `out` states. Raises RecordError.
 
     A choice of engine that was written into the run's folder is a section of it.
     """

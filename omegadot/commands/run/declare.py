@@ -27,14 +27,14 @@ def _declared(row: Row, exception: DeclaredException) -> Row:
 
 
 class _Ledger:
-    """Exceptions as they are used up: which hold, and which speak of a check that passes."""
+    """Exceptions as they are used up: which hold, and which refer to a check that passes."""
 
     def __init__(self, exceptions: Iterable[DeclaredException]) -> None:
         self.exceptions = list(exceptions)
         self.passing: dict[DeclaredException, list[str]] = {}
 
     def rows(self, check: Check, rows: Sequence[Row]) -> list[Row]:
-        """The rows of one check, its failures declared where an exception speaks of it."""
+        """The rows of one check, its failures declared where an exception refers to it."""
         exception = next((e for e in self.exceptions if e.matches(check)), None)
         if exception is None:
             return list(rows)
@@ -74,7 +74,7 @@ class _Ledger:
 def with_declared(
     outcome: Outcome, exceptions: Sequence[DeclaredException], cases: Sequence[Case]
 ) -> tuple[Outcome, Stale]:
-    """The outcome with declared failures, and every exception that no longer holds, with why.
+    """The outcome with declared failures, and the exceptions that no longer hold, with the reason.
 
     An exception no longer holds where a check of its own passes, or where it matches none.
     """

@@ -120,7 +120,7 @@ def exit_code(run: dict[str, Any], choices: Sequence[EngineChoice]) -> int:
     """0 every gate holds, 1 a gate fails or a declared exception does not hold any more, 3 an
     engine failed to answer or to start.
 
-    An engine that is not installed counts only where it was asked for by name.
+    An engine that is not installed counts only where it was requested by name.
     """
     required = {choice.name for choice in choices if choice.required}
     tasks = run["tasks"]
@@ -145,7 +145,7 @@ def run_and_write(
     command: list[str],
     exceptions: Sequence[DeclaredException] = (),
 ) -> tuple[Record, int]:
-    """Run, write the record with its page, and say how it went.
+    """Run, write the record with its page, and state how it went.
 
     exceptions: known failures, of engines that are set up for physics.
     """

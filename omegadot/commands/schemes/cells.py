@@ -17,7 +17,7 @@ def answered(integrator: Record) -> dict[str, Any]:
 
 
 def kinds_text(kinds: list[str]) -> str:
-    """Kinds in words; a pair in full goes by the name of its first."""
+    """Kinds as text; a pair in full goes by the name of its first."""
     second = {pair[1] for pair in PAIRS if set(pair) <= set(kinds)}
     return ", ".join(kind for kind in kinds if kind not in second)
 

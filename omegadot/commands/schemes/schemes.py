@@ -75,13 +75,13 @@ def study_all(choices: Sequence[EngineChoice], pythons: dict[str, str]) -> list[
 
 @contextmanager
 def _status() -> Iterator[None]:
-    """Say that it is at work on a terminal, nothing where standard error is piped."""
+    """State that it is at work on a terminal, nothing where standard error is piped."""
     if not sys.stderr.isatty():
         yield
         return
     from rich.console import Console
 
-    with Console(stderr=True).status("stepping the reference's schemes beside the engines"):
+    with Console(stderr=True).status("stepping the reference's schemes next to the engines"):
         yield
 
 

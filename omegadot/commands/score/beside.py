@@ -1,4 +1,4 @@
-"""The exact course at a trace's own times, whatever these are."""
+"""The exact trajectory at a trace's own times, whatever these are."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def exact_trajectory(system: System, initial: State) -> ExactTrajectory:
 
 
 def _spread(times: Array, known: Array, values: Array) -> Array:
-    """Values at some of the times, told at all: the greater of both neighbours."""
+    """Values at some of the times, reported at all: the greater of both neighbours."""
     right = np.clip(np.searchsorted(known, times), 1, len(known) - 1)
     return np.asarray(np.maximum(values[right - 1], values[right]))
 

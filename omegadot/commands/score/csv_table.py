@@ -107,7 +107,7 @@ def _checked(
                 row.append("")
                 continue
             raise TraceError(
-                f"{file}: line {line} has {len(row)} columns, {width} were expected; mend or "
+                f"{file}: line {line} has {len(row)} columns, {width} were expected; correct or "
                 "remove it."
             )
     if len(rows) > MOST_SAMPLES:

@@ -20,8 +20,8 @@ def flips_of(
 ) -> list[Row]:
     """The largest error of a flip's time; none without omega, or where nothing flips.
 
-    Both courses are interpolated alike between the trace's samples. What that leaves open is the
-    cubic's own error, found half-way between the samples on the exact course.
+    Both trajectories are interpolated alike between the trace's samples. What that leaves open is
+    the cubic's own error, found half-way between the samples on the exact trajectory.
     """
     if trace.angular_velocity is None or len(trace.times) < 3:
         return []

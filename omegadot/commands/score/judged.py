@@ -1,4 +1,4 @@
-"""A trace judged: everything that is found of it, before it is told."""
+"""A trace judged: everything that is found of it, before it is reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a trace is from the exact course, in every channel that it says something about."""
+"""How far a trace is from the exact trajectory, in every channel that it states something about."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from omegadot.reference_impl.system import Array, State
 
 @dataclass(frozen=True)
 class Measured:
-    """A trace measured. state: with the exact course's values where the trace gives none.
+    """A trace measured. state: with the exact trajectory's values where the trace gives none.
 
     error: (n,) by channel, of those given.  absent: why the others are not.  remarks: how a channel
     that only a part of the trace bears on was measured.
@@ -66,7 +66,7 @@ def absent_channels(trace: Trace, truth: Truth) -> dict[str, str]:
 
 
 def measure_trace(trace: Trace, truth: Truth) -> Measured:
-    """The distances from the exact course."""
+    """The distances from the exact trajectory."""
     absent, exact = absent_channels(trace, truth), truth.state
     state = filled(trace, exact)
     error = {c: distance(truth, trace, c, state, exact) for c in CHANNELS if c not in absent}

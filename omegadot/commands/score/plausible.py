@@ -1,4 +1,4 @@
-"""Units that were declared wrongly, told from the numbers."""
+"""Units that were declared wrongly, recognised by the numbers."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ WIDTH_WHEN_PIPED = 200
 
 
 def print_score(found: Judged, rows: list[Row], name: str, console: Console) -> None:
-    """The table of channels, then what else must be said."""
+    """The table of channels, then what else must be reported."""
     truth, table = found.truth, found.reading.table
     first, last = found.trace.times[0], found.trace.times[-1]
     console.print(
@@ -55,7 +55,7 @@ def _table(found: Judged) -> Table:
 
 
 def machine_readable(found: Judged, rows: list[Row], name: str) -> dict[str, Any]:
-    """What the text says, as numbers. SI units; omega in rad/s."""
+    """What the text states, as numbers. SI units; omega in rad/s."""
     rate, channels = found.truth.yardstick.rate, {}
     for channel, error in found.measured.error.items():
         factor, judgement = (rate if channel == "omega" else 1.0), found.judgement[channel]

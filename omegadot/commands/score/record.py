@@ -58,7 +58,7 @@ def _alone(found: Judged) -> Outcome:
 
 
 def version_of(found: Judged) -> str:
-    """The beginning of the file's SHA-256: traces of one name are told apart by it."""
+    """The beginning of the file's SHA-256: traces of one name are distinguished by it."""
     return hashlib.sha256(Path(found.reading.table.file).read_bytes()).hexdigest()[:8]
 
 

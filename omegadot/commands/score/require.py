@@ -1,4 +1,4 @@
-"""How good a trace must be, where somebody says so."""
+"""How good a trace must be, where somebody states so."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def requirements_of(arguments: Mapping[str, str | None]) -> list[Requirement]:
 def requirement_rows(
     wanted: list[Requirement], measured: Measured, rate: float, flips: list[Row]
 ) -> list[Row]:
-    """One row a requirement, pass or fail. Raises UsageError where the trace cannot tell.
+    """One row a requirement, pass or fail. Raises UsageError where the trace cannot decide.
 
     rate: rad/s, which omega's errors are relative to.  flips: the row of the flips' error, if any.
     """

@@ -17,7 +17,7 @@ from omegadot.reference_impl.system import Acceleration
 
 
 def rows_of(found: Judged) -> list[Row]:
-    """Every row; channels that the trace does not give have one that says so."""
+    """Every row; channels that the trace does not give have one that states so."""
     rows = [*_equation(found), *_scheme(found)]
     for channel in found.measured.error:
         rows += _invariant(found, channel) if channel in INVARIANTS else _trajectory(found, channel)
@@ -132,7 +132,7 @@ def _scheme(found: Judged) -> list[Row]:
     note = f"equals {wanted}, to {own.distance:.1e}"
     if not own.agree:
         instead = f"equals {names}" if names else "steps otherwise"
-        note = f"declares {wanted}, but {instead}: {own.channel} parts from it"
+        note = f"declares {wanted}, but {instead}: {own.channel} diverges from it"
     verdict = "pass" if own.agree else "fail"
     if found.schemes[0].own_start:
         verdict, note = "info", f"{note}, from its own start, which is not the scenario's"

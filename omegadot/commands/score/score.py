@@ -41,7 +41,7 @@ DEFAULT_ORDER = "wxyz"
 
 @dataclass(frozen=True)
 class Arguments:
-    """What stands on the command line. settings: by option name; None where nothing is said."""
+    """What stands on the command line. settings: by option name; None where nothing is reported."""
 
     trace: Path
     scenario: str

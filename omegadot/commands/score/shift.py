@@ -1,6 +1,7 @@
-"""Right but late: the shift in time that fits a trace best, found on the exact course itself.
+"""Right but late: the shift in time that fits a trace best, found on the exact trajectory itself.
 
-The exact course can be had at any time, so nothing is interpolated and samples may stand anywhere.
+The exact trajectory can be had at any time, so nothing is interpolated and samples may stand
+anywhere.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ EXPLAINS = 0.1
 
 @dataclass(frozen=True)
 class Shift:
-    """The trace at t is nearest to the exact course at t + seconds; negative is late.
+    """The trace at t is nearest to the exact trajectory at t + seconds; negative is late.
 
     open: s, what digits and rounding leave open of it.  before, after: the largest error, rad/s of
     omega, or rad of attitude where no omega is given.  left: (m, 3), what is left at the samples.

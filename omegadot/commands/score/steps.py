@@ -28,7 +28,7 @@ MOST_STEPS_OF_ALL = 10_000
 
 @dataclass(frozen=True)
 class Declared:
-    """What is said of a trace's making. numbers: (n,), the steps that its samples stand at."""
+    """What is reported of a trace's making. numbers: (n,), the steps that its samples stand at."""
 
     scheme: str | None
     timestep: float
@@ -39,8 +39,8 @@ class Declared:
 class Beside:
     """A trace against one scheme of the reference's. bound: (n,) by channel, rounding and digits.
 
-    left: (n,) by channel, the distance from the scheme's own course.  own_start: the course begins
-    at the trace's first sample, which is not the scenario's state.
+    left: (n,) by channel, the distance from the scheme's own trajectory.  own_start: the
+    trajectory begins at the trace's first sample, which is not the scenario's state.
     """
 
     scheme: str
@@ -52,7 +52,7 @@ class Beside:
 
 @dataclass(frozen=True)
 class Compared:
-    """What a scheme is held against. bound: (n,) by channel, of an exact course's imitation."""
+    """What a scheme is held against. bound: (n,) by channel, of an exact trajectory's imitation."""
 
     truth: Truth
     initial: State

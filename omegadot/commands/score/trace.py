@@ -48,7 +48,7 @@ class Trace:
 
 
 def trace_of(table: Table, columns: Columns, how: Convention, system: System) -> Trace:
-    """The trace read as the convention says. Raises TraceError."""
+    """The trace read as the convention states. Raises TraceError."""
     times, open_times = stamps_of(table, columns["t"], how)
     opened = {"times": open_times}
     attitude = _attitude(table, columns, how)
@@ -89,7 +89,7 @@ def _attitude(table: Table, columns: Columns, how: Convention) -> Angles | None:
 
 
 def in_our_axes(q: Array, world: Array, body: Array) -> Array:
-    """``world q body^-1``, (n, 4): an attitude between their axes, told between ours."""
+    """``world q body^-1``, (n, 4): an attitude between their axes, reported between ours."""
     if np.array_equal(world, np.eye(3)) and np.array_equal(body, np.eye(3)):
         return q
     from scipy.spatial.transform import Rotation
@@ -113,7 +113,7 @@ def _spin(
     if orientation is None:
         raise TraceError(
             f"{table.file}: omega is in world axes and the attitude is not given, so it cannot be "
-            "told in body axes; map the attitude too."
+            "reported in body axes; map the attitude too."
         )
     return rotate_inverse(normalize(orientation), values @ how.world.T), opened
 

@@ -49,7 +49,7 @@ def _samples(labels: dict[str, Any], times: Array, parts: dict[str, Array]) -> p
 
 
 def trajectories_of(known: pl.DataFrame, found: Judged, labels: dict[str, Any]) -> pl.DataFrame:
-    """The trace, NaN where it gives nothing, and the exact course at its times."""
+    """The trace, NaN where it gives nothing, and the exact trajectory at its times."""
     times, truth = found.trace.times, found.truth
     exact = {**labels, "engine": "exact", "integrator": truth.source, "timestep": None}
     parts = {**vars(truth.state), "omega_dot": truth.omega_dot}

@@ -1,4 +1,4 @@
-"""What is said of each channel of a trace: within what it leaves open, explained, or measured."""
+"""The verdict on each channel of a trace: within its resolution, explained, or measured."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is asked of every version: the metrics, by name, before any is measured."""
+"""What is measured of every version: the metrics, by name, before any is measured."""
 
 from __future__ import annotations
 
@@ -54,13 +54,13 @@ def case_for(argument: str, timestep: float | None) -> Case:
 
 
 def aims_of(terms: Sequence[str], integrators: Sequence[str], timestep: float | None) -> Aims:
-    """What the command line asks for. Raises ScenarioError and UsageError."""
+    """What the command line requests. Raises ScenarioError and UsageError."""
     cases = tuple(case_for(argument, timestep) for argument in dict.fromkeys(terms or DEFAULT))
     return Aims(cases, tuple(dict.fromkeys(integrators)))
 
 
 def check_integrators(aims: Aims, known: Sequence[str], engine: str) -> None:
-    """Raise UsageError where an integrator is asked for that no version has."""
+    """Raise UsageError where an integrator is requested that no version has."""
     for name in aims.integrators:
         if known and name not in known:
             raise UsageError(
@@ -69,7 +69,7 @@ def check_integrators(aims: Aims, known: Sequence[str], engine: str) -> None:
 
 
 def conserves_kinetic_energy(case: Case) -> bool:
-    """Whether the energy is kinetic alone and stays, so that E/E0 says something."""
+    """Whether the energy is kinetic alone and stays, so that E/E0 states something."""
     load = case.system.load
     torques = load.torque_body.any() or load.torque_world.any()
     return not (load.gravity.any() or float(load.damping) or torques or load.pivot is not None)
@@ -81,7 +81,7 @@ def step_name(case: Case) -> str:
 
 
 def drift_names(case: Case, integrator: str) -> list[Name]:
-    """One for each channel, and E/E0 at the end where that says something."""
+    """One for each channel, and E/E0 at the end where that states something."""
     start = ("drift", case.name, integrator, step_name(case))
     ratio: list[Name] = [(*start, RATIO)] if conserves_kinetic_energy(case) else []
     return ratio + [(*start, channel) for channel in CHANNELS]
@@ -104,7 +104,7 @@ def order_names(integrator: str, kind: str) -> list[Name]:
 
 
 def names_of(aims: Aims, description: Description) -> Iterator[Name]:
-    """Every name that needs steps or calls; what an engine says of itself has other names."""
+    """Every name that needs steps or calls; what an engine reports of itself has other names."""
     for case in aims.cases:
         yield from equation_names(case)
     for integrator in aims.chosen(description):

@@ -1,4 +1,4 @@
-"""What the words of a command ask for: releases, ranges of them, interpreters of one's own."""
+"""The releases that the arguments name: versions, ranges, and interpreters of one's own."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class RequestedReleases:
 def requested_releases(
     arguments: Sequence[str], releases: Callable[[Span], Sequence[str]]
 ) -> RequestedReleases:
-    """The releases of ``VERSION``, ``LOW..HIGH`` and ``VERSION=PYTHON`` words.
+    """The releases of ``VERSION``, ``LOW..HIGH`` and ``VERSION=PYTHON`` arguments.
 
-    releases: asked for those that there are, where a range needs them. Raises UsageError.
+    releases: the published ones, queried where a range needs them. Raises UsageError.
     """
     versions: list[str] = []
     pythons: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""A metric's name in words, followed through the releases to where it changed."""
+"""A metric's name as text, followed through the releases to where it changed."""
 
 from __future__ import annotations
 
@@ -51,7 +51,9 @@ def bisect_metric(
         portrait = gallery.look(version, choose)
         if portrait.ok and known and not _reported(portrait, known):
             portrait.outcome = "raised"
-            portrait.reason = portrait.troubles[0] if portrait.troubles else "it could not be told"
+            portrait.reason = (
+                portrait.troubles[0] if portrait.troubles else "it could not be determined"
+            )
         seen(portrait)
         return portrait
 
@@ -67,7 +69,7 @@ def bisect_metric(
 
 
 def _reported(portrait: Portrait, names: Iterable[Name]) -> bool:
-    """Whether a version tells any of the metrics, be it that it does not have them."""
+    """Whether a version reports any of the metrics, be it that it does not have them."""
     figures = [portrait.figures.get(name) for name in names if name[0] not in portrait.untold]
     return any(figure is None or figure.value is not None for figure in figures)
 
@@ -77,13 +79,17 @@ def _no_such(arguments: str, names: Sequence[Name]) -> str:
     there = {argument for name in names for argument in arguments_of(title(name))}
     unknown = unknown_metric(arguments, names)
     kinds = ", ".join(kind for kind in KINDS if any(name[0] == kind for name in names))
-    what = f"no metric has the word {unknown[0]!r}" if unknown else "no metric has all these words"
+    what = (
+        f"no metric has {unknown[0]!r} in its name"
+        if unknown
+        else "no metric has all of these terms in its name"
+    )
     hint = nearest(unknown[0], there) if unknown else ""
     close = f"; {hint}" if hint.startswith("write") else ""
     example = next((title(n) for n in names if n[0] == "order"), title(names[0]) if names else "")
     systems = ", ".join(probe.kind for probe in PROBES)
     return (
-        f"--bisect {arguments}: {what}{close}; give words of a name such as {example}: a kind "
+        f"--bisect {arguments}: {what}{close}; give terms of a name such as {example}: a kind "
         f"({kinds}), an integrator, a system ({systems}) or a scenario, "
         f"a channel ({', '.join(channel.replace('_', ' ') for channel in CHANNELS)})."
     )

@@ -24,7 +24,7 @@ class Step:
 
 @dataclass
 class Bisection:
-    """steps: the changes found, rising.  looked_at: the releases that were asked, in that order."""
+    """steps: the changes found, rising.  looked_at: the releases measured, in that order."""
 
     low: Portrait | None = None
     high: Portrait | None = None

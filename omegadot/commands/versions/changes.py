@@ -63,7 +63,7 @@ def changes_between(
 
 
 def neighbours(portraits: Iterable[Portrait]) -> list[tuple[Portrait, Portrait]]:
-    """Each version that could be asked with the next one that could."""
+    """Each version that could be measured with the next one that could."""
     known = [portrait for portrait in portraits if portrait.ok]
     return list(pairwise(known))
 

@@ -1,6 +1,6 @@
 """The environments of releases: made once, kept in a cache, never those of the user.
 
-An environment is a folder of its own, made under a name that nobody else uses. It counts from the
+An environment is a folder of its own, made under a name that no one else uses. It counts from the
 moment that a small file that names it is renamed into place: what was broken off is never taken
 for whole, and two that make the same one at the same time both get one.
 """

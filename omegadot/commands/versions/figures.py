@@ -40,7 +40,7 @@ BLOWN_UP = Figure("blew up")
 
 
 def reported_figures(description: Description, native: dict[str, dict[str, str]]) -> Figures:
-    """What an engine says of itself and, where its adapter asks it, what it itself answers."""
+    """What an engine reports of itself and, where its adapter asks it, what it itself answers."""
     found: Figures = {}
     for part, kind in (("conventions", "convention"), ("defaults", "default")):
         for name, value in native.get(part, {}).items():
@@ -53,9 +53,9 @@ def reported_figures(description: Description, native: dict[str, dict[str, str]]
 
 
 def drift_figures(case: Case, name: str, exact: Exact, step: Stepper) -> Figures:
-    """The largest distance from the exact course in each channel, and E/E0 at the end.
+    """The largest distance from the exact trajectory in each channel, and E/E0 at the end.
 
-    The band is what rounding may have grown to, along the exact course or the engine's own.
+    The band is what rounding may have grown to, along the exact trajectory or the engine's own.
     Raises NoAnswerError.
     """
     sweep, names = case.sweeps[0], drift_names(case, name)
@@ -126,7 +126,7 @@ def figures_of_rows(case: Case, rows: Sequence[Row]) -> Figures:
 
 
 def model_rows(case: Case, requested: State, answer: Answer) -> list[Row]:
-    """The body and a state read back, against what was asked."""
+    """The body and a state read back, against what was requested."""
     if not answer.ok:
         return []
     bodies, state = answer.result["bodies"], state_from(answer.result["state"])

@@ -1,4 +1,4 @@
-"""Versions looked at: each placed in its environment, started, asked, timed, and ended."""
+"""Versions measured: each placed in its environment, started, queried, timed, and ended."""
 
 from __future__ import annotations
 

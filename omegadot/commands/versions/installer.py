@@ -1,4 +1,4 @@
-"""uv or pip: how environments are made, filled, and asked for what releases there are.
+"""uv or pip: how environments are made and filled, and which releases are published.
 
 Where packages come from is the user's configuration of the one or the other.
 """
@@ -52,7 +52,7 @@ def _run(command: Sequence[str]) -> str:
 
 
 def reason_of(message: str) -> str:
-    """What went wrong, out of all that an installer said."""
+    """What went wrong, out of all that an installer reported."""
     # Drawn arrows and colours lead the lines of uv, and it breaks sentences over several.
     plain = re.sub(r"\x1b\[[0-9;]*m|[×╰─▶├│]| \(from versions: [^)]*\)", " ", message)
     lines = [" ".join(line.split()) for line in plain.splitlines()]
@@ -128,7 +128,7 @@ class Uv:
         _run([*self._command, "pip", "install", "--quiet", *to, *requirements])
 
     def releases(self, package: str, span: Span) -> list[str]:
-        """No call of uv lists releases: it is asked for the newest below each one found."""
+        """No call of uv lists releases: it is queried for the newest below each one found."""
         found: list[str] = []
         bounds = [f">={span.low}"] if span.low else []
         last = [f"<={span.high}"] if span.high else []
@@ -150,7 +150,7 @@ class Uv:
                 timeout=SECONDS_TO_INSTALL,
             )
         except (OSError, subprocess.TimeoutExpired) as error:
-            raise InstallError(f"{self._command[0]} could not be asked: {error}") from error
+            raise InstallError(f"{self._command[0]} did not run: {error}") from error
         if done.returncode != 0:
             if bounds and "No solution found" in done.stderr:
                 return None

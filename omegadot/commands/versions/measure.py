@@ -1,4 +1,4 @@
-"""Everything that is asked of one version, and what comes of each question that fails."""
+"""Everything that is measured of one version, and the outcome of each request that fails."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ REQUESTED_OF_ENGINE = frozenset({"convention", "default"})
 class Portrait:
     """One version. outcome: "ok", or why there is nothing of it, with the reason.
 
-    version: as asked for.  says: the version that the engine itself names.  faults: where it is
+    version: as requested.  statement: the version that the engine itself reports.  faults: where it is
     not as its adapter declares, or wrong.  has: its integrators, those not looked at included.
     troubles: questions that it failed to answer.  untold: kinds of metric that it was
-    asked for in vain.
+    requested in vain.
     """
 
     version: str
@@ -66,12 +66,12 @@ class Portrait:
 
     @property
     def ok(self) -> bool:
-        """Whether the version could be asked."""
+        """Whether the version could be measured."""
         return self.outcome == "ok"
 
 
 class Sitting:
-    """One version being asked, through its worker; once `halted`, nothing more is asked."""
+    """One version being measured, through its worker; once `halted`, nothing more is queried."""
 
     def __init__(
         self, portrait: Portrait, worker: WorkerProcess, aims: Aims, halted: Callable[[], bool]
@@ -84,9 +84,9 @@ class Sitting:
         self._lost: tuple[str, str] | None = None
 
     def start(self) -> list[Name]:
-        """Start the engine and hear what it says of itself; the names of all its metrics.
+        """Start the engine and take its description; the names of all its metrics.
 
-        Where it does not start, the portrait tells, and there are none.
+        Where it does not start, the portrait has the reason, and there are none.
         """
         answer = self._worker.start()
         portrait = self.portrait
@@ -126,7 +126,7 @@ class Sitting:
         self._give_up_if_mute()
 
     def _give_up_if_mute(self) -> None:
-        """A version that answered nothing of what was measured could not be asked."""
+        """A version that answered no request could not be measured."""
         if self._lost and not self._answered:
             self.portrait.outcome, self.portrait.reason = self._lost
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from omegadot.reports.text.numbers import short
 
-# The first word of a metric's name: what kind of figure it is, in the order that they are told in.
+# The first word of a metric's name: what kind of figure it is, in the order that they are reported
+# in.
 KINDS = ("convention", "default", "setup", "integrator", "scheme", "order", "drift", "equation")
 RATIO = "energy ratio E/E0"
 Name = tuple[str, ...]
@@ -20,7 +21,7 @@ class Figure:
     """A metric's value in one version.
 
     value: a text, or a number with `band`: how far from it a sound engine of the same physics may
-    be for rounding, or for how sharply an order is known.  None where it could not be told.
+    be for rounding, or for how sharply an order is known.  None where it could not be determined.
     """
 
     value: str | float | None
@@ -35,7 +36,7 @@ def title(name: Name) -> str:
 def differ(one: Figure | None, other: Figure | None) -> bool:
     """Whether a metric changed: beyond both bands, or in its text, or by being there at all.
 
-    What could not be told in one of two versions says nothing of a change.
+    What could not be determined in one of two versions reports nothing of a change.
     """
     if one is None or other is None:
         return one is not other

@@ -40,7 +40,7 @@ class Product:
 
 _OLDER_LIBRARIES = Extra(
     ("cmeel-urdfdom<5", "cmeel-tinyxml2<11"),
-    "it asks for any version of these libraries, and is linked against older ones",
+    "it accepts any version of these libraries, and is linked against older ones",
 )
 _PINOCCHIO_EXTRAS = dict.fromkeys(("3.4.0", "3.7.0", "3.8.0", "3.9.0"), _OLDER_LIBRARIES)
 PRODUCTS = (

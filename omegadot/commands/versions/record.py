@@ -33,7 +33,7 @@ def record_of(
     portraits: Sequence[Portrait],
     bisection: Record | None,
 ) -> Record:
-    """Versions, rising, with what changed from each to the next that could be asked."""
+    """Versions, rising, with what changed from each to the next that could be measured."""
     steps = [] if bisection else _steps(portraits)
     return {
         "schema": SCHEMA,

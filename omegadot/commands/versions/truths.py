@@ -1,4 +1,4 @@
-"""The exact courses that all versions are held against, each computed once."""
+"""The exact trajectories that all versions are held against, each computed once."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from omegadot.reference_impl.exact_solution import exact_states
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.system import Acceleration, Array, State
 
-STATES = 32  # random states that the equations are asked at
+STATES = 32  # random states that the equations are evaluated at
 SEED = (0, 1)
 
 

@@ -88,7 +88,7 @@ def _installer(names: Arguments) -> Installer | None:
 def looked_at(
     names: Arguments, product: Product, aims: Aims, gallery: Gallery, requested: RequestedReleases
 ) -> Record:
-    """The record of what the words ask for. Raises UsageError."""
+    """The record of what the words request. Raises UsageError."""
     with _progress(len(requested.versions)) as seen:
         if names.bisect is not None:
             portraits, reported = bisect_metric(
@@ -121,7 +121,7 @@ def _progress(count: int) -> Iterator[Callable[[Portrait], object]]:
     from rich.console import Console
 
     done = 0
-    with Console(stderr=True).status("making environments and asking engines") as status:
+    with Console(stderr=True).status("making environments and querying engines") as status:
 
         def seen(portrait: Portrait) -> None:
             nonlocal done

@@ -76,9 +76,9 @@ def _compare(
 ) -> tuple[float, float]:
     """Largest residual, and largest share of the round-off bound: above one, they differ.
 
-    The bound is `Yardstick.round_off` with the growth along the scheme's own course. Where that
-    course blows up there is no bound, hence no match. An equation that engines solve less finely
-    than to rounding widens it in proportion.
+    The bound is `Yardstick.round_off` with the growth along the scheme's own trajectory. Where that
+    trajectory blows up there is no bound, hence no match. An equation that engines solve less
+    finely than to rounding widens it in proportion.
     """
     widened = 1 + SCHEMES[key.scheme].solved_to / float(np.finfo(float).eps)
     with _computing:

@@ -12,7 +12,7 @@ from omegadot.reference_impl.schemes import SCHEMES
 class Naming:
     """scheme: None where nothing matches.  kinds: the probes on which it is that scheme.
 
-    others: schemes that these probes cannot tell from it.
+    others: schemes that these probes cannot decide from it.
     """
 
     scheme: str | None

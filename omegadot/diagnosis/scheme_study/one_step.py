@@ -24,7 +24,7 @@ from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.series import solve_series
 from omegadot.reference_impl.system import State
 
-STARTS = 5  # exact states along the course that a step is taken from
+STARTS = 5  # exact states along the trajectory that a step is taken from
 # rad: one step errs by a power more than many, and meets rounding sooner
 LONGEST = 2 * COARSEST
 NAMED_HALVINGS = 3

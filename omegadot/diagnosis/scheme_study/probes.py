@@ -1,7 +1,7 @@
 """A few systems on which schemes differ, and the exact motion of each.
 
 Their tensors are full, their axes turned and their loads askew, so that no two schemes coincide by
-symmetry. Steps are told by the angle that the body turns in one, ``|omega_0| h``.
+symmetry. Steps are reported by the angle that the body turns in one, ``|omega_0| h``.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ PROBES = _probes()
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """The exact course of a probe at some times, with the growth of rounding along it."""
+    """The exact trajectory of a probe at some times, with the growth of rounding along it."""
 
     state: State
     yardstick: Yardstick

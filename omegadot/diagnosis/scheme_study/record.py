@@ -20,7 +20,7 @@ Record = dict[str, Any]
 
 
 def record_of(studies: Sequence[EngineStudy]) -> Record:
-    """The whole study. defect_angle: rad, the step whose defect is told."""
+    """The whole study. defect_angle: rad, the step whose defect is reported."""
     return {
         "schema": SCHEMA,
         "defect_angle": NAMED,

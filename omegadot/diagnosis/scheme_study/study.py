@@ -140,7 +140,7 @@ def study_engine(
     """Start an engine's worker and study it on every probe; end the worker.
 
     stopping: set from elsewhere, it makes an end of it. Raises UsageError where an integrator is
-    asked for that the engine does not have.
+    requested that the engine does not have.
     """
     halt = stopping or threading.Event()
     try:

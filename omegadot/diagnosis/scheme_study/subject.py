@@ -14,7 +14,7 @@ from omegadot.workers.wire import description_of, state_from
 
 
 class NoAnswerError(Exception):
-    """The engine did not answer; the answer tells the outcome and the reason."""
+    """The engine did not answer; the answer reports the outcome and the reason."""
 
     def __init__(self, answer: Answer) -> None:
         super().__init__(answer.reason)
@@ -22,7 +22,7 @@ class NoAnswerError(Exception):
 
 
 class Stepper(Protocol):
-    """How an integrator is asked to step."""
+    """How an integrator is queried to step."""
 
     def __call__(self, initial: State, timestep: float, steps: int, every: int) -> State:
         """The states at step 0, each `every`-th and the last. Raises NoAnswerError."""
@@ -54,7 +54,7 @@ def stepper_of(worker: WorkerProcess, integrator: str) -> Stepper:
         answer = _requested(worker, "run", initial=initial, integrator=integrator, **plan)
         state, kept = state_from(answer.result["state"]), -(-steps // every) + 1
         if len(state.orientation) != kept:
-            came = f"{len(state.orientation)} samples came back, {kept} were asked for"
+            came = f"{len(state.orientation)} samples came back, {kept} were requested"
             raise NoAnswerError(Answer("raised", came))
         return state
 
@@ -62,5 +62,5 @@ def stepper_of(worker: WorkerProcess, integrator: str) -> Stepper:
 
 
 def is_finite(state: State) -> bool:
-    """Whether every number of a course is finite."""
+    """Whether every number of a trajectory is finite."""
     return all(bool(np.all(np.isfinite(values))) for values in vars(state).values())

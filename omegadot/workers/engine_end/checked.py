@@ -15,7 +15,7 @@ CHANNELS = get_args(Channel)
 
 
 class AnswerError(TypeError):
-    """An adapter's answer is not what the protocol asks for; the message says what and where."""
+    """An adapter's answer is not what the protocol requests; the message states what and where."""
 
 
 def _expect(what: str, value: Any, kind: type) -> None:
@@ -56,7 +56,7 @@ def checked_trajectory(trajectory: Any) -> Trajectory:
 
 
 def checked_acceleration(found: Any, lead: Shape) -> Acceleration:
-    """Angular and linear acceleration at as many states as were asked for."""
+    """Angular and linear acceleration at as many states as were requested."""
     what = "forward_dynamics()"
     _expect(what, found, Acceleration)
     angular = numbers(f"{what}.angular", found.angular, (*lead, 3))
@@ -64,7 +64,7 @@ def checked_acceleration(found: Any, lead: Shape) -> Acceleration:
 
 
 def checked_torque(found: Any, lead: Shape) -> Array:
-    """A torque for each state that was asked for."""
+    """A torque for each state that was requested."""
     return numbers("inverse_dynamics()", found, (*lead, 3))
 
 

@@ -1,4 +1,4 @@
-"""What a worker can be asked: each operation takes the adapter and the request's fields."""
+"""What a worker can be requested: each operation takes the adapter and the request's fields."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _lead(states: State) -> tuple[int, ...]:
 
 
 def _load(adapter: Adapter, request: Request) -> Any:
-    """Load a system; the description that comes back may speak of this very system."""
+    """Load a system; the description that comes back may refers to this very system."""
     adapter.load(system_from(request["system"]))
     return checked_description(adapter.description)
 
@@ -141,7 +141,7 @@ def _native(adapter: Adapter, _: Request) -> Any:
     """The engine's own conventions and defaults; no part of the protocol, so it may be lacking."""
     request = getattr(adapter, "native", None)
     if request is None:
-        raise UnsupportedError("the adapter cannot tell the engine's own conventions.")
+        raise UnsupportedError("the adapter cannot decide the engine's own conventions.")
     return checked_native(request())
 
 

@@ -3,7 +3,7 @@
 Reads requests from what was its standard input and answers on what was its standard output;
 whatever the engine prints goes to standard error instead, so a chatty engine cannot garble an
 answer. A request that raises, whatever it raises, is answered with the exception; the process goes
-on. After running out of memory it says so and leaves, for what is left of it cannot be relied on.
+on. After running out of memory it states so and leaves, for what is left of it cannot be relied on.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from omegadot.workers.wire import encode_frame, read_frame
 MEMORY_VARIABLE = "OMEGADOT_WORKER_MEMORY"
 """Names the environment's limit on the worker's data, in bytes."""
 
-# Given back when memory runs out, so that there is some to say so.
+# Given back when memory runs out, so that there is some to state so.
 _reserve = [bytearray(1 << 22)]
 
 
@@ -48,12 +48,12 @@ def limit_memory(most: int) -> None:
 def _text_of(error: BaseException) -> str:
     try:
         return str(error)
-    except Exception:  # an exception that cannot even say what it is
+    except Exception:  # an exception that cannot even state what it is
         return "it cannot be printed"
 
 
 def failure(error: BaseException) -> dict[str, Any]:
-    """The answer that tells of an exception, with its type and the line that raised it."""
+    """The answer that reports of an exception, with its type and the line that raised it."""
     traceback.clear_frames(error.__traceback__)  # what they hold may be all the memory there is
     texts = one_line(_text_of(error))
     if isinstance(error, UnsupportedError):

@@ -52,7 +52,7 @@ class Pipes:
         self._requests.put(encode_frame(message))
 
     def close_requests(self) -> None:
-        """Tell the worker, after what was sent, that nothing more will be asked."""
+        """Tell the worker, after what was sent, that nothing more will be requested."""
         self._requests.put(None)
 
     def last_output(self) -> str:
@@ -81,7 +81,7 @@ class Pipes:
         except (EOFError, OSError):
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(SECONDS_TO_DRAIN)
-                return  # it died, which `_watch` tells when all answers are in
+                return  # it died, which `_watch` reports when all answers are in
             self.answers.put(Lost("it closed the channel of its answers"))
         except Exception as error:  # garbage can fail to be read in many ways
             self.answers.put(Lost(f"its answer cannot be read: {one_line(str(error), 100)}"))

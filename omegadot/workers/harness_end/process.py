@@ -1,4 +1,4 @@
-"""The harness's side of one worker: start it, ask it, and say how it died."""
+"""The harness's side of one worker: start it, ask it, and state how it died."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from omegadot.workers.machine import memory_of_machine
 from omegadot.workers.plain_text import one_line
 
 SECONDS_TO_LEAVE = 2.0
-# Importing an engine takes as long as it takes, however short a request may be asked to be.
+# Importing an engine takes as long as it takes, however short a request may be requested to be.
 SECONDS_TO_START = 20.0
 
 
@@ -46,7 +46,7 @@ def _worker_environment(memory: int | None) -> dict[str, str]:
 
 
 class WorkerProcess:
-    """One engine's process. It is started when first asked and again after it dies.
+    """One engine's process. It is started when first requested and again after it dies.
 
     timeout: s, for one request; a start has 20 s at least.  memory: bytes of data that it may
     hold; half of the machine's where none is given, and no limit where that is not known.
@@ -128,7 +128,7 @@ class WorkerProcess:
         )
 
     def _post_mortem(self, process: subprocess.Popen[bytes], pipes: Pipes, how: str) -> str:
-        """Say how a worker came to give no more answers. how: why it is ended, if it lives."""
+        """State how a worker came to give no more answers. how: why it is ended, if it lives."""
         if how:
             end_family(process, self._mark)
             process.wait()
@@ -146,7 +146,7 @@ class WorkerProcess:
         process, pipes = self._process, self._pipes
         if process is None or pipes is None:
             return
-        if process.poll() is not None:  # it died while nobody asked it anything
+        if process.poll() is not None:  # it died while no one requested it anything
             self._post_mortem(process, pipes, "")
             return
         pipes.close_requests()
@@ -163,7 +163,7 @@ class WorkerProcess:
 
 
 def _ending(code: int) -> str:
-    """A process's end in words, of its return code."""
+    """A process's end as text, of its return code."""
     if code >= 0:
         return f"ended with exit code {code}"
     try:

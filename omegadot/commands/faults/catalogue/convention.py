@@ -18,7 +18,7 @@ from omegadot.reference_impl.system import State
 
 
 class Misread(Spoiled):
-    """Every state that comes out is told wrong."""
+    """Every state that comes out is reported wrong."""
 
     def reported(self, state: State) -> State:
         """The wrong state."""
@@ -37,7 +37,7 @@ class Throughout(Misread):
     """States are misread on the way in, and on the way out in just the same way."""
 
     def taken(self, state: State) -> State:
-        """The inverse of `told`."""
+        """The inverse of `reported`."""
         return state
 
     def into(self, state: State) -> State:
@@ -91,7 +91,7 @@ class OmegaInWorldInRuns(Spoiled):
 
 @fault("convention", "equation")
 class OmegaInWorldThroughout(Throughout):
-    """omega is taken and told in world axes, so that what goes in comes out."""
+    """omega is read and reported in world axes, so that what goes in comes out."""
 
     def taken(self, state: State) -> State:
         """As if it were given in the world."""
@@ -104,7 +104,7 @@ class OmegaInWorldThroughout(Throughout):
 
 @fault("convention", "model")
 class RotationTransposed(Misread):
-    """The rotation is told transposed."""
+    """The rotation is reported transposed."""
 
     def reported(self, state: State) -> State:
         """Transposed."""
@@ -113,7 +113,7 @@ class RotationTransposed(Misread):
 
 @fault("convention", "scheme")
 class RotationTransposedThroughout(Throughout):
-    """The rotation is taken and told transposed, so that what goes in comes out."""
+    """The rotation is read and reported transposed, so that what goes in comes out."""
 
     def taken(self, state: State) -> State:
         """Transposed."""
@@ -126,7 +126,7 @@ class RotationTransposedThroughout(Throughout):
 
 @fault("convention", "model")
 class QuaternionScalarLast(Misread):
-    """The quaternion is told as x, y, z, w."""
+    """The quaternion is reported as x, y, z, w."""
 
     def reported(self, state: State) -> State:
         """Scalar last."""
@@ -135,7 +135,7 @@ class QuaternionScalarLast(Misread):
 
 @fault("convention", "scheme")
 class QuaternionScalarLastThroughout(Throughout):
-    """The quaternion is taken as x, y, z, w and told so, so that what goes in comes out."""
+    """The quaternion is read as x, y, z, w and reported so, so that what goes in comes out."""
 
     def taken(self, state: State) -> State:
         """As if the scalar came last."""
@@ -148,7 +148,7 @@ class QuaternionScalarLastThroughout(Throughout):
 
 @fault("convention", "model")
 class QuaternionNotUnit(Misread):
-    """The quaternion told is a millionth too long."""
+    """The quaternion reported is a millionth too long."""
 
     def reported(self, state: State) -> State:
         """The right direction, another length."""
@@ -157,7 +157,7 @@ class QuaternionNotUnit(Misread):
 
 @fault("convention", "model", "offset")
 class PositionOfOrigin(Misread):
-    """The position told is that of the body's origin, not of the centre of mass."""
+    """The position reported is that of the body's origin, not of the centre of mass."""
 
     def reported(self, state: State) -> State:
         """At the origin."""
@@ -166,7 +166,7 @@ class PositionOfOrigin(Misread):
 
 @fault("convention", "model", "offset")
 class VelocityOfOrigin(Misread):
-    """The velocity told is that of the body's origin, not of the centre of mass."""
+    """The velocity reported is that of the body's origin, not of the centre of mass."""
 
     def reported(self, state: State) -> State:
         """At the origin."""
@@ -176,7 +176,7 @@ class VelocityOfOrigin(Misread):
 
 @fault("convention", "model", "free")
 class VelocityInBodyAxes(Misread):
-    """The velocity is told in body axes."""
+    """The velocity is reported in body axes."""
 
     def reported(self, state: State) -> State:
         """In the body."""
@@ -186,7 +186,7 @@ class VelocityInBodyAxes(Misread):
 
 @fault("convention", "model")
 class OmegaInDegrees(Misread):
-    """omega is told in degrees per second."""
+    """omega is reported in degrees per second."""
 
     def reported(self, state: State) -> State:
         """In degrees."""

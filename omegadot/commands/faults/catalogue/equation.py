@@ -1,4 +1,4 @@
-"""Faults of the equation of motion itself: the gyroscopic term, and what is told of omega-dot."""
+"""Faults of the equation of motion itself: the gyroscopic term, and the omega-dot reported."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class GyroscopicSlightlyOff(Gyroscopic):
 
 @fault("equation", "equation", "asymmetric")
 class OmegaDotInWorld(Spoiled):
-    """omega-dot is right and told in world axes."""
+    """omega-dot is right and reported in world axes."""
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """Turned into the world."""
@@ -75,7 +75,7 @@ class OmegaDotInWorld(Spoiled):
 
 @fault("equation", "equation", "asymmetric")
 class OmegaDotConstant(Spoiled):
-    """omega-dot is that of the first state asked for, whatever comes after."""
+    """omega-dot is that of the first state requested, whatever comes after."""
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """The first for all."""
@@ -99,7 +99,7 @@ class OmegaDotByDifference(Spoiled):
 
 @fault("equation", "equation", "offset")
 class AccelerationOfOrigin(Spoiled):
-    """The linear acceleration told is that of the body's origin."""
+    """The linear acceleration reported is that of the body's origin."""
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """Back along the lever to the origin."""

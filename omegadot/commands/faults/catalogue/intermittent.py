@@ -92,7 +92,7 @@ class FirstStepByEuler(Timed):
 
 @fault("stepping", "scheme")
 class DampingAfterAWhile(Timed):
-    """From the middle of a run on, a damping acts that nobody asked for."""
+    """From the middle of a run on, a damping acts that was not requested."""
 
     def wrong_at(self, step: int) -> bool:
         """The second half."""

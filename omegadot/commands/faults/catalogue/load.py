@@ -1,4 +1,4 @@
-"""Faults of the loads: gravity, torques, damping and the pivot act otherwise than asked."""
+"""Faults of the loads: gravity, torques, damping and the pivot act otherwise than requested."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from omegadot.reference_impl.system import Acceleration, Array, Load, State, Sys
 
 
 class OtherLoad(Spoiled):
-    """The engine is given the load that `other` makes of the one asked for."""
+    """The engine is given the load that `other` makes of the one requested."""
 
     def other(self, load: Load) -> Load:
         """The wrong load."""
@@ -57,7 +57,7 @@ class GravitySlightlyOff(OtherLoad):
 
 
 class ExtraTorque(Accelerated):
-    """A torque about the centre of mass, or the pivot, that nobody asked for."""
+    """A torque about the centre of mass, or the pivot, that was not requested."""
 
     def torque(self, state: State) -> Array:
         """(..., 3) N m, body axes."""
@@ -136,7 +136,7 @@ class DampingReversed(OtherLoad):
 
 @fault("equation", "equation", "pivot-off-origin")
 class PivotAtOrigin(OtherLoad):
-    """The body hangs by its origin instead of the pivot."""
+    """The body is pivoted at its origin instead of the pivot."""
 
     def other(self, load: Load) -> Load:
         """The pivot at the origin."""

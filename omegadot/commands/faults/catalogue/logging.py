@@ -29,7 +29,7 @@ class FirstSampleMissing(Spoiled):
 
 @fault("logging", "scheme")
 class LastStepMissing(Spoiled):
-    """The last step is not taken: the end is told as it was a step before."""
+    """The last step is not taken: the end is reported as it was a step before."""
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
@@ -66,7 +66,7 @@ class LogsOneSampleLate(Spoiled):
 
 @fault("logging", "trajectory")
 class TimesShifted(Spoiled):
-    """Times are told at the end of the step after."""
+    """Times are reported at the end of the step after."""
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
@@ -115,7 +115,7 @@ class LeaksBetweenScenarios(Spoiled):
     """A tenth of a percent of the last scenario's inertia is left in the next one's."""
 
     def loaded(self, system: System) -> System:
-        """The sum of what is asked for and what is left."""
+        """The sum of what is requested and what is left."""
         before, self._before = getattr(self, "_before", None), system
         if before is None:
             return system

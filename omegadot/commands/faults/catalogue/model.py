@@ -14,7 +14,7 @@ NEXT_AXIS = np.array([1, 2, 0])
 
 
 class OtherBody(Spoiled):
-    """The engine is given the body that `body` makes of the one asked for."""
+    """The engine is given the body that `body` makes of the one requested."""
 
     def body(self, body: Body) -> Body:
         """The wrong body."""
@@ -26,7 +26,7 @@ class OtherBody(Spoiled):
 
 
 class OtherInertia(OtherBody):
-    """The engine is given the tensor that `inertia` makes of the one asked for."""
+    """The engine is given the tensor that `inertia` makes of the one requested."""
 
     def inertia(self, tensor: Array) -> Array:
         """The wrong tensor."""
@@ -114,7 +114,7 @@ class InertiaAboutOrigin(OtherBody):
 
 @fault("model", "equation", "asymmetric")
 class InertiaUnseen(OtherInertia):
-    """One moment is 0.1 % off in the dynamics, and the model reads back as it was asked."""
+    """One moment is 0.1 % off in the dynamics, and the model reads back as requested."""
 
     def inertia(self, tensor: Array) -> Array:
         """One moment, in its own axes."""
@@ -122,7 +122,7 @@ class InertiaUnseen(OtherInertia):
         return np.asarray(axes @ np.diag(moments * [1.0, 1.001, 1.0]) @ axes.T)
 
     def model(self) -> tuple[Body, ...]:
-        """What was asked for."""
+        """What was requested."""
         return self.system.bodies
 
 
@@ -131,7 +131,7 @@ class MassSlightlyOff(OtherBody):
     """The mass is 0.1 % too large."""
 
     def body(self, body: Body) -> Body:
-        """A thousandth more, the inertia as asked."""
+        """A thousandth more, the inertia as requested."""
         return replace(body, mass=1.001 * body.mass)
 
 

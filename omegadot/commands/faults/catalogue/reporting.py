@@ -1,4 +1,4 @@
-"""Faults in what is told of a run that is sound: half a step off, smoothed, rounded, noisy."""
+"""Faults in what is reported of a run that is sound: half a step off, smoothed, rounded, noisy."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MOST = 0.5  # rad/s, of a component
 
 @fault("logging", "scheme")
 class AttitudeAtHalfStep(Spoiled):
-    """The attitude told is that of half a step before."""
+    """The attitude reported is that of half a step before."""
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
@@ -77,7 +77,7 @@ class OmegaJitters(Spoiled):
 
 @fault("logging", "scheme")
 class OneSampleTwice(Spoiled):
-    """One sample in the middle of a run is told twice, and the next is not."""
+    """One sample in the middle of a run is reported twice, and the next is not."""
 
     def logged(self, trajectory: Trajectory) -> Trajectory:
         """The middle once more."""
@@ -89,7 +89,7 @@ class OneSampleTwice(Spoiled):
 
 @fault("logging", "scheme")
 class NineDigits(Spoiled):
-    """What is told of a run went through text of nine digits."""
+    """What is reported of a run went through text of nine digits."""
 
     def logged(self, trajectory: Trajectory) -> Trajectory:
         """Printed and read."""
@@ -98,7 +98,7 @@ class NineDigits(Spoiled):
 
 
 def digits(values: Array, count: int) -> Array:
-    """Numbers as text of so many significant digits tells them."""
+    """Numbers as text of so many significant digits reports them."""
     reported = [float(f"{value:.{count}g}") for value in np.ravel(values)]
     return np.reshape(np.array(reported), np.shape(values))
 
@@ -118,14 +118,14 @@ class StartInSinglePrecision(Spoiled):
 
 @fault("logging", "trajectory", "asymmetric")
 class OmegaDotOfTheSampleBefore(Spoiled):
-    """The omega-dot told along a run is that of the sample before; it is right when asked."""
+    """The omega-dot reported along a run is that of the sample before; it is right when queried."""
 
     running = False
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
-        """What is asked next is of this run."""
+        """What is queried next is of this run."""
         self.running = True
         return super().run(initial, integrator, timestep, steps, every)
 
@@ -155,7 +155,7 @@ class NormInSinglePrecision(StepEnds):
         return replace(after, orientation=normalize(after.orientation) * (length / rounded))
 
     def acceleration(self) -> AccelerationOf:
-        """Asked at the unit quaternion of the same direction, as engines do."""
+        """Evaluated at the unit quaternion of the same direction, as engines do."""
         sound = self.sound_acceleration()
         return lambda state: sound(replace(state, orientation=normalize(state.orientation)))
 

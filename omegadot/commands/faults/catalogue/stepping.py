@@ -24,14 +24,14 @@ SECRET_DAMPING = 1e-4  # N m s/rad
 
 @fault("stepping", "scheme")
 class SecretDamping(ExtraTorque):
-    """A damping of 1e-4 N m s/rad that nobody asked for acts in the steps."""
+    """A damping of 1e-4 N m s/rad that was not requested acts in the steps."""
 
     def torque(self, state: State) -> Array:
         """Against omega."""
         return -SECRET_DAMPING * state.angular_velocity
 
     def forward_dynamics(self, states: State) -> Acceleration:
-        """Sound when asked."""
+        """Sound when queried."""
         return self.inner.forward_dynamics(states)
 
 
@@ -65,7 +65,7 @@ class QuaternionDrifts(StepEnds):
         return step_ends.straight_quaternion(before, after, dt)
 
     def acceleration(self) -> AccelerationOf:
-        """Asked at the unit quaternion of the same direction, as engines do."""
+        """Evaluated at the unit quaternion of the same direction, as engines do."""
         sound = self.sound_acceleration()
         return lambda state: sound(replace(state, orientation=normalize(state.orientation)))
 
@@ -139,7 +139,7 @@ class StepSlightlyLong(Spoiled):
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
-        """As asked, with a longer step under the same times."""
+        """As requested, with a longer step under the same times."""
         found = super().run(initial, integrator, 1.001 * timestep, steps, every)
         return Trajectory(found.time / 1.001, found.state)
 

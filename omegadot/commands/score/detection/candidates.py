@@ -1,4 +1,4 @@
-"""The readings that a trace may come in, each with how far it misses the exact course."""
+"""The readings that a trace may come in, each with how far it misses the exact trajectory."""
 
 from __future__ import annotations
 

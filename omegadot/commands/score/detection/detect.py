@@ -1,4 +1,4 @@
-"""``omegadot score --detect``: the conventions that fit, in words."""
+"""``omegadot score --detect``: the conventions that fit, as text."""
 
 from __future__ import annotations
 
@@ -80,9 +80,9 @@ def _lines(arguments: Arguments, found: Detected, fitting: list[Reading]) -> lis
 
 
 def _ambiguous(found: Detected, fitting: list[Reading]) -> list[str]:
-    why = "This motion does not tell them apart"
+    why = "This motion does not distinguish them"
     if found.turn < 0.1:
-        why = f"The body turns by {found.turn:.1e} rad only, too little to tell them apart"
+        why = f"The body turns by {found.turn:.1e} rad only, too little to distinguish them"
     judgement = [f"Ambiguous: {len(fitting)} conventions fit alike. {why}; nothing is guessed."]
     judgement += [f"  {' '.join(reading.options())}" for reading in fitting[:MOST_SHOWN]]
     more = len(fitting) - MOST_SHOWN

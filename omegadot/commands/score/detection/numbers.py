@@ -49,7 +49,7 @@ class Rotated:
 
 @dataclass(frozen=True)
 class Numbers:
-    """A trace's columns and the exact course at its samples. turn: rad, how far it turns."""
+    """A trace's columns and the exact trajectory at its samples. turn: rad, how far it turns."""
 
     columns: dict[str, Array]
     orientation: Array

@@ -1,4 +1,4 @@
-"""A whole way to read a trace, and the options that ask for it."""
+"""A whole way to read a trace, and the options that request it."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def _attitude_options(found: Attitude) -> list[str]:
 
 
 def unlike(readings: Sequence[Reading]) -> list[Reading]:
-    """The plainest of those that are the same reading in other words.
+    """The plainest of those that are the same reading in another form.
 
     They are if they read any numbers alike: random ones are put into the columns, and read.
     """

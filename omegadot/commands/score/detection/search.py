@@ -1,4 +1,4 @@
-"""Which convention a trace comes in: all that are plausible are tried, and the fits are told apart.
+"""Which convention a trace follows: all plausible ones are tried, and the fits distinguished.
 
 A reading is chosen only where it fits ten times better than any other; else all that fit as well
 are named.
@@ -77,7 +77,7 @@ def _clocks(raw: Array, column: str, duration: float) -> list[Clock]:
 def _beside(
     case: Case, table: Table, column: str, names: Sequence[str]
 ) -> list[tuple[Clock, Numbers]]:
-    """The trace's numbers beside the exact course, once for every clock."""
+    """The trace's numbers next to the exact trajectory, once for every clock."""
     raw = table.column(column).values
     if len(raw) < 3 or np.any(np.diff(raw) <= 0.0):
         raise TraceError(f"{table.file}: fewer than three samples, or their time does not rise.")
@@ -130,7 +130,7 @@ def _readings(clock: Clock, numbers: Numbers, axes: int) -> list[Reading]:
 
 
 def detect(case: Case, table: Table, column: str, names: Sequence[str]) -> Detected:
-    """Try every reading of the columns named and tell the fits apart. column: the time's."""
+    """Try every reading of the columns named and distinguish the fits. column: the time's."""
     beside = _beside(case, table, column, names)
     found = _found(beside)
     turn = beside[0][1].turn if beside else 0.0
