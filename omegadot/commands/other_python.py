@@ -15,7 +15,7 @@ import importlib.util, sys
 spec = importlib.util.spec_from_file_location("omegadot", {init!r})
 sys.modules["omegadot"] = module = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(module)
-from omegadot.adapters.worker import main
+from omegadot.workers.engine_end.worker import main
 main()
 """
 

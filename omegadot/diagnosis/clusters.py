@@ -24,7 +24,7 @@ from omegadot.reference_impl.system import Array
 from omegadot.workers.wire import state_from
 
 # The reference has no vote: its schemes are what the members are named after.
-NO_VOTE = ("exact", "reference")
+NOT_COUNTED = ("exact", "reference")
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def _runs(truth: Truth, engines: Iterable[EngineCase], sweep: Sweep) -> list[_Me
     found = []
     for engine in engines:
         for judged in engine.runs:
-            if judged.sweep != sweep or judged.outcome != "ok" or engine.engine.name in NO_VOTE:
+            if judged.sweep != sweep or judged.outcome != "ok" or engine.engine.name in NOT_COUNTED:
                 continue
             answer = engine.result.runs[judged.integrator.name, sweep.timestep]
             if len(answer.result["time"]) != len(sweep.times):

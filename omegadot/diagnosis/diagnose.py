@@ -19,10 +19,8 @@ from omegadot.diagnosis import (
     equation,
     model,
     pieces,
+    reported_run_causes,
     stepping,
-)
-from omegadot.diagnosis import (
-    reported_run_causes as runs_told,
 )
 from omegadot.diagnosis.reported_run import reported_run
 from omegadot.diagnosis.reported_sample_causes import omega_dot_late
@@ -79,7 +77,7 @@ def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> lis
     if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
         late = "" if reported is None else omega_dot_late(reported, result)
         return [late] if late else []
-    found = runs_told.causes(case, truth, result, run)
+    found = reported_run_causes.causes(case, truth, result, run)
     found = found or stepping.causes(case, truth, result, run)
     if found or reported is None or len(reported.time) != len(reported.sweep.times):
         return found

@@ -51,7 +51,7 @@ def _fit(match: Match, term: Acceleration) -> float | None:
     return k if match.fits(added, SLACK) else None
 
 
-def _spoken(what: str, factor: float, words: dict[int, str]) -> str:
+def _as_text(what: str, factor: float, words: dict[int, str]) -> str:
     nearest = round(factor)
     if abs(factor - nearest) < 1e-9 and nearest in words:
         return f"{what} {words[nearest]}"
@@ -75,7 +75,7 @@ def scaled_terms(match: Match) -> str:
         k = _fit(match, _term(match, moment, gravity))
         if k is not None:
             over_mass = abs((1.0 + k) * float(system.body.mass) - 1.0) < 1e-9
-            text = _spoken(what, 1.0 + k, words)
+            text = _as_text(what, 1.0 + k, words)
             return f"{text}: it is divided by the mass" if over_mass else text
     k = _fit(match, _term(match, -w, 0.0))
     if k is not None:

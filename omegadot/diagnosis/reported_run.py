@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.restep import step_anew
+from omegadot.diagnosis.restep import step_again
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.measured_run import CHANNELS, scheme_key
 from omegadot.gates.truth import Truth
@@ -82,7 +82,7 @@ class ReportedRun:
             return exact(replace(state, orientation=normalize(state.orientation)))
 
         how = (wanted, acceleration, scheme or declared, self.integrator.steps_origin)
-        return step_anew(*how, initial or self.case.initial, plan)[1]
+        return step_again(*how, initial or self.case.initial, plan)[1]
 
     def stepped_on(self, states: State) -> State:
         """Where the declared scheme leads from each of (m,) states to the next sample."""
@@ -90,7 +90,7 @@ class ReportedRun:
         system, declared = self.case.system, SCHEMES[self.integrator.scheme or ""]
         how = (system, acceleration_of(system), declared, self.integrator.steps_origin)
         unit = replace(states, orientation=normalize(states.orientation))
-        return State(*(values[-1] for values in vars(step_anew(*how, unit, plan)[1]).values()))
+        return State(*(values[-1] for values in vars(step_again(*how, unit, plan)[1]).values()))
 
 
 def reported_run(
@@ -121,12 +121,12 @@ def _until_it_shows(reported: ReportedRun) -> ReportedRun:
     apart = np.any([~(distances[c] <= DISTINCT * bounds[c]) for c in CHANNELS], axis=0)
     first = int(np.argmax(apart)) if apart.any() else len(numbers)
     count = min(max(2 * first, LEAST_SAMPLES), len(numbers))
-    begun = slice(0, count)
+    start = slice(0, count)
     sweep = Sweep(reported.sweep.timestep, int(numbers[count - 1]), reported.sweep.every)
     part = (
-        reported.time[begun],
-        rows(reported.state, begun),
-        rows(reported.own, begun),
-        reported.growth[begun],
+        reported.time[start],
+        rows(reported.state, start),
+        rows(reported.own, start),
+        reported.growth[start],
     )
     return ReportedRun(reported.case, reported.truth, reported.integrator, sweep, *part)

@@ -141,8 +141,8 @@ def _start(reported: ReportedRun) -> str:
     first = slice(0, 1)
     if reported.agrees(rows(reported.state, first), rows(reported.own, first), first):
         return ""
-    begun = State(*(values[0] for values in vars(reported.state).values()))
-    if reported.agrees(reported.state, reported.stepped(initial=begun), slack=2.0):
+    start = State(*(values[0] for values in vars(reported.state).values()))
+    if reported.agrees(reported.state, reported.stepped(initial=start), slack=2.0):
         return "the run does not begin at the state it is given, and is sound from where it begins"
     return "the run does not begin at the state it is given"
 

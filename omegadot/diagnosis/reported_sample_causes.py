@@ -35,11 +35,11 @@ def digits_reported(reported: ReportedRun) -> str:
     numbers = np.concatenate([np.ravel(values) for values in vars(reported.state).values()])
     if not np.all(np.isfinite(numbers)):
         return ""
-    told_by = _digits(numbers)
+    digits = _digits(numbers)
     own = np.concatenate([np.ravel(values) for values in vars(reported.own).values()])
-    if told_by > MOST_DIGITS or _digits(own) <= told_by:
+    if digits > MOST_DIGITS or _digits(own) <= digits:
         return ""
-    return f"the numbers of the run have {told_by} digits: they went through text"
+    return f"the numbers of the run have {digits} digits: they went through text"
 
 
 def _digits(numbers: Array) -> int:

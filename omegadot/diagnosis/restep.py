@@ -40,7 +40,7 @@ def at_origin(system: System, of_center: AccelerationOf) -> AccelerationOf:
     return acceleration
 
 
-def step_anew(
+def step_again(
     system: System,
     acceleration: AccelerationOf,
     scheme: Scheme,

@@ -127,7 +127,7 @@ def flip_rows(system: System, exact: Hermite, state: State, floor: float, gap: f
     return [Row(GATE, "time", "flip_time_error", error, "s", open_time, note=note)]
 
 
-def _spoken(shift: float) -> str:
+def _as_text(shift: float) -> str:
     return f"{'late' if shift < 0.0 else 'early'} by {abs(shift):.2e} s"
 
 
@@ -158,7 +158,7 @@ def rows(truth: Truth, measured: MeasuredRun, state: State) -> list[Row]:
         between = rounding + bend * error_factor(0.5)
         flips = flip_rows(truth.yardstick.system, exact, state, between, rounding)
     return [
-        Row(GATE, "time", "time_shift", best.shift, "s", floor / change, note=_spoken(best.shift)),
+        Row(GATE, "time", "time_shift", best.shift, "s", floor / change, note=_as_text(best.shift)),
         Row(GATE, "omega", "residual_after_shift", left, "1", floor / rate, note=text),
         *flips,
     ]

@@ -120,7 +120,7 @@ def _held_to(order: Seen, declared: int | None, explained: bool) -> tuple[str, s
     return "fail", f"observed order {order.value:.2f}, declared {declared}"
 
 
-def keys_beside(integrator: Integrator, system: System) -> list[SchemeKey]:
+def comparison_keys(integrator: Integrator, system: System) -> list[SchemeKey]:
     """The reference's runs to hold an integrator against: every scheme's if it declares none."""
     declared = scheme_key(integrator, system)
     if declared is not None:

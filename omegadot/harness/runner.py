@@ -10,7 +10,7 @@ import numpy as np
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.evaluation_states import evaluation_states_of
 from omegadot.gates.measured_run import SchemeKey, scheme_key
-from omegadot.gates.scheme import keys_beside
+from omegadot.gates.scheme import comparison_keys
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.engines import Engines
@@ -47,7 +47,7 @@ class Runner:
             key
             for engine in stepping
             for integrator in engine.integrators
-            for key in keys_beside(integrator, case.system)
+            for key in comparison_keys(integrator, case.system)
         }
         return sorted(named, key=str)
 

@@ -34,10 +34,10 @@ def probe_unknown_schemes(
         for sweep, run in runs.items():
             if run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
                 state = state_from(run.result["state"])
-                _begin_anew(driver, case, integrator, sweep, state, result)
+                _restart(driver, case, integrator, sweep, state, result)
 
 
-def _begin_anew(
+def _restart(
     driver: Driver,
     case: Case,
     integrator: Integrator,

@@ -68,14 +68,14 @@ def growth_along(system: System, times: Array, states: State, rate: float) -> Ar
     starts = _starts(count)
     found = np.full(len(times), np.inf)
     products = np.empty((len(starts), 6, 6))
-    begun = 0
+    start = 0
     for n in range(count):
         if n:
-            products[:begun] = maps[n - 1] @ products[:begun]
-        if begun < len(starts) and starts[begun] == n:
-            products[begun] = np.eye(6)
-            begun += 1
-        found[n] = max(1.0, _largest(products[:begun]))
+            products[:start] = maps[n - 1] @ products[:start]
+        if start < len(starts) and starts[start] == n:
+            products[start] = np.eye(6)
+            start += 1
+        found[n] = max(1.0, _largest(products[:start]))
     return found
 
 

@@ -27,7 +27,7 @@ class ScenarioError(ValueError):
         return f"{place} is {self.found}; {self.advice}."
 
 
-class Spoken(str):
+class Phrase(str):
     """Words to show as they stand: not a value that the user wrote."""
 
     __slots__ = ()
@@ -42,7 +42,7 @@ def printable(text: str) -> str:
 def describe(value: object, depth: int = 2) -> str:
     """A value in TOML's own spelling, in at most about ``SHOWN`` characters, safe to print."""
     match value:
-        case Spoken():
+        case Phrase():
             return str(value)
         case bool():
             return "true" if value else "false"

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator, model_validator
 
-from omegadot.scenarios.errors import Spoken
+from omegadot.scenarios.errors import Phrase
 from omegadot.scenarios.parts import Part
 from omegadot.scenarios.quantities import (
     Name,
@@ -83,7 +83,7 @@ class Body(_Table):
         for key in ("mass", "inertia"):
             if given[key] is None and not self.part:
                 advice = "give mass and inertia, or [[body.part]] tables"
-                raise refuse(advice, key=key, found=Spoken("missing"))
+                raise refuse(advice, key=key, found=Phrase("missing"))
         return self
 
 

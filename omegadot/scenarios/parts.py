@@ -22,7 +22,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from omegadot.scenarios.errors import Spoken
+from omegadot.scenarios.errors import Phrase
 from omegadot.scenarios.quantities import Lengths, Positive, Quaternion, Vector, refuse
 
 
@@ -40,7 +40,7 @@ class _Solid(_Placed):
     @model_validator(mode="after")
     def _mass_or_density(self) -> Self:
         if self.mass is None and self.density is None:
-            raise refuse("give either mass or density", key="mass", found=Spoken("missing"))
+            raise refuse("give either mass or density", key="mass", found=Phrase("missing"))
         if self.mass is not None and self.density is not None:
             advice = "leave out mass or density, one gives the other"
             raise refuse(advice, key="density", found=self.density)

@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.scenarios.errors import Spoken
+from omegadot.scenarios.errors import Phrase
 from omegadot.scenarios.parts import Box, Capsule, Cylinder, Ellipsoid, Part, Point, Sphere
 from omegadot.scenarios.quantities import LARGEST, SMALLEST, refuse
 
@@ -111,11 +111,11 @@ def check_body_of_parts(parts: tuple[Part, ...]) -> None:
             "move a part off the line, or give it a thickness, so that the body has an inertia"
             " about every axis",
             key="part",
-            found=Spoken("a set of parts on one line"),
+            found=Phrase("a set of parts on one line"),
         )
     if small + middle < SMALLEST or middle + large > LARGEST:
         raise refuse(
             f"choose parts for an inertia of {SMALLEST:g} to {LARGEST:g} kg m^2",
             key="part",
-            found=Spoken(f"a body with moments from {small + middle:.3g} to {middle + large:.3g}"),
+            found=Phrase(f"a body with moments from {small + middle:.3g} to {middle + large:.3g}"),
         )

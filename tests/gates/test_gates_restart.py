@@ -33,7 +33,7 @@ def prepared() -> Prepared:
     return pool.prepare(pool.having({"asymmetric", "torque-free"}, 1)[0])
 
 
-def begun(prepared: Prepared) -> tuple[Sweep, State, int, State]:
+def start(prepared: Prepared) -> tuple[Sweep, State, int, State]:
     case, sweep = prepared.case, prepared.case.sweeps[0]
     how = (SCHEMES["lie-rk4"], case.system, acceleration_of(case.system), case.initial)
     state = step_through(*how, sweep.timestep, sweep.steps, sweep.every)[1]
@@ -45,7 +45,7 @@ def begun(prepared: Prepared) -> tuple[Sweep, State, int, State]:
 
 def reported(prepared: Prepared, off: float, integrator: Integrator = ONE_STEP) -> Row:
     """What is reported where omega's last sample is off by so many rad/s."""
-    sweep, state, sample, anew = begun(prepared)
+    sweep, state, sample, anew = start(prepared)
     w = anew.angular_velocity.copy()
     w[-1, 0] += off
     moved = replace(anew, angular_velocity=w)
@@ -54,7 +54,7 @@ def reported(prepared: Prepared, off: float, integrator: Integrator = ONE_STEP) 
 
 def bounds(prepared: Prepared) -> tuple[float, float]:
     """Of the last omega in rad/s: twice the round-off bound, as it is and with its growth."""
-    sweep, state, _, _ = begun(prepared)
+    sweep, state, _, _ = start(prepared)
     yardstick = prepared.truth.yardstick
     growth = growth_along(yardstick.system, sweep.times, state, yardstick.rate)
     plain, grown = (

@@ -11,7 +11,7 @@ from omegadot.adapters.registry import build_adapter
 from omegadot.gates.case import Sweep
 from omegadot.gates.likeness import likeness, share_of
 from omegadot.gates.measured_run import Declared, MeasuredRun, SchemeKey
-from omegadot.gates.scheme import keys_beside, order_rows, orders_seen
+from omegadot.gates.scheme import comparison_keys, order_rows, orders_seen
 from omegadot.reference_impl.schemes import SCHEMES
 
 STEPS = (0.02, 0.01, 0.005)
@@ -165,10 +165,10 @@ def test_a_likeness_names_where_it_is_least():
 
 
 def test_who_declares_no_scheme_is_held_against_all_of_them(case):
-    assert keys_beside(declared("own", "lie-rk4"), case.system) == [SchemeKey("lie-rk4", False)]
-    silent = keys_beside(declared("own"), case.system)
+    assert comparison_keys(declared("own", "lie-rk4"), case.system) == [SchemeKey("lie-rk4", False)]
+    silent = comparison_keys(declared("own"), case.system)
     assert {key.scheme for key in silent} == set(SCHEMES)
     offset = builtin("offset-com").system
     at_origin = replace(declared("own"), steps_origin=True)
-    assert {key.at_origin for key in keys_beside(at_origin, offset)} == {True}
-    assert {key.at_origin for key in keys_beside(at_origin, case.system)} == {False}
+    assert {key.at_origin for key in comparison_keys(at_origin, offset)} == {True}
+    assert {key.at_origin for key in comparison_keys(at_origin, case.system)} == {False}

@@ -138,8 +138,8 @@ def test_scrubbing_sets_the_clock_and_the_numbers(page):
     choose(page, "see-step", "2")
     choose(page, "see-time", "2")
     assert page.evaluate("document.getElementById('see-now').textContent") == "2.00 s"
-    spoken = "document.getElementById('see-time').getAttribute('aria-valuetext')"
-    assert page.evaluate(spoken) == "2.00 s of 4.00 s"
+    as_text = "document.getElementById('see-time').getAttribute('aria-valuetext')"
+    assert page.evaluate(as_text) == "2.00 s of 4.00 s"
     # Late by 2 * 0.3 * 0.02 * 2 rad, which is 1.375 degrees.
     (text,) = [text for text in listed(page) if text.startswith("dart")]
     assert "1.4° off" in text

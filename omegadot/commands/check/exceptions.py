@@ -71,7 +71,7 @@ def read_exceptions(path: Path) -> list[DeclaredException]:
     return found
 
 
-def _beside(target: str) -> Path | None:
+def _next_to(target: str) -> Path | None:
     """Where an adapter's own exceptions stand: module.exceptions.toml beside module.py."""
     module = target.rpartition(":")[0]
     if module.endswith(".py"):
@@ -96,7 +96,7 @@ def exceptions_of(
     for choice in choices:
         names.add(choice.name)
         built_in = BUILT_IN.get(choice.name) == choice.target
-        path = OWN_FOLDER / f"{choice.name}.toml" if built_in else _beside(choice.target)
+        path = OWN_FOLDER / f"{choice.name}.toml" if built_in else _next_to(choice.target)
         if path is not None and path.is_file():
             found += read_exceptions(path)
     for path in files:

@@ -9,15 +9,15 @@ from omegadot.gates.rows import Row
 from omegadot.reports.text.numbers import listed, short
 
 # Their notes are the whole sentence, with the figures in it.
-SPOKEN_FOR = ("match", "observed_order", "sample_times")
+NOTE_ALONE = ("match", "observed_order", "sample_times")
 
 # For these the note is clearer than the figure, a fraction of its bound.
-SPOKEN_IN_PARTS = ("begun_anew", "rate_at_no_step", "start", "precision")
+NOTE_BEFORE_FIGURE = ("begun_anew", "rate_at_no_step", "start", "precision")
 
 
 def _excess(row: Row) -> float:
     """How many times its bound a value is; infinite where it is not finite or nothing is due."""
-    if row.metric in SPOKEN_FOR:
+    if row.metric in NOTE_ALONE:
         return 0.0
     if row.bound is None or not math.isfinite(row.value):
         return math.inf
@@ -30,7 +30,7 @@ def _unit(row: Row) -> str:
 
 def sentence(row: Row) -> str:
     """One failing row as text."""
-    if row.metric in (*SPOKEN_FOR, *SPOKEN_IN_PARTS) and row.note:
+    if row.metric in (*NOTE_ALONE, *NOTE_BEFORE_FIGURE) and row.note:
         return f"{row.channel}: {row.note}"
     message = f"{row.channel}: {row.metric} is {short(row.value, 3)}{_unit(row)}"
     if row.bound is not None:

@@ -61,7 +61,7 @@ def judge(
     chosen = integrators or chosen_integrators(adapter.description.integrators)
     driver = driver_of(name, adapter, chosen)
     result = driver.evaluate_equations(case, prepared.evaluation)
-    pool.step_beside(prepared, result.integrators)
+    pool.step_companions(prepared, result.integrators)
     result.runs.update(driver.run_all(case, lambda: None))
     probe_unknown_schemes(driver, case, prepared.evaluation, result)
     with np.errstate(all="ignore"):  # a wrong engine may give any numbers

@@ -67,7 +67,7 @@ class Pool:
                     break
         return found
 
-    def step_beside(self, prepared: Prepared, integrators: Iterable[Integrator]) -> None:
+    def step_companions(self, prepared: Prepared, integrators: Iterable[Integrator]) -> None:
         """Have the reference step the schemes that these integrators declare."""
         truth, case = prepared.truth, prepared.case
         named = {scheme_key(integrator, case.system) for integrator in integrators}

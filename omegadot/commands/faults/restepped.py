@@ -5,7 +5,7 @@ from __future__ import annotations
 from omegadot.adapters.protocol import Integrator, Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.fault import Spoiled
-from omegadot.diagnosis.restep import on_rows, step_anew
+from omegadot.diagnosis.restep import on_rows, step_again
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.schemes import SCHEMES, AccelerationOf, Scheme
 from omegadot.reference_impl.system import Acceleration, State
@@ -43,7 +43,7 @@ class Restepped(Spoiled):
         scheme = self.scheme(SCHEMES[declared.scheme or "semi-implicit-euler"])
         how = (self.loaded(self.system), self.acceleration(), scheme, declared.steps_origin)
         plan = (timestep, steps, every)
-        return self.logged(Trajectory(*step_anew(*how, self.into(initial), plan)))
+        return self.logged(Trajectory(*step_again(*how, self.into(initial), plan)))
 
 
 class Accelerated(Restepped):

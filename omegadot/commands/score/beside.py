@@ -46,7 +46,7 @@ def _spread(times: Array, known: Array, values: Array) -> Array:
     return np.asarray(np.maximum(values[right - 1], values[right]))
 
 
-def truth_beside(system: System, initial: State, times: Array) -> Truth:
+def truth_at(system: System, initial: State, times: Array) -> Truth:
     """The exact states at `times`, (n,) s, the growth of rounding up to there, and the floor."""
     rows = np.unique(np.linspace(0, len(times) - 1, MOST_FOLLOWED).round().astype(int))
     some = times[rows]

@@ -120,7 +120,7 @@ def _from_quaternion(parts: list[str], text: str, option: str, advice: str) -> A
     return rotation_matrix(normalize(q))
 
 
-def spoken_axes(matrix: Array) -> str:
+def axes_text(matrix: Array) -> str:
     """The text that `axes_of` reads this matrix from, for one of signed axes."""
     arguments = []
     for row in matrix:

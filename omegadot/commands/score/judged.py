@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from omegadot.commands.score.beside import ExactTrajectory, exact_trajectory, truth_beside
+from omegadot.commands.score.beside import ExactTrajectory, exact_trajectory, truth_at
 from omegadot.commands.score.bounds import Rounding, digits_open, joined, reading_bound
 from omegadot.commands.score.columns import Columns
 from omegadot.commands.score.convention import Convention
@@ -14,7 +14,7 @@ from omegadot.commands.score.measured import Measured, measure_trace
 from omegadot.commands.score.plausible import check_duration, check_units
 from omegadot.commands.score.require import Requirement
 from omegadot.commands.score.shift import Shift, best_shift
-from omegadot.commands.score.steps import Beside, Compared, Declared, beside, declared_of
+from omegadot.commands.score.steps import Compared, Comparison, Declared, beside, declared_of
 from omegadot.commands.score.table import Table
 from omegadot.commands.score.trace import Trace, trace_of
 from omegadot.commands.score.verdicts import Judgement, judgement_of
@@ -54,7 +54,7 @@ class Judged:
     digits: Rounding
     bound: Rounding
     declared: Declared | None
-    schemes: list[Beside]
+    schemes: list[Comparison]
     judgement: Mapping[str, Judgement]
     shift: Shift | None
     flips: list[Row]
@@ -66,7 +66,7 @@ def judge_trace(case: Case, reading: Reading, making: Making) -> Judged:
     trace = trace_of(reading.table, reading.columns, how, system)
     check_duration(reading.table, trace, how, case.scenario.run.duration)
     declared = declared_of(trace, making.scheme, making.timestep)
-    truth = truth_beside(system, case.initial, trace.times)
+    truth = truth_at(system, case.initial, trace.times)
     check_units(reading.table, reading.columns, how, system, trace, truth)
     measured = measure_trace(trace, truth)
     digits = digits_open(truth, trace)

@@ -82,7 +82,7 @@ def machine_readable(found: Judged, rows: list[Row], name: str) -> dict[str, Any
         "attitude_after": shift.attitude_after,
         "noise": scatter(shift),
         "explains": shift.explains,
-        "note": shift.spoken if shift.seen else "neither late nor early",
+        "note": shift.as_text if shift.seen else "neither late nor early",
     }
     return {
         "scenario": found.case.name,

@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 
 from omegadot.commands.run.run import progress_bar, record_of
-from omegadot.commands.score.convention import Convention, spoken_axes
+from omegadot.commands.score.convention import Convention, axes_text
 from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.sentences import largest
 from omegadot.commands.score.trace_tables import labels_of, metrics_of, trajectories_of
@@ -32,7 +32,7 @@ def scored_record(
     """The record of the trace and of the engines that are run beside it."""
     started = time.perf_counter()
     request = RunRequest([found.case], list(choices))
-    outcome = _beside(request) if choices else _alone(found)
+    outcome = _next_to(request) if choices else _alone(found)
     base = record_of(outcome, request, command, time.perf_counter() - started)
     base.run["engines"].append(_engine(found, name))
     base.run["tasks"].append(_task(found, rows, name))
@@ -47,7 +47,7 @@ def scored_record(
     return record
 
 
-def _beside(request: RunRequest) -> Outcome:
+def _next_to(request: RunRequest) -> Outcome:
     runner = Runner(request)
     with progress_bar(runner, request.cases):
         return runner.execute()
@@ -72,7 +72,7 @@ def conventions_of(how: Convention) -> list[str]:
     for kind, axes in (("world", how.world), ("body", how.body)):
         if not np.array_equal(axes, np.eye(3)):
             exact = bool(np.all(np.isin(axes, (-1.0, 0.0, 1.0))))
-            judgement.append(f"{kind} axes turned" + (f": {spoken_axes(axes)}" if exact else ""))
+            judgement.append(f"{kind} axes turned" + (f": {axes_text(axes)}" if exact else ""))
     return judgement
 
 
@@ -116,7 +116,7 @@ def why_of(found: Judged, rows: list[Row]) -> str:
     if failed:
         return f"{failed[0].channel}: {failed[0].note}"
     if found.shift is not None and found.shift.explains:
-        return found.shift.spoken
+        return found.shift.as_text
     unlike = [
         (c, judgement) for c, judgement in found.judgement.items() if judgement.kind != "round-off"
     ]
@@ -133,7 +133,7 @@ def sentence_of(found: Judged, rows: list[Row], name: str) -> str:
         for channel in found.measured.error
     ]
     late = found.shift is not None and found.shift.explains
-    why = f" It is {found.shift.spoken}, and that is its error." if late and found.shift else ""
+    why = f" It is {found.shift.as_text}, and that is its error." if late and found.shift else ""
     return f"{name} on {found.case.name} is off at most: {', '.join(parts[:3])}.{why}"
 
 

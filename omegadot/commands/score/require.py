@@ -37,7 +37,7 @@ class Requirement:
         """The channel that it is about."""
         return CHANNEL.get(self.name, self.name)
 
-    def spoken(self, value: float) -> str:
+    def as_text(self, value: float) -> str:
         """A value in the unit that the requirement is written in."""
         unit = self.text.lstrip("+-.0123456789 ")
         unit = unit[1:].lstrip("+-.0123456789 ") if unit[:1] in ("e", "E") else unit
@@ -77,6 +77,6 @@ def requirement_rows(
             value, gate = factor * float(np.max(measured.error[channel])), GATES[channel]
             unit = {"omega": "rad/s", "attitude": "rad", "position": "m"}.get(channel, "1")
         verdict = "pass" if value <= one.limit else "fail"
-        note = f"required: at most {one.text}, found {one.spoken(value)}"
+        note = f"required: at most {one.text}, found {one.as_text(value)}"
         found.append(Row(gate, channel, "requirement", value, unit, one.limit, verdict, note))
     return found

@@ -99,7 +99,7 @@ def _shift(found: Judged) -> list[Row]:
     shift = found.shift
     if shift is None:
         return []
-    note = shift.spoken if shift.seen else "neither late nor early"
+    note = shift.as_text if shift.seen else "neither late nor early"
     rows = [Row("trajectory", "time", "time_shift", shift.seconds, "s", shift.open, note=note)]
     if shift.of == "omega":
         rate = found.truth.yardstick.rate

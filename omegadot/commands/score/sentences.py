@@ -55,13 +55,13 @@ def _late(found: Judged) -> list[str]:
     before, after = f"{factor * shift.before:.3g} {unit}", f"{factor * shift.after:.3g} {unit}"
     if shift.explains:
         judgement.append(
-            f"The trace is {shift.spoken}, and that is its error: {what} is off by {before} as it "
+            f"The trace is {shift.as_text}, and that is its error: {what} is off by {before} as it "
             f"stands and by {after} after the shift."
         )
     elif shift.seen:
         judgement.append(
-            f"The shift in time that fits best is {shift.spoken}, but it is not all: {what} is off "
-            f"by {before} as it stands and by {after} after the shift."
+            f"Best-fit time shift: {shift.as_text}. It explains only part of the error: {what} is "
+            f"off by {before} without the shift and by {after} with it."
         )
     noise = scatter(shift)
     if noise is not None:
@@ -128,4 +128,4 @@ def _absent(found: Judged) -> list[str]:
     if found.declared is None:
         lacking.append("scheme (declare --integrator-scheme and --timestep)")
     lacking.append("model and cost (a trace has none)")
-    return [*judgement, f"Gates without a word: {', '.join(lacking)}."]
+    return [*judgement, f"Gates not evaluated: {', '.join(lacking)}."]

@@ -53,7 +53,7 @@ class Shift:
         return self.seen and self.after <= max(EXPLAINS * self.before, self.bound)
 
     @property
-    def spoken(self) -> str:
+    def as_text(self) -> str:
         """``late by 3.20e-04 s``."""
         return f"{'late' if self.seconds < 0.0 else 'early'} by {abs(self.seconds):.3e} s"
 

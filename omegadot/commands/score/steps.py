@@ -36,7 +36,7 @@ class Declared:
 
 
 @dataclass(frozen=True)
-class Beside:
+class Comparison:
     """A trace against one scheme of the reference's. bound: (n,) by channel, rounding and digits.
 
     left: (n,) by channel, the distance from the scheme's own trajectory.  own_start: the
@@ -100,7 +100,7 @@ def declared_of(trace: Trace, scheme: str | None, timestep: float | None) -> Dec
     return Declared(scheme, timestep, numbers)
 
 
-def beside(held: Compared) -> list[Beside]:
+def beside(held: Compared) -> list[Comparison]:
     """The scheme that is declared; every scheme if none is, or if it is another that was stepped.
 
     The declared one comes first; from the trace's own start, where that makes it agree.
@@ -115,14 +115,14 @@ def beside(held: Compared) -> list[Beside]:
     return first + [_against(held, name) for name in SCHEMES if name != named]
 
 
-def _against(held: Compared, scheme: str, own_start: bool = False) -> Beside:
+def _against(held: Compared, scheme: str, own_start: bool = False) -> Comparison:
     """The nearer of the centre of mass stepped and, off it, the body's origin."""
     places = (False, True) if is_offset(held.truth.yardstick.system) else (False,)
     found = [_stepped(held, scheme, own_start, at_origin) for at_origin in places]
     return min(found, key=lambda one: sum(np.any(one.left[c] > one.bound[c]) for c in one.left))
 
 
-def _stepped(held: Compared, scheme: str, own_start: bool, at_origin: bool) -> Beside:
+def _stepped(held: Compared, scheme: str, own_start: bool, at_origin: bool) -> Comparison:
     judgement, yardstick, error = held.judgement, held.truth.yardstick, held.measured.error
     numbers = judgement.numbers.astype(int)
     every = reduce(gcd, (int(n) for n in numbers), 0) or 1
@@ -144,7 +144,7 @@ def _stepped(held: Compared, scheme: str, own_start: bool, at_origin: bool) -> B
         spins = {c: left[c] for c in left if c in ("omega", "attitude")} or left
         still = dict.fromkeys(("omega", "attitude"), np.zeros(len(rows)))
         found = likeness({**still, **spins}, bound)
-    return Beside(scheme, left, bound, found, own_start)
+    return Comparison(scheme, left, bound, found, own_start)
 
 
 def _start_open(digits: Rounding, growth: Array) -> Rounding:

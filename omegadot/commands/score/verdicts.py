@@ -8,7 +8,7 @@ import numpy as np
 
 from omegadot.commands.score.bounds import Rounding
 from omegadot.commands.score.measured import Measured
-from omegadot.commands.score.steps import Beside, Declared
+from omegadot.commands.score.steps import Comparison, Declared
 from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.verdicts import Finding
 from omegadot.reference_impl.system import Array
@@ -26,7 +26,7 @@ class Judgement:
     note: str
 
 
-def _finding(error: Array, bound: Array, own: Beside | None, channel: str) -> Finding:
+def _finding(error: Array, bound: Array, own: Comparison | None, channel: str) -> Finding:
     if np.all(error <= bound):
         return Finding("round-off", "within digits and rounding")
     if own is not None:
@@ -38,7 +38,7 @@ def _finding(error: Array, bound: Array, own: Beside | None, channel: str) -> Fi
 
 
 def judgement_of(
-    measured: Measured, bound: Rounding, declared: Declared | None, schemes: list[Beside]
+    measured: Measured, bound: Rounding, declared: Declared | None, schemes: list[Comparison]
 ) -> dict[str, Judgement]:
     """Every given channel judged.
 

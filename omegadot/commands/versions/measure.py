@@ -45,7 +45,7 @@ REQUESTED_OF_ENGINE = frozenset({"convention", "default"})
 class Portrait:
     """One version. outcome: "ok", or why there is nothing of it, with the reason.
 
-    version: as requested.  statement: the version that the engine itself reports.  faults: where it is
+    version: as requested.  statement: the version that the engine reports.  faults: where it is
     not as its adapter declares, or wrong.  has: its integrators, those not looked at included.
     troubles: questions that it failed to answer.  untold: kinds of metric that it was
     requested in vain.

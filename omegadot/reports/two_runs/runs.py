@@ -100,14 +100,14 @@ def without_repetition(gates: Iterable[Change], figures: Iterable[Change]) -> li
     A figure of model or equation is one of the engine, and speaks for all its runs.
     """
     reported = list(figures)
-    spoken = {
+    as_text = {
         (change.key, change.gate, change.worse) for change in reported if change.was != change.now
     }
     whole = [
         change
         for change in gates
         if not {(k, change.gate, change.worse) for k in (change.key, engine_key(change.key))}
-        & spoken
+        & as_text
     ]
     return whole + reported
 

@@ -56,7 +56,7 @@ def sheet_of(record: Record) -> Sheet:
     known = [version for version in versions if version["outcome"] == "ok"]
     return Sheet(
         title=_title(record, known),
-        beside=_beside(record),
+        beside=_next_to(record),
         absent=[
             (v["version"], f"{v['outcome']}: {v['reason']}") for v in versions if v not in known
         ],
@@ -89,7 +89,7 @@ def _title(record: Record, known: Sequence[Record]) -> str:
     return f"{named} {ends}: {answered}, {times(changed, 'step')} with changes"
 
 
-def _beside(record: Record) -> list[str]:
+def _next_to(record: Record) -> list[str]:
     bisected = record["bisect"]
     if bisected is None:
         cases = [f"{c['name']} ({plain(c['timestep'])} s)" for c in record["cases"]]

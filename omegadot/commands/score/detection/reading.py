@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.commands.score.convention import spoken_axes
+from omegadot.commands.score.convention import axes_text
 from omegadot.commands.score.detection.numbers import AXES, SAME
 from omegadot.commands.score.detection.parts import Attitude, Omega
 from omegadot.reference_impl.rotations import rotation_matrix
@@ -69,7 +69,7 @@ class Reading:
             judgement += _attitude_options(self.attitude)
             world, body = self.attitude.world, self.attitude.body
         for name, axes in (("world", world), ("body", body)):
-            judgement += [f"--{name}-axes={spoken_axes(AXES[axes])}"] * (axes != SAME)
+            judgement += [f"--{name}-axes={axes_text(AXES[axes])}"] * (axes != SAME)
         return judgement
 
 

@@ -74,7 +74,7 @@ def _clocks(raw: Array, column: str, duration: float) -> list[Clock]:
     return found
 
 
-def _beside(
+def _next_to(
     case: Case, table: Table, column: str, names: Sequence[str]
 ) -> list[tuple[Clock, Numbers]]:
     """The trace's numbers next to the exact trajectory, once for every clock."""
@@ -131,7 +131,7 @@ def _readings(clock: Clock, numbers: Numbers, axes: int) -> list[Reading]:
 
 def detect(case: Case, table: Table, column: str, names: Sequence[str]) -> Detected:
     """Try every reading of the columns named and distinguish the fits. column: the time's."""
-    beside = _beside(case, table, column, names)
+    beside = _next_to(case, table, column, names)
     found = _found(beside)
     turn = beside[0][1].turn if beside else 0.0
     if not found:
