@@ -85,7 +85,7 @@ def test_the_line_wins_over_the_file(tmp_path: Path) -> None:
         ("licence = ['']\nattitude = 1", "empty"),
         ("feature = [1]\nattitude = 1", "list of texts"),
         ("momentum-drift = 1\nmomentum_drift = 2", "given twice"),
-        ("python = '3.12'", "nothing is required of the accuracy"),
+        ("python = '3.12'", "no accuracy is required"),
         ("attitude = 1\n[attitude.x]\ny=1", "not valid TOML"),
     ],
 )

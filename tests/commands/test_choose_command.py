@@ -190,7 +190,7 @@ def test_a_crash_is_told_from_a_miss(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "statement"),
     [
-        ([], "nothing is required of the accuracy"),
+        ([], "no accuracy is required"),
         (["--attitude", "1"], "nothing to simulate"),
         (["t-handle", "--attitude", "1 degg"], "write deg"),
         (["t-handel", "--attitude", "1deg"], "t-handle"),
