@@ -70,10 +70,16 @@ class Description:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """States at the engine's own steps. time: (n,) s; every array of the state has n rows."""
+    """States at the engine's own steps. time: (n,) s; every array of the state has n rows.
+
+    seconds: s that the steps took, with samples logged as the engine keeps them. Setting the state
+    and converting samples to the project's frames are left out: a user of the engine's own API
+    does not pay for them at each step. None: the whole call is the cost.
+    """
 
     time: Array
     state: State
+    seconds: float | None = None
 
 
 @runtime_checkable

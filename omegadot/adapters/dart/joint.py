@@ -1,4 +1,4 @@
-"""States of a DART body in named frames, its dynamics, its loads and its step.
+"""States of a DART body in named frames, and its dynamics.
 
 The frame of a joint's own velocities differs between joints and versions of DART. Here they are
 never read: states are set through calls that name their frames, or through the joint's Jacobian J,
@@ -10,11 +10,10 @@ Dynamics Algorithms (2008), section 2.11.
 
 from __future__ import annotations
 
-from itertools import repeat
-
 import numpy as np
 
 from omegadot.adapters.dart.model import DartModel
+from omegadot.adapters.dart.stepping import DartStepper, are_finite
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Acceleration, Array, State, System
@@ -24,16 +23,10 @@ class DartJoint:
     """The body of a `DartModel` under the loads of its system."""
 
     def __init__(self, model: DartModel, system: System) -> None:
-        load = system.load
-        self.model = model
+        self.model, self.stepper = model, DartStepper(model, system.load)
         self._frame, self._node, self._joint = model.frame, model.node, model.joint
-        self._free = load.pivot is None
+        self._free = system.load.pivot is None
         self._com = np.array(system.body.center_of_mass, float)
-        self._damping = float(load.damping)
-        self._torque_body = np.array(load.torque_body, float)
-        self._torque_world = np.array(load.torque_world, float)
-        self._in_body = bool(self._damping or self._torque_body.any())
-        self._in_world = bool(self._torque_world.any())
 
     def set_state(self, state: State) -> None:
         """Put the joint in the state; a pivoted body takes orientation and angular velocity."""
@@ -50,30 +43,38 @@ class DartJoint:
 
     def get_state(self) -> State:
         """The body node's state in the project's frames; NaN where DART's own is not finite."""
-        if not self.is_finite():
-            return State(np.full(4, np.nan), *np.full((3, 3), np.nan))
-        node, world = self._node, self._frame
-        q = node.getTransform().quaternion()
-        return State(
-            np.array([q.w(), q.x(), q.y(), q.z()]),
-            node.getAngularVelocity(world, node),
-            node.getCOM(world),
-            node.getCOMLinearVelocity(world, world),
-        )
+        found = self.states([self._joint.getPositions(), self._joint.getVelocities()], 1)
+        return State(*(field[0] for field in vars(found).values()))
+
+    def states(self, logged: list[Array], count: int) -> State:
+        """The states, `count` of them, at joint positions and velocities logged in turns.
+
+        By DART's own kinematics. They are NaN from the first coordinates on that are missing or
+        not finite; the joint is left in the last that are.
+        """
+        joint, node, world = self._joint, self._node, self._frame
+        finite = are_finite(np.array(logged[::2]), np.array(logged[1::2]))
+        rows = []
+        for n in range(np.count_nonzero(np.logical_and.accumulate(finite))):
+            joint.setPositions(logged[2 * n])
+            joint.setVelocities(logged[2 * n + 1])
+            attitude, twist = node.getTransform().quaternion(), node.getCOMSpatialVelocity()
+            velocity = node.getCOMLinearVelocity(world, world)
+            rows.append((attitude.wxyz(), twist, node.getCOM(world), velocity))
+        found = np.full((count, 16), np.nan)
+        if rows:
+            found[: len(rows)] = np.hstack([np.array(column) for column in zip(*rows, strict=True)])
+        return State(found[:, :4], found[:, 4:7], found[:, 10:13], found[:, 13:])
 
     def is_finite(self) -> bool:
-        """Whether the joint's own coordinates and the squares of its velocities are finite."""
-        position, velocity = self._joint.getPositions(), self._joint.getVelocities()
-        # x - x is nan for nan and inf, and a product of Python floats overflows without a warning
-        return all(x - x == 0 for x in position.tolist()) and all(
-            v * v - v * v == 0 for v in velocity.tolist()
-        )
+        """Whether the joint's own coordinates are finite, and the squares of its velocities."""
+        return bool(are_finite(self._joint.getPositions(), self._joint.getVelocities()))
 
     def forward(self) -> tuple[Array, Array]:
         """omega-dot (3,), body, and the acceleration of the centre of mass (3,), world."""
         if not self.is_finite():
             return np.full(3, np.nan), np.full(3, np.nan)
-        self._push()
+        self.stepper.push()
         self.model.skeleton.computeForwardDynamics()
         self._node.clearExternalForces()
         return (
@@ -126,22 +127,3 @@ class DartJoint:
         self.model.world.setTime(0.0)
         self.model.world.setTimeStep(timestep)
         self.set_state(state)
-
-    def step(self, count: int) -> None:
-        """`World.step`, count times, the loads pushed anew before each."""
-        step, push = self.model.world.step, self._push
-        if not (self._in_body or self._in_world):
-            for _ in repeat(None, count):
-                step()
-            return
-        for _ in repeat(None, count):
-            push()
-            step()
-
-    def _push(self) -> None:
-        """Damping and applied torques as external torques; a step clears them."""
-        if self._in_body:
-            omega = self._node.getAngularVelocity(self._frame, self._node)
-            self._node.addExtTorque(self._torque_body - self._damping * omega, True)
-        if self._in_world:
-            self._node.addExtTorque(self._torque_world, False)

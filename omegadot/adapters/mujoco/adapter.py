@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -168,6 +169,8 @@ class MujocoAdapter:
         places = self._model.nq
         with np.errstate(over="ignore", invalid="ignore"):  # a diverged run is shown as it is
             self._data.qpos[:], self._data.qvel[:] = self._coordinates.of_state(initial)
+            began = perf_counter()
             rows = self._stepper.run(steps, every)
+            seconds = perf_counter() - began
             state = self._coordinates.to_state(rows[:, :places], rows[:, places:])
-        return Trajectory(time=np.array(kept_steps(steps, every)) * timestep, state=state)
+        return Trajectory(np.array(kept_steps(steps, every)) * timestep, state, seconds)

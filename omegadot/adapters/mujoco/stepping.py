@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -11,7 +12,8 @@ import numpy as np
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Array
 
-CHUNK = 4096  # steps a call: the call's cost vanishes, and its buffer stays in the cache
+CHUNK = 4096  # steps a rollout: the call's cost vanishes, and its buffer stays in the cache
+SPARSE = 8  # steps a sample from which a call for each sample costs less than logging every step
 
 
 @contextmanager
@@ -51,53 +53,57 @@ class Stepper:
 
     def run(self, steps: int, every: int) -> Array:
         """Rows (qpos, qvel) at `kept_steps`, from the data's present state and applied forces."""
-        wanted = np.array(kept_steps(steps, every))
+        wanted = kept_steps(steps, every)
         rows = np.empty((len(wanted), self._kept.stop - self._kept.start))
         rows[0] = self._vector(self._physics)[self._kept]
         with quietly(self._mujoco):
-            done = self._run_native(steps, wanted, rows) if self._rollout is not None else 0
-            self._run_step_by_step(done, steps, wanted, rows)
+            native = every < SPARSE and self._rollout is not None
+            done = self._run_native(steps, every, rows) if native else 0
+            self._run_from_sample_to_sample(done, wanted, rows)
         return rows
 
-    def _run_native(self, steps: int, wanted: Array, rows: Array) -> int:
+    def _run_native(self, steps: int, every: int, rows: Array) -> int:
         """Fill rows chunk by chunk; return the step reached.
 
         The native loop stops at MuJoCo's first warning (a huge number suffices) and repeats that
-        state; the chunk is then left to `_run_step_by_step`, which goes on as MuJoCo does.
+        state; the chunk is then left to `_run_from_sample_to_sample`, which goes on as MuJoCo does.
         """
-        start = self._vector(self._physics)
-        control = np.tile(self._vector(self._applied), (1, min(CHUNK, steps), 1))
-        buffer = np.empty((1, control.shape[1], len(start)))
-        done = 0
-        while done < steps:
-            count = min(CHUNK, steps - done)
+        start, applied = self._vector(self._physics), self._vector(self._applied)
+        chunk = min(CHUNK // every * every, steps)
+        # forces that are not given are none
+        control = np.tile(applied, (1, chunk, 1)) if applied.any() else None
+        buffer = np.empty((1, chunk, len(start)))
+        for done in range(0, steps, chunk):
+            count = min(chunk, steps - done)
             self._rollout.rollout(
                 self._model,
                 self._data,
                 start[None],
-                control[:, :count],
+                None if control is None else control[:, :count],
                 control_spec=self._applied,
                 nstep=count,
                 state=buffer[:, :count],
             )
             if any(warning.number for warning in self._data.warning):
-                self._restore(start, control[0, 0])
+                self._restore(start, applied)
                 return done
-            chosen = slice(*np.searchsorted(wanted, (done, done + count), side="right"))
-            rows[chosen] = buffer[0, wanted[chosen] - done - 1, self._kept]
+            sampled = buffer[0, every - 1 : count : every, self._kept]
+            first = done // every + 1
+            rows[first : first + len(sampled)] = sampled
             start = buffer[0, count - 1].copy()
-            done += count
-        return done
+        rows[-1] = start[self._kept]
+        return steps
 
     def _restore(self, physics: Array, applied: Array) -> None:
         self._mujoco.mj_setState(self._model, self._data, physics, self._physics)
         self._mujoco.mj_setState(self._model, self._data, applied, self._applied)
 
-    def _run_step_by_step(self, done: int, steps: int, wanted: Array, rows: Array) -> None:
+    def _run_from_sample_to_sample(self, done: int, wanted: list[int], rows: Array) -> None:
         step, model, data = self._mujoco.mj_step, self._model, self._data
-        row = int(np.searchsorted(wanted, done, side="right"))
-        for number in range(done + 1, steps + 1):
-            step(model, data)
-            if number == wanted[row]:
-                rows[row] = self._vector(self._physics)[self._kept]
-                row += 1
+        qpos, qvel, places = data.qpos, data.qvel, model.nq
+        first = bisect_right(wanted, done)
+        for number, row in zip(wanted[first:], rows[first:], strict=True):
+            step(model, data, number - done)
+            done = number
+            row[:places] = qpos
+            row[places:] = qvel
