@@ -122,8 +122,9 @@ class DartAdapter:
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
-        """`World.step`, the joint's coordinates logged at samples alone. Raises UnsupportedError for other names.
+        """`World.step`, the joint's coordinates logged at samples alone.
 
+        Raises UnsupportedError for another integrator than DART's own.
         A run that is no longer finite is not stepped on: its later samples are NaN.
         """
         if integrator != SEMI_IMPLICIT.name:

@@ -79,7 +79,7 @@ def _torques(node: Any, load: Load) -> Callable[[], None]:
     return partial(put, world, False) if in_world else partial(put, body, True)
 
 
-def are_finite(positions: Array, velocities: Array) -> Array:
-    """Whether joint coordinates (..., dofs), and the squares of the velocities, are finite."""
-    slow: Array = np.abs(velocities).max(axis=-1) < ROOT_OF_LARGEST
+def are_finite(positions: Array, velocities: Array) -> Any:
+    """Whether joint coordinates (..., dofs), and the squares of the velocities, are finite: (...)."""
+    slow = np.abs(velocities).max(axis=-1) < ROOT_OF_LARGEST
     return slow & np.isfinite(positions).all(axis=-1)

@@ -84,7 +84,7 @@ class Stepper:
                 nstep=count,
                 state=buffer[:, :count],
             )
-            if any(warning.number for warning in self._data.warning):
+            if self._data.warning.number.any():
                 self._restore(start, applied)
                 return done
             sampled = buffer[0, every - 1 : count : every, self._kept]

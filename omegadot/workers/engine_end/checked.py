@@ -52,7 +52,20 @@ def checked_trajectory(trajectory: Any) -> Trajectory:
     _expect("run()", trajectory, Trajectory)
     count = np.size(trajectory.time)
     time = numbers("run().time", trajectory.time, (max(1, count),))
-    return Trajectory(time, checked_state("run().state", trajectory.state, (count,)))
+    state = checked_state("run().state", trajectory.state, (count,))
+    return Trajectory(time, state, trajectory.seconds)
+
+
+def checked_seconds(seconds: Any, whole: float) -> float:
+    """What a run's steps took, in s: as the adapter measured it, or else the whole call."""
+    if seconds is None:
+        return whole
+    found = float(numbers("run().seconds", seconds, ()))
+    if not 0.0 <= found <= whole:
+        raise AnswerError(
+            f"run().seconds is {found:g}; give a part of the {whole:g} s that the call took"
+        )
+    return found
 
 
 def checked_acceleration(found: Any, lead: Shape) -> Acceleration:

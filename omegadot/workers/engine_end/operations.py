@@ -18,6 +18,7 @@ from omegadot.workers.engine_end.checked import (
     checked_bodies,
     checked_description,
     checked_native,
+    checked_seconds,
     checked_state,
     checked_torque,
     checked_trajectory,
@@ -71,8 +72,9 @@ def _timed_run(adapter: Adapter, request: Request) -> tuple[Trajectory, float]:
     adapter.run(initial, *step, 1, 1)  # a warm-up, so that first-call costs are not counted
     started = time.perf_counter()
     trajectory = adapter.run(initial, *step, request["steps"], request["every"])
-    seconds = time.perf_counter() - started
-    return checked_trajectory(trajectory), seconds / request["steps"]
+    whole = time.perf_counter() - started
+    checked = checked_trajectory(trajectory)
+    return checked, checked_seconds(checked.seconds, whole) / request["steps"]
 
 
 def _run(adapter: Adapter, request: Request) -> Any:
