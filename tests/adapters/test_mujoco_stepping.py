@@ -24,7 +24,7 @@ from mujoco_cases import (
 from omegadot.adapters.mujoco import stepping as mujoco_stepping
 from omegadot.adapters.mujoco.adapter import MujocoAdapter
 from omegadot.adapters.mujoco.integrators import version_of
-from omegadot.adapters.mujoco.stepping import CHUNK
+from omegadot.adapters.mujoco.stepping import CHUNK, SPARSE
 from omegadot.adapters.protocol import Setup, UnsupportedError
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.momentum import angular_momentum
@@ -152,16 +152,19 @@ def test_run_starts_at_the_initial_state_and_keeps_time() -> None:
     assert all(len(value) == 4 for value in parts(found.state))
 
 
-@pytest.mark.parametrize("every", [1, 7, 1000, 4096, 10**6])
-def test_native_chunks_are_the_single_steps(every: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    of, steps = system("full", "all"), 2 * CHUNK + 5
+@pytest.mark.parametrize("load", ["all", "none"])
+@pytest.mark.parametrize("every", [1, 4, 7, SPARSE, 1000, 10**6])
+def test_native_chunks_are_the_single_steps(
+    load: str, every: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of, steps = system("full", load), 2 * CHUNK + 5
     adapter, initial = loaded(of), at(states(1, 2, 1.0, 1.0), 0)
     native = adapter.run(initial, "Euler", 1e-4, steps, every)
     monkeypatch.setattr(adapter._stepper, "_rollout", None)
-    single = adapter.run(initial, "Euler", 1e-4, steps, every)
-    assert len(native.time) == len(kept_steps(steps, every))
+    single, kept = adapter.run(initial, "Euler", 1e-4, steps, 1), kept_steps(steps, every)
+    np.testing.assert_array_equal(native.time, single.time[kept])
     for one, other in zip(parts(native.state), parts(single.state), strict=True):
-        np.testing.assert_array_equal(one, other)
+        np.testing.assert_array_equal(one, other[kept])
 
 
 def test_without_rollout_the_steps_are_taken_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,6 +13,7 @@ from omegadot.workers.engine_end.checked import (
     checked_acceleration,
     checked_bodies,
     checked_description,
+    checked_seconds,
     checked_state,
     checked_torque,
     checked_trajectory,
@@ -36,6 +37,18 @@ def test_what_is_right_passes_as_it_is() -> None:
     assert checked_acceleration(Acceleration(np.ones((2, 3)), np.ones((2, 3))), (2,)).linear.all()
     assert checked_torque(np.ones((2, 3)), (2,)).shape == (2, 3)
     assert checked_bodies((Body(1.0, [0, 0, 0], np.eye(3)),), 1)[0].mass == 1.0  # type: ignore[arg-type]
+
+
+def test_a_run_costs_what_the_adapter_measured_or_else_the_whole_call() -> None:
+    assert checked_seconds(None, 2.0) == 2.0
+    assert checked_seconds(np.float64(0.5), 2.0) == 0.5
+    assert checked_trajectory(Trajectory(np.arange(5.0), state(5), 0.5)).seconds == 0.5
+
+
+@pytest.mark.parametrize("seconds", [-1.0, 2.5, np.nan, np.inf, "0.5", np.ones(2)])
+def test_the_steps_of_a_run_took_a_part_of_the_call(seconds: Any) -> None:
+    with pytest.raises(AnswerError, match=r"run\(\)\.seconds"):
+        checked_seconds(seconds, 2.0)
 
 
 def test_single_precision_and_whole_numbers_are_numbers() -> None:

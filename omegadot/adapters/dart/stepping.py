@@ -16,7 +16,7 @@ import numpy as np
 from omegadot.adapters.dart.model import DartModel
 from omegadot.reference_impl.system import Array, Load
 
-LOOKED_AT = 32  # samples between two looks at whether a run is still finite
+LOOKED_AT = 64  # samples between two looks at whether a run is still finite
 ROOT_OF_LARGEST = 2.0**512  # the least number whose square is not finite
 
 
@@ -36,11 +36,11 @@ class DartStepper:
         positions, velocities = self._model.joint.getPositions, self._model.joint.getVelocities
         step, push = self._model.world.step, self.push
         logged = [positions(), velocities()]
-        log = logged.append
+        log, constant = logged.append, self._constant
         push()
         for first in range(0, len(counts), LOOKED_AT):
             for count in counts[first : first + LOOKED_AT]:
-                if self._constant:
+                if constant:
                     for _ in repeat(None, count):
                         step(False)
                 else:
@@ -80,6 +80,6 @@ def _torques(node: Any, load: Load) -> Callable[[], None]:
 
 
 def are_finite(positions: Array, velocities: Array) -> Any:
-    """Whether joint coordinates (..., dofs), and the squares of the velocities, are finite: (...)."""
+    """Whether positions and the squares of velocities, (..., dofs), are finite: (...)."""
     slow = np.abs(velocities).max(axis=-1) < ROOT_OF_LARGEST
     return slow & np.isfinite(positions).all(axis=-1)

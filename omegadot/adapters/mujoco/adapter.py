@@ -164,6 +164,7 @@ class MujocoAdapter:
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
         """Step natively. Raises UnsupportedError for an integrator this version lacks."""
+        kept = kept_steps(steps, every)
         self._reset(integrator)
         self._model.opt.timestep = timestep
         places = self._model.nq
@@ -173,4 +174,4 @@ class MujocoAdapter:
             rows = self._stepper.run(steps, every)
             seconds = perf_counter() - began
             state = self._coordinates.to_state(rows[:, :places], rows[:, places:])
-        return Trajectory(np.array(kept_steps(steps, every)) * timestep, state, seconds)
+        return Trajectory(np.array(kept) * timestep, state, seconds)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
-from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Array
 
 CHUNK = 4096  # steps a rollout: the call's cost vanishes, and its buffer stays in the cache
@@ -52,15 +50,18 @@ class Stepper:
         return vector
 
     def run(self, steps: int, every: int) -> Array:
-        """Rows (qpos, qvel) at `kept_steps`, from the data's present state and applied forces."""
-        wanted = kept_steps(steps, every)
-        rows = np.empty((len(wanted), self._kept.stop - self._kept.start))
-        rows[0] = self._vector(self._physics)[self._kept]
+        """Rows (qpos, qvel) at the start, each `every`-th step and the last.
+
+        From the data's present state and applied forces.
+        """
+        start = self._vector(self._physics)
+        rows = np.empty((-(-steps // every) + 1, len(start)))
+        rows[0] = start
         with quietly(self._mujoco):
             native = every < SPARSE and self._rollout is not None
             done = self._run_native(steps, every, rows) if native else 0
-            self._run_from_sample_to_sample(done, wanted, rows)
-        return rows
+            self._run_from_sample_to_sample(done, steps, every, rows)
+        return rows[:, self._kept]
 
     def _run_native(self, steps: int, every: int, rows: Array) -> int:
         """Fill rows chunk by chunk; return the step reached.
@@ -68,13 +69,14 @@ class Stepper:
         The native loop stops at MuJoCo's first warning (a huge number suffices) and repeats that
         state; the chunk is then left to `_run_from_sample_to_sample`, which goes on as MuJoCo does.
         """
-        start, applied = self._vector(self._physics), self._vector(self._applied)
+        start, applied = rows[0], self._vector(self._applied)
         chunk = min(CHUNK // every * every, steps)
         # forces that are not given are none
         control = np.tile(applied, (1, chunk, 1)) if applied.any() else None
-        buffer = np.empty((1, chunk, len(start)))
+        buffer = np.empty((chunk if every > 1 else 0, len(start)))
         for done in range(0, steps, chunk):
-            count = min(chunk, steps - done)
+            count, first = min(chunk, steps - done), done // every + 1
+            log = buffer[:count] if every > 1 else rows[first : first + count]
             self._rollout.rollout(
                 self._model,
                 self._data,
@@ -82,28 +84,26 @@ class Stepper:
                 None if control is None else control[:, :count],
                 control_spec=self._applied,
                 nstep=count,
-                state=buffer[:, :count],
+                state=log[None],
             )
             if self._data.warning.number.any():
                 self._restore(start, applied)
                 return done
-            sampled = buffer[0, every - 1 : count : every, self._kept]
-            first = done // every + 1
-            rows[first : first + len(sampled)] = sampled
-            start = buffer[0, count - 1].copy()
-        rows[-1] = start[self._kept]
+            if every > 1:
+                rows[first : first + count // every] = log[every - 1 :: every]
+            start = log[-1].copy()
+        rows[-1] = start
         return steps
 
     def _restore(self, physics: Array, applied: Array) -> None:
         self._mujoco.mj_setState(self._model, self._data, physics, self._physics)
         self._mujoco.mj_setState(self._model, self._data, applied, self._applied)
 
-    def _run_from_sample_to_sample(self, done: int, wanted: list[int], rows: Array) -> None:
-        step, model, data = self._mujoco.mj_step, self._model, self._data
-        qpos, qvel, places = data.qpos, data.qvel, model.nq
-        first = bisect_right(wanted, done)
-        for number, row in zip(wanted[first:], rows[first:], strict=True):
-            step(model, data, number - done)
-            done = number
-            row[:places] = qpos
-            row[places:] = qvel
+    def _run_from_sample_to_sample(self, done: int, steps: int, every: int, rows: Array) -> None:
+        step, log = self._mujoco.mj_step, self._mujoco.mj_getState
+        model, data, kind = self._model, self._data, self._physics
+        for row in rows[-(-done // every) + 1 :]:
+            count = min(every, steps - done)
+            step(model, data, count)
+            log(model, data, row, kind)
+            done += count
