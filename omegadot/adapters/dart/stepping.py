@@ -40,7 +40,9 @@ class DartStepper:
         push()
         for first in range(0, len(counts), LOOKED_AT):
             for count in counts[first : first + LOOKED_AT]:
-                if constant:
+                if constant and count == 1:  # a loop of one would cost a tenth of a step
+                    step(False)
+                elif constant:
                     for _ in repeat(None, count):
                         step(False)
                 else:
