@@ -21,8 +21,9 @@ def loops(
     system: System, initial: State, integrator: str, timestep: float, steps: int, every: int
 ) -> list[Bare]:
     """One loop, where a hand-written one is known for the scheme; steps is a multiple of every."""
-    make = _STEPS.get(integrator)
-    if make is None:
+    make, load = _STEPS.get(integrator), system.load
+    turns = load.damping or np.any(load.torque_world)
+    if make is None or (make is _linearly_implicit and turns):
         return []
     model = _model(system)
     step = make(model, model.createData(), system, timestep)
@@ -101,8 +102,7 @@ def _semi_implicit(model: Any, data: Any, system: System, h: float) -> Step:
 
 
 def _linearly_implicit(model: Any, data: Any, system: System, h: float) -> Step:
-    if system.load.damping or np.any(system.load.torque_world):
-        raise NotImplementedError("a torque that depends on the state is not differentiated here")
+    """The torque must not depend on the state: it is not differentiated."""
     torque, one = np.zeros(model.nv), np.eye(model.nv)
     torque[-3:] = system.load.torque_body
     derive, integrate, solve = pin.computeABADerivatives, pin.integrate, np.linalg.solve

@@ -153,6 +153,9 @@ def compared(
         loops = module.loops(system, engine.initial, integrator, TIMESTEP, steps, every)
         what = (scenario, engine.name, integrator, every)
         if not loops:
+            print(
+                f"{scenario:14} {engine.name:10} {integrator:28} {every:5d} no loop to compare with"
+            )
             continue
         for loop in loops:
             check_same_motion(what, engine, loop, steps)

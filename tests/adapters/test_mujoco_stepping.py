@@ -163,7 +163,7 @@ def test_native_chunks_are_the_single_steps(
     monkeypatch.setattr(adapter._stepper, "_rollout", None)
     single, kept = adapter.run(initial, "Euler", 1e-4, steps, 1), kept_steps(steps, every)
     np.testing.assert_array_equal(native.time, single.time[kept])
-    # attitude and ω are as MuJoCo keeps them; the rest is converted, and rounds with the rows' number
+    # attitude and ω are as MuJoCo keeps them; the rest rounds as it is converted
     for one, other in zip(parts(native.state)[:2], parts(single.state)[:2], strict=True):
         np.testing.assert_array_equal(one, other[kept])
 
