@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator, model_validator
 
 from omegadot.scenarios.errors import Phrase
@@ -23,7 +24,7 @@ from omegadot.scenarios.quantities import (
     refuse,
 )
 from omegadot.scenarios.solids import check_body_of_parts
-from omegadot.scenarios.tensor import Inertia
+from omegadot.scenarios.tensor import Inertia, broken_triangle
 
 MOST_STEPS = 10**8  # of one run; more is a slip of the pen, and would hold a machine for hours
 MOST_TIMESTEPS = 100  # in one sweep
@@ -48,6 +49,12 @@ def _read_timesteps(value: object) -> tuple[float, ...]:
     return steps
 
 
+def _read_flag(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise refuse("give true or false", found=value)
+    return value
+
+
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -56,11 +63,15 @@ class Body(_Table):
     """One rigid body: mass, inertia and centre of mass, or the parts that they follow from.
 
     inertia: 3x3, about the centre of mass, body axes.  With parts, the other three are None.
+    allow_impossible_inertia: take one that breaks the triangle inequality, which no body has.
     """
 
     mass: Positive | None = Field(default=None, description="kg")
     inertia: Inertia | None = Field(default=None, description="kg m^2, about the centre of mass")
     center_of_mass: Vector | None = Field(default=None, description="m, from the body origin")
+    allow_impossible_inertia: Annotated[bool, PlainValidator(_read_flag)] = Field(
+        default=False, description="true to take one that breaks the triangle inequality"
+    )
     part: tuple[Part, ...] = Field(default=(), description="solids, one [[body.part]] each")
 
     @model_validator(mode="before")
@@ -84,7 +95,19 @@ class Body(_Table):
             if given[key] is None and not self.part:
                 advice = "give mass and inertia, or [[body.part]] tables"
                 raise refuse(advice, key=key, found=Phrase("missing"))
+        if (broken := self.broken_triangle) and not self.allow_impossible_inertia:
+            advice = (
+                f"make the greatest principal moment at most the sum of the other two ({broken}),"
+                " as every body's is, or go on with allow_impossible_inertia = true"
+                " (--allow-impossible-inertia)"
+            )
+            raise refuse(advice, key="inertia", found=self.inertia)
         return self
+
+    @property
+    def broken_triangle(self) -> str | None:
+        """How the inertia breaks the triangle inequality, such as ``3.1234 > 3.1233``."""
+        return None if self.inertia is None else broken_triangle(np.array(self.inertia))
 
 
 class Initial(_Table):
@@ -185,6 +208,8 @@ class Scenario(_Table):
         data: dict[str, Any] = _plain(self)
         if not self.body.part:
             del data["body"]["part"]
+        if not self.body.allow_impossible_inertia:
+            del data["body"]["allow_impossible_inertia"]
         if self.load.pivot is not None:
             del data["initial"]["position"], data["initial"]["linear_velocity"]
         return data

@@ -108,6 +108,7 @@ def _nearest_key(location: Location) -> str:
 
 
 def nearest(term: str, known: list[str]) -> str | None:
-    """The known word that is spelt most like this one, if any is."""
-    near = difflib.get_close_matches(term[:64].lower(), known, n=1)
-    return near[0] if near else None
+    """The known name that is spelt most like this one, if any is; capitals do not count."""
+    lower = {name.lower(): name for name in reversed(known)}
+    near = difflib.get_close_matches(term[:64].lower(), lower, n=1)
+    return lower[near[0]] if near else None

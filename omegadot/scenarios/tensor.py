@@ -11,12 +11,16 @@ from pydantic import PlainValidator
 from omegadot.scenarios.quantities import SMALLEST, read_number, read_positive, refuse
 
 EPS = float(np.finfo(float).eps)
+LAPACK = 16 * EPS  # it finds 3x3 eigenvalues to a few ulps of the largest
+# The fewest that a number which was computed is printed with: str of Python 2, and so xacro, which
+# wrote most robots' files.
+DIGITS = 12
 Row = tuple[float, float, float]
 Matrix = tuple[Row, Row, Row]
 
 
 def read_inertia(value: object) -> Matrix:
-    """A 3x3 tensor in kg m^2: symmetric, positive definite, within the triangle inequality.
+    """A 3x3 tensor in kg m^2: symmetric and positive definite.
 
     Three numbers are the principal moments along the body axes. A tensor may be off symmetric by
     the rounding of ``R diag(I) R^T``; the two sides are then averaged.
@@ -26,8 +30,6 @@ def read_inertia(value: object) -> Matrix:
         raise refuse(wanted, found=value)
     if not any(isinstance(row, list | tuple) for row in value):
         x, y, z = (read_positive(moment, key=f"[{i}]") for i, moment in enumerate(value))
-        # three half ulps of the given moments and one of the sum: at most two ulps of the largest
-        _check_triangle(np.array([x, y, z]), 2 * EPS, value)
         return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
     for i, row in enumerate(value):
         if not isinstance(row, list | tuple) or len(row) != 3:
@@ -51,31 +53,41 @@ def _check_tensor(tensor: NDArray[np.float64], value: object) -> Matrix:
             "give a symmetric tensor, with the products of inertia on both sides", found=value
         )
     tensor = (tensor + tensor.T) / 2
-    moments: NDArray[np.floating] = np.sort(np.diag(tensor))
-    rounding, floor = 2 * EPS, SMALLEST
+    moments, floor = principal_moments(tensor), SMALLEST
     if np.any(tensor != np.diag(np.diag(tensor))):
-        # LAPACK finds 3x3 eigenvalues to a few ulps of the largest
-        moments, rounding = np.linalg.eigvalsh(tensor), 16 * EPS
-        floor = max(SMALLEST, rounding * float(largest))
+        floor = max(SMALLEST, LAPACK * float(largest))
     if moments[0] < floor:
         raise refuse(
             f"make it positive definite, its smallest principal moment is {moments[0]:.6g}",
             found=value,
         )
-    _check_triangle(moments, rounding, value)
     a, b, c = ((float(row[0]), float(row[1]), float(row[2])) for row in tensor)
     return a, b, c
 
 
-def _check_triangle(moments: NDArray[np.floating], rounding: float, value: object) -> None:
-    """No principal moment may exceed the sum of the others; a flat body reaches it."""
-    small, middle, large = np.sort(moments)
-    if large - (small + middle) > rounding * large:
-        raise refuse(
-            f"make the greatest principal moment ({large:.6g}) at most the sum of the other two"
-            f" ({small + middle:.6g}), as every body's is",
-            found=value,
-        )
+def principal_moments(tensor: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The three in rising order; of a diagonal tensor exactly."""
+    diagonal = np.diag(tensor)
+    whole = np.any(tensor != np.diag(diagonal))
+    moments: NDArray[np.float64] = np.linalg.eigvalsh(tensor) if whole else np.sort(diagonal)
+    return moments
+
+
+def broken_triangle(tensor: NDArray[np.float64]) -> str | None:
+    """How the inertia breaks the triangle inequality, such as ``3.1234 > 3.1233``; None if not.
+
+    No body's greatest principal moment exceeds the sum of the others; a flat body's reaches it.
+    With ``u`` half a unit in the last of `DIGITS` printed digits, entries ``I_ij`` are within
+    ``u |I_ij|`` of what they were before, and ``2 max - trace`` is within
+    ``u (2 |I|_F + trace)``: what exceeds it by less may be a flat body that was printed.
+    """
+    small, middle, large = principal_moments(tensor)
+    rounding = 0.5 * 10.0 ** (1 - DIGITS) + LAPACK
+    size = 2.0 * np.linalg.norm(tensor) + np.trace(tensor)
+    if large - (small + middle) <= rounding * size:
+        return None
+    shown = (f"{large:.{digits}g} > {small + middle:.{digits}g}" for digits in range(6, 18))
+    return next(pair for pair in shown if len(set(pair.split(" > "))) == 2)
 
 
 Inertia = Annotated[Matrix, PlainValidator(read_inertia)]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-import stat
 import tomllib
 from pathlib import Path
 from typing import Any
 
 from omegadot.scenarios.errors import ScenarioError, printable
+from omegadot.scenarios.regular_file import read_bytes
 
 LARGEST_FILE = 1_000_000  # bytes; a scenario is a page of text
 MOST_DOTS = 32  # in one key; tomllib's memory grows with the square of their number
@@ -23,37 +23,13 @@ def read_toml(path: Path, file: str) -> dict[str, Any]:
 
 def _read(path: Path, file: str) -> str:
     """The text of a regular file of at most LARGEST_FILE bytes; a BOM is dropped."""
-    toml = "give the path of a TOML file"
-    try:
-        status = path.stat()
-        mode = status.st_mode
-        # a pipe would be waited for, a device never ends
-        content = _first_bytes(path) if stat.S_ISREG(mode) else b""
-    except FileNotFoundError:
-        raise ScenarioError(file, None, "missing", toml) from None
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise ScenarioError(file, None, f"not readable ({reason})", toml) from None
-    except ValueError:  # a NUL, or a character that no file name can hold
-        raise ScenarioError(file, None, "not a path", toml) from None
-    if not stat.S_ISREG(mode):
-        found = "a directory" if stat.S_ISDIR(mode) else "not a regular file"
-        raise ScenarioError(file, None, found, toml)
-    if len(content) > LARGEST_FILE:
-        found = f"a file of {max(status.st_size, len(content)):,} bytes"
-        advice = f"give a scenario of at most {LARGEST_FILE:,} bytes"
-        raise ScenarioError(file, None, found, advice)
+    content = read_bytes(path, file, "TOML", LARGEST_FILE)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         found = f"not UTF-8 text (byte 0x{content[error.start]:02x} in line {line})"
         raise ScenarioError(file, None, found, "save it in UTF-8") from None
-
-
-def _first_bytes(path: Path) -> bytes:
-    with path.open("rb") as stream:
-        return stream.read(LARGEST_FILE + 1)
 
 
 def _parse(text: str, file: str) -> dict[str, Any]:

@@ -28,28 +28,6 @@ SDF = """<sdf version="1.9"><world name="w"><model name="m"><link name="arm"><in
   <pose degrees="true">0.1 -0.2 0.3 30 -40 150</pose><mass>2.5</mass>
   <inertia><ixx>0.5</ixx><ixy>0.01</ixy><ixz>-0.02</ixz><iyy>0.6</iyy><iyz>0.03</iyz><izz>0.7</izz>
   </inertia></inertial></link></model></world></sdf>"""
-MJCF = """<mujoco><compiler {compiler}/><worldbody><body name="arm"><freejoint/>
-  <body name="inner">{content}</body>{content}</body></worldbody></mujoco>"""
-INERTIALS = [
-    ('angle="radian"', '<inertial pos="1 2 3" mass="2" diaginertia="1 2 2.5"/>'),
-    ("", '<inertial pos="1 2 3" quat="1 2 -3 .5" mass="2" diaginertia="1 2 2.5"/>'),
-    ("", '<inertial pos="0 0 1" mass="2" fullinertia="1 2 2.5 .1 -.2 .3"/>'),
-    ("", '<inertial pos="0 0 1" euler="30 40 -50" mass="2" diaginertia="1 2 2.5"/>'),
-    ('angle="radian" eulerseq="ZYx"',
-     '<inertial pos="0 0 1" euler=".3 .4 -.5" mass="2" diaginertia="1 2 2.5"/>'),
-    ("", '<inertial pos="0 0 1" axisangle="1 2 3 70" mass="2" diaginertia="1 2 2.5"/>'),
-    ("", '<inertial pos="0 0 1" xyaxes="1 1 0 0 1 2" mass="2" diaginertia="1 2 2.5"/>'),
-    ("", '<inertial pos="0 0 1" zaxis="1 -1 .2" mass="2" diaginertia="1 2 2.5"/>'),
-    ("", '<geom type="box" size=".1 .2 .3" euler="10 20 30" pos="1 0 0"/>'
-         '<geom size=".2" mass="3"/><geom type="sphere" size="1" mass="0"/>'),
-    ("", '<geom type="cylinder" size=".1 .4" density="500" zaxis="1 1 1"/>'),
-    ("", '<geom type="capsule" size=".1 .4" quat="0 1 1 0"/>'),
-    ("", '<geom type="ellipsoid" size=".1 .2 .4" quat=".1 .7 .1 .6" pos="0 1 0"/>'),
-    ('inertiafromgeom="true"',
-     '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><geom type="box" size=".1 .2 .3"/>'),
-]  # fmt: skip
-
-
 def scenario(body: dict[str, Any]) -> Any:
     run = {"duration": 1.0, "timesteps": [0.1], "sample": 0.1}
     data = {"schema": 1, "name": "it", "initial": {"angular_velocity": [0.0, 0.0, 1.0]}}
@@ -70,22 +48,6 @@ def assert_same(found: Body, mass: float, center: Any, inertia: Any) -> None:
     np.testing.assert_allclose(found.center_of_mass, center, rtol=0, atol=bound * 4)
     inertia = np.asarray(inertia)
     np.testing.assert_allclose(found.inertia, inertia, rtol=0, atol=bound * np.abs(inertia).max())
-
-
-@pytest.mark.parametrize(("compiler", "content"), INERTIALS)
-def test_mjcf_bodies_are_those_that_mujoco_compiles(
-    tmp_path: Path, compiler: str, content: str
-) -> None:
-    mujoco = pytest.importorskip("mujoco")
-    text = MJCF.format(compiler=compiler, content=content)
-    model = mujoco.MjModel.from_xml_string(text)
-    body = model.body("inner").id
-    rotation = np.empty(9)
-    mujoco.mju_quat2Mat(rotation, model.body_iquat[body])
-    axes = rotation.reshape(3, 3)
-    inertia = (axes * model.body_inertia[body]) @ axes.T
-    found = body_in(tmp_path, text, "inner")
-    assert_same(found, model.body_mass[body], model.body_ipos[body], inertia)
 
 
 def test_urdf_links_are_those_that_pinocchio_reads(tmp_path: Path) -> None:

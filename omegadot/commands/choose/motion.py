@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from omegadot.adapters.mujoco.body_file import bodies_of_mjcf
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
 from omegadot.scenarios import Scenario, scenario_of
-from omegadot.scenarios.links import body_of_word
+from omegadot.scenarios.links import body_of_argument
 
 STEPS_TO_BEGIN = (500, 1000, 2000)  # a horizon, where no scenario states which steps are usual
 
@@ -60,7 +61,7 @@ def _changed(data: dict[str, Any], motion: Motion) -> Scenario:
     where = str(data["name"])
     if motion.body is not None:
         where = motion.body
-        named = body_of_word(motion.body)
+        named = body_of_argument(motion.body, bodies_of_mjcf)
         own = f"{named.name} in {data['name']}" if motion.scenarios else named.name
         data = {**data, "body": named.body, "title": own, "shows": None, "source": None}
         data = {key: value for key, value in data.items() if value is not None}

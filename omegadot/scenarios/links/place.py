@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 from xml.etree.ElementTree import Element
 
 from omegadot.scenarios.errors import ScenarioError, describe, printable
+from omegadot.scenarios.quantities import LARGEST, SMALLEST
+
+# decimal ASCII, as XML Schema and C++ streams have it: no underscores, no infinity, no nan
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_WORD = re.compile(r"[^ \t\r\n]+")
 
 
 @dataclass(frozen=True)
@@ -26,24 +31,27 @@ class Place:
         """Raise the ScenarioError of this place."""
         raise ScenarioError(self.file, printable(self.path), found, advice)
 
-    def numbers(self, text: str | None, count: int | Sequence[int], what: str) -> list[float]:
-        """So many finite numbers, separated by white space; what: their names, for the error."""
-        counts = (count,) if isinstance(count, int) else tuple(count)
+    def numbers(self, text: str | None, count: int, what: str) -> list[float]:
+        """So many numbers, separated by white space; what: their names, for the error."""
         if text is None:
             self.refuse("missing", f"give {what}")
-        if "${" in text or "$(" in text:
-            self.refuse(describe(text.strip()), "expand the file with xacro first")
-        try:
-            values = [float(term) for term in text.split()]
-        except ValueError:
-            values = []
-        if len(values) not in counts or not all(math.isfinite(v) for v in values):
+        values = numbers_in(text)
+        if len(values) != count:
             self.refuse(describe(text.strip()), f"give {what}")
+        if max(map(abs, values)) > LARGEST:
+            self.refuse(describe(text.strip()), f"give at most {LARGEST:g} in SI units")
         return values
 
     def number(self, text: str | None, what: str) -> float:
-        """One finite number."""
+        """One number."""
         return self.numbers(text, 1, what)[0]
+
+    def positive(self, text: str | None, count: int, what: str) -> list[float]:
+        """So many numbers of at least 1e-50."""
+        values = self.numbers(text, count, what)
+        if min(values) < SMALLEST:
+            self.refuse(describe((text or "").strip()), f"give {what}, greater than zero")
+        return values
 
     def attribute(self, element: Element, name: str) -> float:
         """The number in an attribute that must be there."""
@@ -55,3 +63,14 @@ class Place:
         if len(found) > 1:
             self.inner(name).refuse(f"given {len(found)} times", "give it once")
         return found[0] if found else None
+
+    def text(self, element: Element, name: str) -> str | None:
+        """What stands in the one child of this name."""
+        child = self.only(element, name)
+        return None if child is None else child.text or ""
+
+
+def numbers_in(text: str) -> list[float]:
+    """The numbers in a text; none where a word of it is no number."""
+    words: Sequence[str] = _WORD.findall(text)
+    return [float(word) for word in words] if all(map(_NUMBER.fullmatch, words)) else []

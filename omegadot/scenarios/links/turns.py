@@ -3,59 +3,41 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from omegadot.scenarios.links.place import Place
+from omegadot.scenarios.quantities import read_quaternion
+
 Matrix = NDArray[np.float64]
 
 
-def about(axis: str, angle: float) -> Matrix:
+def _about(axis: int, angle: float) -> Matrix:
     """The rotation by `angle` rad about the axis x, y or z."""
     c, s = math.cos(angle), math.sin(angle)
-    turned = {
-        "x": [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]],
-        "y": [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]],
-        "z": [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]],
-    }
-    return np.array(turned[axis])
+    turned = np.eye(3)
+    y, z = (axis + 1) % 3, (axis + 2) % 3
+    turned[y, y], turned[y, z], turned[z, y], turned[z, z] = c, -s, s, c
+    return turned
 
 
 def roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Matrix:
     """``Rz(yaw) Ry(pitch) Rx(roll)``: about the fixed axes x, y, z in turn, as URDF and SDF say."""
-    found: Matrix = about("z", yaw) @ about("y", pitch) @ about("x", roll)
+    found: Matrix = _about(2, yaw) @ _about(1, pitch) @ _about(0, roll)
     return found
 
 
-def of_quaternion(quaternion: Sequence[float]) -> Matrix | None:
-    """The rotation of (w, x, y, z) once it is made unit; None for zero."""
-    size = math.hypot(*quaternion)
-    if size == 0.0:
-        return None
-    w, x, y, z = (component / size for component in quaternion)
+def of_quaternion(quaternion: list[float], place: Place) -> Matrix:
+    """The rotation of (w, x, y, z) once it is made unit; zero is refused."""
+    if not any(quaternion):
+        place.refuse("a quaternion of zeros", "give 0 0 0 1 for no rotation")
+    w, x, y, z = read_quaternion(quaternion)
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     vector = np.array([x, y, z])
     outer = np.outer(vector, vector)
     found: Matrix = (w * w - vector @ vector) * np.eye(3) + 2.0 * (outer + w * skew)
     return found
-
-
-def quaternion_of(rotation: Matrix) -> tuple[float, float, float, float]:
-    """(w, x, y, z) of a rotation: the largest component is found first, so nothing cancels."""
-    trace = float(np.trace(rotation))
-    squares = np.array([trace, *np.diag(rotation)])
-    largest = int(np.argmax(squares))
-    r = rotation
-    products = np.array([
-        [1.0 + trace, r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
-        [r[2, 1] - r[1, 2], 1.0 + 2.0 * r[0, 0] - trace, r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
-        [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], 1.0 + 2.0 * r[1, 1] - trace, r[1, 2] + r[2, 1]],
-        [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], 1.0 + 2.0 * r[2, 2] - trace],
-    ])  # fmt: skip
-    row = products[largest] / np.linalg.norm(products[largest])
-    w, x, y, z = (float(component) for component in row)
-    return w, x, y, z
 
 
 def turned_tensor(rotation: Matrix, tensor: Matrix) -> list[list[float]]:
