@@ -24,7 +24,7 @@ ROOMS = {
 ROOMS["commands"] = set(ROOMS)
 # What a worker that serves one old engine has beside it.
 THIRD_PARTY = {
-    "scenarios": {"numpy", "scipy", "pydantic", "pydantic_core"},
+    "scenarios": {"numpy", "scipy", "pydantic", "pydantic_core", "defusedxml"},
     "reference_impl": {"numpy", "scipy"},
     "adapters": {"numpy", "scipy", "mujoco", "pinocchio", "dartpy"},
     "workers/engine_end": {"numpy", "scipy"},

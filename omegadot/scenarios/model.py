@@ -67,11 +67,11 @@ class Body(_Table):
     """
 
     mass: Positive | None = Field(default=None, description="kg")
-    inertia: Inertia | None = Field(default=None, description="kg m^2, about the centre of mass")
-    center_of_mass: Vector | None = Field(default=None, description="m, from the body origin")
     allow_impossible_inertia: Annotated[bool, PlainValidator(_read_flag)] = Field(
         default=False, description="true to take one that breaks the triangle inequality"
     )
+    inertia: Inertia | None = Field(default=None, description="kg m^2, about the centre of mass")
+    center_of_mass: Vector | None = Field(default=None, description="m, from the body origin")
     part: tuple[Part, ...] = Field(default=(), description="solids, one [[body.part]] each")
 
     @model_validator(mode="before")
@@ -95,13 +95,6 @@ class Body(_Table):
             if given[key] is None and not self.part:
                 advice = "give mass and inertia, or [[body.part]] tables"
                 raise refuse(advice, key=key, found=Phrase("missing"))
-        if (broken := self.broken_triangle) and not self.allow_impossible_inertia:
-            advice = (
-                f"make the greatest principal moment at most the sum of the other two ({broken}),"
-                " as every body's is, or go on with allow_impossible_inertia = true"
-                " (--allow-impossible-inertia)"
-            )
-            raise refuse(advice, key="inertia", found=self.inertia)
         return self
 
     @property

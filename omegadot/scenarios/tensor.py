@@ -6,7 +6,7 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import PlainValidator
+from pydantic import PlainValidator, ValidationInfo
 
 from omegadot.scenarios.quantities import SMALLEST, read_number, read_positive, refuse
 
@@ -15,37 +15,42 @@ LAPACK = 16 * EPS  # it finds 3x3 eigenvalues to a few ulps of the largest
 # The fewest that a number which was computed is printed with: str of Python 2, and so xacro, which
 # wrote most robots' files.
 DIGITS = 12
+ALLOWED = "allow_impossible_inertia"  # the key that takes an inertia which no body has
+WANTED = "give three principal moments or a 3x3 tensor in kg m^2"
 Row = tuple[float, float, float]
 Matrix = tuple[Row, Row, Row]
 
 
-def read_inertia(value: object) -> Matrix:
-    """A 3x3 tensor in kg m^2: symmetric and positive definite.
+def read_inertia(value: object, info: ValidationInfo) -> Matrix:
+    """A 3x3 tensor in kg m^2: symmetric, positive definite, within the triangle inequality.
 
-    Three numbers are the principal moments along the body axes. A tensor may be off symmetric by
-    the rounding of ``R diag(I) R^T``; the two sides are then averaged.
+    The last is not asked of one beside ``allow_impossible_inertia = true``. Three numbers are the
+    principal moments along the body axes. A tensor may be off symmetric by the rounding of
+    ``R diag(I) R^T``; the two sides are then averaged.
     """
-    wanted = "give three principal moments or a 3x3 tensor in kg m^2"
     if not isinstance(value, list | tuple) or len(value) != 3:
-        raise refuse(wanted, found=value)
+        raise refuse(WANTED, found=value)
     if not any(isinstance(row, list | tuple) for row in value):
         x, y, z = (read_positive(moment, key=f"[{i}]") for i, moment in enumerate(value))
-        return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
+        tensor: Matrix = (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
+    else:
+        tensor = _read_rows(value)
+    if (broken := broken_triangle(np.array(tensor))) and not info.data.get(ALLOWED):
+        raise refuse(
+            f"make the greatest principal moment at most the sum of the other two ({broken}), as"
+            f" every body's is, or go on with {ALLOWED} = true (--{ALLOWED.replace('_', '-')})",
+            found=value,
+        )
+    return tensor
+
+
+def _read_rows(value: list[object] | tuple[object, ...]) -> Matrix:
+    rows = []
     for i, row in enumerate(value):
         if not isinstance(row, list | tuple) or len(row) != 3:
-            raise refuse(f"{wanted}, each row of three numbers", key=f"[{i}]", found=row)
-    return _check_tensor(
-        np.array(
-            [
-                [read_number(entry, key=f"[{i}][{j}]") for j, entry in enumerate(row)]
-                for i, row in enumerate(value)
-            ]
-        ),
-        value,
-    )
-
-
-def _check_tensor(tensor: NDArray[np.float64], value: object) -> Matrix:
+            raise refuse(f"{WANTED}, each row of three numbers", key=f"[{i}]", found=row)
+        rows.append([read_number(entry, key=f"[{i}][{j}]") for j, entry in enumerate(row)])
+    tensor = np.array(rows)
     largest = np.abs(tensor).max()
     # an entry of R diag(I) R^T is a sum of three products of three factors, each within |I|
     if np.abs(tensor - tensor.T).max() > 8 * EPS * largest:
@@ -69,8 +74,7 @@ def principal_moments(tensor: NDArray[np.float64]) -> NDArray[np.float64]:
     """The three in rising order; of a diagonal tensor exactly."""
     diagonal = np.diag(tensor)
     whole = np.any(tensor != np.diag(diagonal))
-    moments: NDArray[np.float64] = np.linalg.eigvalsh(tensor) if whole else np.sort(diagonal)
-    return moments
+    return np.asarray(np.linalg.eigvalsh(tensor) if whole else np.sort(diagonal), dtype=float)
 
 
 def broken_triangle(tensor: NDArray[np.float64]) -> str | None:

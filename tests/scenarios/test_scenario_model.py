@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+import re
 import tomllib
 from itertools import pairwise
 from typing import Any
@@ -131,10 +132,45 @@ def test_a_turned_tensor_is_accepted_and_made_symmetric(
     assert np.abs(kept - tensor).max() <= 4 * np.finfo(float).eps * max(moments)
 
 
-@pytest.mark.parametrize("excess", [1e-14, 1e-6, 1.0])
-def test_the_triangle_inequality_is_held_to_rounding(excess: float) -> None:
+@pytest.mark.parametrize("excess", [1e-10, 1e-6, 1.0])
+def test_the_triangle_inequality_is_held_to_twelve_digits(excess: float) -> None:
+    """What a flat body may be off by once it is printed; see `broken_triangle`."""
     with pytest.raises(ScenarioError, match="greatest principal moment"):
         changed("body", inertia=[1.0, 2.0, 3.0 * (1 + excess)])
+
+
+@settings(derandomize=True, max_examples=100, deadline=None)
+@given(st.floats(1e-3, 1e3), st.floats(1e-3, 1e3), st.lists(st.floats(-1, 1), min_size=3))
+def test_a_flat_body_printed_with_twelve_digits_is_a_body(
+    x: float, y: float, turn: list[float]
+) -> None:
+    a, b, c = turn[:3]
+    skew = np.array([[0, -c, b], [c, 0, -a], [-b, a, 0]])
+    cayley = np.linalg.solve(np.eye(3) - skew, np.eye(3) + skew)
+    for tensor in (np.diag([x, y, x + y]), cayley @ np.diag([x, y, x + y]) @ cayley.T):
+        printed = [[float(f"{(tensor[i, j] + tensor[j, i]) / 2:.12g}") for j in range(3)]
+                   for i in range(3)]  # fmt: skip
+        changed("body", inertia=printed)
+
+
+@pytest.mark.parametrize(
+    ("moments", "shown"),
+    [
+        ([1.0, 2.0, 4.0], "4 > 3"),
+        ([1.0, 2.1233, 3.1234], "3.1234 > 3.1233"),
+        ([1.0, 2.0, 3.0 + 3e-10], "3.0000000003 > 3"),
+    ],
+)
+def test_the_numbers_of_an_impossible_inertia_show_their_difference(
+    moments: list[float], shown: str
+) -> None:
+    with pytest.raises(ScenarioError, match=re.escape(f"({shown}), as every body's is")):
+        changed("body", inertia=moments)
+    allowed = changed("body", inertia=moments, allow_impossible_inertia=True)
+    assert allowed.body.broken_triangle == shown
+    assert allowed.to_dict()["body"]["allow_impossible_inertia"] is True
+    with pytest.raises(ScenarioError, match="give true or false"):
+        changed("body", inertia=moments, allow_impossible_inertia=1)
 
 
 SLICES: list[tuple[dict[str, Any], Any]] = [

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from omegadot.adapters.mujoco.coordinates import Coordinates
+from omegadot.adapters.mujoco.engine import import_mujoco
 from omegadot.adapters.mujoco.integrators import (
     Case,
     declared_integrators,
@@ -51,7 +51,7 @@ class MujocoAdapter:
     """MuJoCo 3.6 and later. Raises ImportError when MuJoCo is not installed."""
 
     def __init__(self, setup: Setup = "physics") -> None:
-        self._mujoco: Any = importlib.import_module("mujoco")
+        self._mujoco: Any = import_mujoco()
         self._setup: Setup = setup
         self._load = Load()
         self._model: Any = None

@@ -12,13 +12,13 @@ import json
 import subprocess
 import sys
 import warnings
-from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from omegadot.adapters.mujoco.engine import import_mujoco
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.scenarios.errors import ScenarioError, printable
 from omegadot.scenarios.links.link import Link
@@ -45,6 +45,11 @@ def bodies_of_mjcf(path: Path, file: str) -> list[Link]:
     except ValueError:
         found = f"an MJCF at which MuJoCo ended its process (exit code {ended.returncode})"
         raise ScenarioError(file, None, found, "correct it there") from None
+    return links_of(answer, file)
+
+
+def links_of(answer: dict[str, Any], file: str) -> list[Link]:
+    """The bodies in what `compiled` gives. Raises ScenarioError where it is a refusal."""
     if "refused" in answer:
         found, advice = answer["refused"]
         raise ScenarioError(file, None, found, advice)
@@ -63,26 +68,31 @@ def _body(body: dict[str, Any] | None, lacking: str, place: Place) -> dict[str, 
     return body
 
 
-def _answer(path: str) -> Mapping[str, Any]:
-    """The bodies by name, None where they are not certain, or why the file is refused."""
+def compiled(path: str) -> dict[str, Any]:
+    """What MuJoCo's compiler makes of a file, in this process.
+
+    bodies: by name, None where they are not certain.  lacking: the files that it did not find.
+    refused: instead of the two, what the file is and what to do.
+    """
     try:
-        import mujoco
+        mujoco = import_mujoco()
     except ImportError:
         advice = "install it: pip install 'omegadot[mujoco]'"
         return {"refused": ("an MJCF, which takes MuJoCo to read", advice)}
-    mujoco.set_mju_user_warning(lambda _: None)  # MuJoCo's own writes MUJOCO_LOG.TXT
-    warnings.simplefilter("ignore")
-    # the compiler raises ValueError, and RuntimeError where memory runs out
-    try:
-        return {"bodies": _bodies(mujoco, mujoco.MjSpec.from_file(path).compile()), "lacking": ""}
-    except Exception as error:
-        reason = printable("; ".join(str(error).split("\n")).strip("; "))
-    try:
-        first, second = (
-            _bodies(mujoco, _without_files(mujoco, path, radius).compile()) for radius in RADII
-        )
-    except Exception:
-        return {"refused": (f"an MJCF that MuJoCo does not compile ({reason})", "correct it there")}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        # the compiler raises ValueError, and RuntimeError where memory runs out
+        try:
+            return {"bodies": _bodies(mujoco.MjSpec.from_file(path).compile()), "lacking": ""}
+        except Exception as error:
+            reason = printable("; ".join(str(error).split("\n")).strip("; "))
+        try:
+            first, second = (
+                _bodies(_without_files(mujoco, path, radius).compile()) for radius in RADII
+            )
+        except Exception:
+            found = f"an MJCF that MuJoCo does not compile ({reason})"
+            return {"refused": (found, "correct it there")}
     certain = {name: body if body == second[name] else None for name, body in first.items()}
     return {"bodies": certain, "lacking": reason}
 
@@ -111,14 +121,13 @@ def _without_files(mujoco: Any, path: str, radius: float) -> Any:
     return spec
 
 
-def _bodies(mujoco: Any, model: Any) -> dict[str, dict[str, Any]]:
+def _bodies(model: Any) -> dict[str, dict[str, Any]]:
     """Every named body's mass, centre of mass and inertia, in the axes of its frame."""
     found = {}
     for index in range(1, model.nbody):
-        name = model.body(index).name
         axes = rotation_matrix(model.body_iquat[index])
         tensor = (axes * model.body_inertia[index]) @ axes.T
-        found[name] = {
+        found[model.body(index).name] = {
             "mass": float(model.body_mass[index]),
             "center_of_mass": model.body_ipos[index].tolist(),
             "inertia": (0.5 * (tensor + tensor.T)).tolist(),
@@ -127,4 +136,4 @@ def _bodies(mujoco: Any, model: Any) -> dict[str, dict[str, Any]]:
 
 
 if __name__ == "__main__":
-    sys.stdout.write("\n" + json.dumps(_answer(sys.argv[1])))
+    sys.stdout.write("\n" + json.dumps(compiled(sys.argv[1])))

@@ -44,7 +44,9 @@ def _body(link: Element, version: str, place: Place) -> dict[str, Any]:
     """The link's mass, centre of mass and inertia as a scenario's body. Raises ScenarioError."""
     inertial = place.only(link, "inertial")
     parts = [*link, *(() if inertial is None else inertial.iter())]
-    values = [] if inertial is None else [v for part in inertial.iter() for v in part.attrib.values()]
+    values = (
+        [] if inertial is None else [v for part in inertial.iter() for v in part.attrib.values()]
+    )
     if any(part.tag.startswith("xacro:") for part in parts) or any("$" in v for v in values):
         place.refuse("a link with macros of xacro", "expand it with xacro first")
     if inertial is None:

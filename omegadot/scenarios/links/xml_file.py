@@ -40,17 +40,17 @@ class _Tree(ContentHandler):
         self.builder = TreeBuilder()
         self._depth = 0
 
-    def startElement(self, name: str, attrs: AttributesImpl) -> None:  # noqa: N802, D102
+    def startElement(self, name: str, attrs: AttributesImpl) -> None:
         self._depth += 1
         if self._depth > DEEPEST:
             raise SAXException(f"elements nested more than {DEEPEST} deep")
         self.builder.start(name, dict(attrs.items()))
 
-    def endElement(self, name: str) -> None:  # noqa: N802, D102
+    def endElement(self, name: str) -> None:
         self._depth -= 1
         self.builder.end(name)
 
-    def characters(self, content: str) -> None:  # noqa: D102
+    def characters(self, content: str) -> None:
         self.builder.data(content)
 
 
