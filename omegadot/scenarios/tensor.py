@@ -38,7 +38,8 @@ def read_inertia(value: object, info: ValidationInfo) -> Matrix:
     if (broken := broken_triangle(np.array(tensor))) and not info.data.get(ALLOWED):
         raise refuse(
             f"make the greatest principal moment at most the sum of the other two ({broken}), as"
-            f" every body's is, or go on with {ALLOWED} = true (--{ALLOWED.replace('_', '-')})",
+            f" every body's is, or allow it ({ALLOWED} = true in [body],"
+            f" --{ALLOWED.replace('_', '-')} with --body)",
             found=value,
         )
     return tensor

@@ -41,6 +41,7 @@ class Arguments:
 
     scenarios: Sequence[str] = ()
     body: str | None = None
+    allow_impossible_inertia: bool = False
     angular_velocity: tuple[float, float, float] | None = None
     orientation: tuple[float, float, float, float] | None = None
     requirements: Path | None = None
@@ -96,7 +97,12 @@ def _written(found: Mapping[str, Any], out: Path) -> list[Path]:
 
 def _chooser(names: Arguments, wanted: Requirements) -> Chooser:
     motion = Motion(
-        names.scenarios, names.body, names.angular_velocity, names.orientation, wanted.duration
+        names.scenarios,
+        names.body,
+        names.angular_velocity,
+        names.orientation,
+        wanted.duration,
+        names.allow_impossible_inertia,
     )
     cases = cases_of(motion)
     choices = engine_choices(names.engines, names.adapters)

@@ -24,6 +24,13 @@ def choose(
             metavar="FILE#LINK", help="A body: a link of a URDF, MJCF or SDF file, or a TOML file."
         ),
     ] = None,
+    allow_impossible_inertia: Annotated[
+        bool,
+        typer.Option(
+            "--allow-impossible-inertia",
+            help="Go on with an inertia that breaks the triangle inequality, as no body's does.",
+        ),
+    ] = False,
     angular_velocity: Annotated[
         tuple[float, float, float] | None,
         typer.Option(metavar="X Y Z", help="Initial angular velocity, rad/s, body axes."),
@@ -146,6 +153,7 @@ def choose(
     arguments = Arguments(
         scenarios=[*(scenarios or []), *(scenario or [])],
         body=body,
+        allow_impossible_inertia=allow_impossible_inertia,
         angular_velocity=angular_velocity,
         orientation=orientation,
         requirements=requirements,

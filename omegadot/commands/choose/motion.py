@@ -12,6 +12,7 @@ from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
 from omegadot.scenarios import Scenario, scenario_of
 from omegadot.scenarios.links import body_of_argument
+from omegadot.scenarios.tensor import ALLOWED
 
 STEPS_TO_BEGIN = (500, 1000, 2000)  # a horizon, where no scenario states which steps are usual
 
@@ -21,6 +22,7 @@ class Motion:
     """The arguments of the command line that state what moves and how.
 
     body: ``FILE#LINK`` or a TOML file.  duration: s, over the scenarios' own.
+    allow_impossible_inertia: go on with a body that breaks the triangle inequality.
     """
 
     scenarios: Sequence[str] = ()
@@ -28,6 +30,7 @@ class Motion:
     angular_velocity: tuple[float, float, float] | None = None
     orientation: tuple[float, float, float, float] | None = None
     duration: float | None = None
+    allow_impossible_inertia: bool = False
 
 
 def cases_of(motion: Motion) -> list[Case]:
@@ -67,6 +70,8 @@ def _changed(data: dict[str, Any], motion: Motion) -> Scenario:
         data = {key: value for key, value in data.items() if value is not None}
         if not motion.scenarios:
             data["name"] = named.kebab
+    if motion.allow_impossible_inertia and "part" not in data["body"]:
+        data = {**data, "body": {**data["body"], ALLOWED: True}}
     if motion.angular_velocity is not None:
         given = list(motion.angular_velocity)
         data = {**data, "initial": {**data["initial"], "angular_velocity": given}}

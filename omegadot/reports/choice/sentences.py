@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from omegadot.reports.record.impossible import impossible_bodies
 from omegadot.reports.text.numbers import listed, plain, short, times
 
 Row = Mapping[str, Any]
@@ -143,6 +144,7 @@ def notes(choice: Row) -> Iterator[str]:
             yield f"{engine['name']} {engine['version']}: {engine['note']}."
     for death in choice["worker_deaths"]:
         yield f"{death['engine']}: a worker died, {death['how']}"
+    yield from impossible_bodies(choice["scenarios"])
     for case in choice["scenarios"]:
         for key in case["unverifiable"]:
             unit = {r["requirement"]: r["unit"] for r in choice["requirements"]["accuracy"]}[key]

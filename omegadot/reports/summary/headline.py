@@ -16,7 +16,7 @@ def remarks(summary: Summary) -> list[str]:
     """What must be said beside the headline: what is missing, and how far trajectories part."""
     message = [] if summary.complete else ["Partial record: the run was cut short."]
     spread = _spread(_judged_engines(summary))
-    return message + ([spread] if spread else []) + _remainder(summary)
+    return [*message, *summary.impossible, *([spread] if spread else []), *_remainder(summary)]
 
 
 def truth(summary: Summary) -> list[str]:

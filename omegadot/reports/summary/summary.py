@@ -12,6 +12,7 @@ from typing import Any
 
 import polars as pl
 
+from omegadot.reports.record.impossible import impossible_bodies
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
 
@@ -76,7 +77,7 @@ class Missing:
 @dataclass(frozen=True)
 class Summary:
     """What the record says at a glance. truths: on how many scenarios the exact course is of which
-    kind.
+    kind.  impossible: a sentence on each body that cannot be.
     """
 
     complete: bool
@@ -86,6 +87,7 @@ class Summary:
     runs: Counter[str]
     missing: tuple[Missing, ...]
     truths: Counter[str]
+    impossible: tuple[str, ...]
 
 
 def worst(statuses: Iterable[str]) -> str:
@@ -134,6 +136,7 @@ def summarise(record: Record) -> Summary:
         Counter(task_status(task) for task in tasks),
         _missing(record.run),
         _truths(record.trajectories),
+        tuple(impossible_bodies(record.run["scenarios"])),
     )
 
 
