@@ -166,6 +166,24 @@ def test_a_link_in_a_motion_of_ones_own(tmp_path: Path) -> None:
     assert "arm, 0.5 s: 1 of 1 integrator qualifies" in result.out
 
 
+def test_a_body_that_cannot_be_takes_an_option_and_is_named(tmp_path: Path) -> None:
+    text = URDF.replace('izz="', 'izz="9')
+    (tmp_path / "robot.urdf").write_text(text)
+    arguments = ["--body", "robot.urdf#arm", "--angular-velocity", "0.3", "-2", "0.1"]
+    arguments += ["--duration", "500ms", "--omega", "1", "--engine", "mujoco:RK4", "--out", "o"]
+    result = omegadot("choose", *arguments, folder=tmp_path)
+    assert result.code == 2
+    assert "--allow-impossible-inertia" in result.err
+    result = omegadot("choose", *arguments, "--allow-impossible-inertia", folder=tmp_path)
+    assert result.code == 0, result.err
+    assert "arm: an impossible inertia, allowed on request" in result.out
+    assert (
+        "arm: an impossible inertia, allowed on request" in (tmp_path / "o/choice.html").read_text()
+    )
+    choice = json.loads((tmp_path / "o/choice.json").read_text())
+    assert choice["scenarios"][0]["definition"]["body"]["allow_impossible_inertia"] is True
+
+
 def test_nothing_qualifies(tmp_path: Path) -> None:
     quick_scenario(tmp_path)
     arguments = ["quick.toml", "--engine", "mujoco:Euler", "--budget", "0.02"]

@@ -126,6 +126,16 @@ def test_the_headline_of_a_sound_run(record):
     assert "1.5e-9 rad (mujoco RK4" in spread
 
 
+def test_a_body_that_cannot_be_is_named_beside_the_headline(record):
+    inertia = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.5]]
+    body = {"mass": 1.0, "inertia": inertia, "allow_impossible_inertia": True}
+    first, *others = record.run["scenarios"]
+    run = {**record.run, "scenarios": [{**first, "definition": {"body": body}}, *others]}
+    remark, _ = remarks(summarise(replace(record, run=run)))
+    assert remark.startswith(f"{first['name']}: an impossible inertia, allowed on request")
+    assert "(3.5 > 3 kg m^2)" in remark
+
+
 def test_the_headline_of_a_failing_run(record):
     failed = change(record, first_of(record, "dart"), gates={"equation": "fail"})
     message = headline(summarise(failed))
