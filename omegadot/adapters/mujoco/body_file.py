@@ -85,16 +85,22 @@ def compiled(path: str) -> dict[str, Any]:
         try:
             return {"bodies": _bodies(mujoco.MjSpec.from_file(path).compile()), "lacking": ""}
         except Exception as error:
-            reason = printable("; ".join(str(error).split("\n")).strip("; "))
+            reason = _reason(error)
         try:
             first, second = (
                 _bodies(_without_files(mujoco, path, radius).compile()) for radius in RADII
             )
-        except Exception:
-            found = f"an MJCF that MuJoCo does not compile ({reason})"
+        except Exception as error:
+            found = f"an MJCF that MuJoCo does not compile ({_reason(error) or reason})"
             return {"refused": (found, "correct it there")}
     certain = {name: body if body == second[name] else None for name, body in first.items()}
     return {"bodies": certain, "lacking": reason}
+
+
+def _reason(error: Exception) -> str:
+    """In one line, and empty where there is none."""
+    lines = str(error).split("\n")
+    return printable("; ".join(line for line in lines if line)) if any(lines) else ""
 
 
 def _without_files(mujoco: Any, path: str, radius: float) -> Any:
