@@ -236,6 +236,12 @@ def test_what_mujoco_refuses_is_refused_with_its_reason(
     assert "\n" not in found
 
 
+def test_undeclared_latin_1_is_read(folder: Path) -> None:
+    text = mjcf(BOX).replace('"a"', '"pi\xe8ce"')
+    Path("it.xml").write_bytes(text.encode("latin-1"))
+    assert body_of_argument("it.xml#pi\xe8ce", in_process).body["mass"] == pytest.approx(48.0)
+
+
 def test_a_body_is_read_in_a_process_of_its_own(folder: Path) -> None:
     Path("it.xml").write_text(COMPILED["fused"], encoding="utf-8")
     named = body_of_argument("it.xml#a", bodies_of_mjcf)

@@ -114,7 +114,7 @@ def test_sdf_takes_quaternions_with_w_last(tmp_path: Path) -> None:
                 [[0.6, -0.01, -0.03], [-0.01, 0.5, -0.02], [-0.03, -0.02, 0.7]])  # fmt: skip
 
 
-def test_links_of_one_name_in_several_models_are_told_apart_by_their_models(tmp_path: Path) -> None:
+def test_links_of_one_name_take_the_name_of_their_model(tmp_path: Path) -> None:
     for link in ("m::arm", "m::n::arm", "n::arm", "tip", "n::tip", "m::n::tip"):
         assert named(tmp_path, TWO, f"#{link}").body["mass"] == 2.5
     with pytest.raises(ScenarioError, match="the name of 2; write m::arm or m::n::arm"):
@@ -227,6 +227,7 @@ REFUSED = [
     (XACRO, "#foot", "expand it with xacro"),
     (XACRO, "#toe", "expand it with xacro"),
     ("<xacro:x/>", "#leg", "expand it with xacro"),
+    ('<robot><link name="${side}_leg"/></robot>', "#left_leg", "expand it with xacro"),
     *(
         (URDF.replace('value="2.5"', f'value="{number}"'), "#arm", "give a number")
         for number in ("heavy", "nan", "inf", "infinity", "1_000", "\u0661", "2,5", "2 5",

@@ -23,6 +23,7 @@ from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.scenarios.errors import ScenarioError, printable
 from omegadot.scenarios.links.link import Link
 from omegadot.scenarios.links.place import Place
+from omegadot.scenarios.links.xml_file import decoded
 
 SECONDS = 60.0  # a humanoid takes a tenth of a second
 RADII = (1.0, 2.0)  # m, of the balls
@@ -131,9 +132,11 @@ def _bodies(model: Any) -> dict[str, dict[str, Any]]:
     """Every named body's mass, centre of mass and inertia, in the axes of its frame."""
     found = {}
     for index in range(1, model.nbody):
+        start = model.name_bodyadr[index]
+        name = decoded(model.names[start : model.names.index(b"\0", start)])
         axes = rotation_matrix(model.body_iquat[index])
         tensor = (axes * model.body_inertia[index]) @ axes.T
-        found[model.body(index).name] = {
+        found[name] = {
             "mass": float(model.body_mass[index]),
             "center_of_mass": model.body_ipos[index].tolist(),
             "inertia": (0.5 * (tensor + tensor.T)).tolist(),

@@ -50,7 +50,7 @@ def body_of_argument(argument: str, bodies_of_mjcf: MjcfReader) -> NamedBody:
         kind, links = "body", bodies_of_mjcf(Path(path), file)
     else:
         root = parsed(text, file)
-        if any(element.tag.startswith("xacro:") for element in root.iter()):
+        if any(e.tag.startswith("xacro:") or "${" in e.get("name", "") for e in root.iter()):
             remark = "expand it with xacro first"
         elif root.find(".//include") is not None:
             remark = "expand its includes first"

@@ -43,11 +43,9 @@ def _has_mass(link: Element) -> bool:
 def _body(link: Element, version: str, place: Place) -> dict[str, Any]:
     """The link's mass, centre of mass and inertia as a scenario's body. Raises ScenarioError."""
     inertial = place.only(link, "inertial")
-    parts = [*link, *(() if inertial is None else inertial.iter())]
-    values = (
-        [] if inertial is None else [v for part in inertial.iter() for v in part.attrib.values()]
-    )
-    if any(part.tag.startswith("xacro:") for part in parts) or any("$" in v for v in values):
+    inside = [] if inertial is None else list(inertial.iter())
+    macros = any(element.tag.startswith("xacro:") for element in (*link, *inside))
+    if macros or any("$" in value for element in inside for value in element.attrib.values()):
         place.refuse("a link with macros of xacro", "expand it with xacro first")
     if inertial is None:
         place.refuse("without <inertial>, so it has no mass", "give it one or choose another link")

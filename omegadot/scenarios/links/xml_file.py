@@ -60,7 +60,7 @@ def read_text(path: Path, file: str) -> str:
     Raises ScenarioError.
     """
     content = read_bytes(path, file, "URDF, MJCF or SDF", LARGEST_FILE)
-    text = _DECLARATION.sub(_blank, _decoded(content), count=1)
+    text = _DECLARATION.sub(_blank, decoded(content), count=1)
     return _without_comments(text)
 
 
@@ -108,7 +108,8 @@ def _blank(found: re.Match[str]) -> str:
     return "\n" * found[0].count("\n")
 
 
-def _decoded(content: bytes) -> str:
+def decoded(content: bytes) -> str:
+    """Text in UTF-8, in UTF-16 where it begins with its mark, in Latin-1 otherwise."""
     for mark, encoding in _MARKS.items():
         if content.startswith(mark):
             return content[len(mark) :].decode(encoding, "replace")
