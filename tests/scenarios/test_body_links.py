@@ -252,6 +252,13 @@ REFUSED = [
     (SDF.replace("<pose ", '<pose relative_to="x" '), "#arm", "relative to"),
     (SDF.replace("<mass>2.5</mass>", ""), "#arm", "mass"),
     (SDF.replace("<world", "<include/><world"), "#leg", "expand its includes"),
+    (TWO, "#base", "without <inertial>"),
+    (SDF.replace("<mass>", "<fluid_added_mass/><mass>"), "#arm", "there is no fluid here"),
+    (SDF.replace("inertia>", "inertja>"), "#arm", "inertia is missing"),
+    (SDF.replace("<ixx>0.5</ixx>", ""), "#arm", "ixx is missing"),
+    (SDF.replace("<mass>", "<mass>1</mass><mass>"), "#arm", "given 2 times"),
+    (SDF.replace('degrees="true"', 'rotation_format="axis"'), "#arm", "euler_rpy or quat_xyzw"),
+    (URDF.replace('<mass value="2.5"/>', ""), "#arm", "give <mass>"),
     (SDF.replace("<inertial>", '<inertial auto="maybe">'), "#arm", "write true or false"),
     (SDF.replace("<inertial>", '<inertial auto="true">'), "#arm", "without a <collision>"),
     *(
@@ -281,6 +288,12 @@ def test_what_cannot_be_read_is_refused_in_one_sentence(
     assert reason in sentence
     assert "file.xml" in sentence
     assert "\n" not in sentence
+
+
+@pytest.mark.parametrize(("text", "found"), [("", "is missing"), ("body = 3", "is 3")])
+def test_a_toml_file_without_a_body_is_refused(tmp_path: Path, text: str, found: str) -> None:
+    with pytest.raises(ScenarioError, match=f"body {found}; write it as a table"):
+        named(tmp_path, text, "", "mine.toml")
 
 
 @pytest.mark.parametrize("argument", ["missing.urdf#a", ".#a", "\0#a", "missing.toml"])
