@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator, model_validator
 
 from omegadot.scenarios.errors import Phrase
@@ -24,7 +23,7 @@ from omegadot.scenarios.quantities import (
     refuse,
 )
 from omegadot.scenarios.solids import check_body_of_parts
-from omegadot.scenarios.tensor import Inertia, broken_triangle
+from omegadot.scenarios.tensor import Inertia
 
 MOST_STEPS = 10**8  # of one run; more is a slip of the pen, and would hold a machine for hours
 MOST_TIMESTEPS = 100  # in one sweep
@@ -96,11 +95,6 @@ class Body(_Table):
                 advice = "give mass and inertia, or [[body.part]] tables"
                 raise refuse(advice, key=key, found=Phrase("missing"))
         return self
-
-    @property
-    def broken_triangle(self) -> str | None:
-        """How the inertia breaks the triangle inequality, such as ``3.1234 > 3.1233``."""
-        return None if self.inertia is None else broken_triangle(np.array(self.inertia))
 
 
 class Initial(_Table):
