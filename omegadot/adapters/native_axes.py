@@ -1,4 +1,4 @@
-"""In whose axes an engine keeps a vector: told from what the engine makes of one it is given."""
+"""In whose axes an engine keeps a vector, found from what the engine makes of one it is given."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ GIVEN = np.array([1.0, 0.0, 0.0])
 def axes_observed(seen_in_world: Array) -> str:
     """Whose axes ``GIVEN`` was taken in by a body at ``TURNED``, of what is seen of it in world.
 
-    Some roundings are granted; anything else is told as it is.
+    Some roundings are granted; anything else is reported as it is.
     """
     close = 64 * np.finfo(float).eps
     if np.all(np.abs(seen_in_world - GIVEN) <= close):

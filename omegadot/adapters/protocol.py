@@ -23,7 +23,7 @@ Channel = Literal[
 
 
 class UnsupportedError(Exception):
-    """The engine cannot do what the scenario asks; the message says what, in one sentence."""
+    """The engine cannot do what the scenario requires; the message names it in one sentence."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Which runs are copies of one another: the same scheme many times over is one vote, not many.
+"""Clusters of identical trajectories: engines that step one scheme agree, and that is no evidence.
 
 Members are found by what they did, not by what they declare: two runs of one case and step belong
 together where their omega and attitude differ by no more than rounding may have grown to in either.
@@ -23,7 +23,7 @@ from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.system import Array
 from omegadot.workers.wire import state_from
 
-# The reference has no vote: its schemes are what the members are named after.
+# The reference is not counted: its schemes give the clusters their names.
 NOT_COUNTED = ("exact", "reference")
 
 

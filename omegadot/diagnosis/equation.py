@@ -165,7 +165,7 @@ def _inverse(system: System, states: State, requested: Acceleration, torque: Arr
         "inverse dynamics have the gyroscopic term's sign wrong": true - 2 * gyroscopic,
         "inverse dynamics leave out gravity": true + gravity,
         "inverse dynamics count damping among what is given": true - damping_torque(system, states),
-        "inverse dynamics tell the torque in world axes": rotate(states.orientation, true),
+        "inverse dynamics reports the torque in world axes": rotate(states.orientation, true),
         "inverse dynamics have the wrong sign": -true,
     }
     bound = BOUND * torque_size(system, states, requested)

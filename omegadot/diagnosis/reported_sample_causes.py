@@ -14,7 +14,7 @@ from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import turn_in_body
 from omegadot.reference_impl.system import Array
 
-MOST_DIGITS = 15  # seventeen tell every double, and sixteen most
+MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
 
 
 def not_unit(reported: ReportedRun) -> str:
@@ -43,7 +43,7 @@ def digits_reported(reported: ReportedRun) -> str:
 
 
 def _digits(numbers: Array) -> int:
-    """How many significant digits tell all of these numbers."""
+    """How many significant digits determine all of these numbers."""
     needed = 1
     for number in numbers.tolist():
         while needed < MOST_DIGITS + 2 and float(f"{number:.{needed}g}") != number:

@@ -52,7 +52,7 @@ def random_states(case: Case, count: int, seed: Sequence[int]) -> State:
 
 
 def random_acceleration(system: System, states: State, seed: Sequence[int]) -> Acceleration:
-    """An acceleration to ask inverse dynamics for: not the one that the loads would give."""
+    """An acceleration at which inverse dynamics is evaluated: not the one that the loads give."""
     random = np.random.default_rng(seed)
     free = forward_dynamics(system, states)
     rate = norm(states.angular_velocity)[..., None]

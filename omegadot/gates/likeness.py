@@ -58,7 +58,7 @@ def likeness(distances: Mapping[str, Array], bounds: Mapping[str, Array]) -> Lik
 
 
 def like_schemes(truth: Truth, sweep: Sweep, state: State) -> dict[SchemeKey, Likeness]:
-    """A run against every scheme that the reference stepped beside it with this step."""
+    """A run against every scheme that the reference stepped with the same step."""
     found = {}
     for (key, timestep), companion in truth.companions.items():
         if timestep == sweep.timestep:

@@ -100,7 +100,7 @@ def _vanishes(measured_runs: list[MeasuredRun], sizes: list[Array], channel: str
 
 
 def evidence_of(measured: MeasuredRun, measured_runs: list[MeasuredRun], channel: str) -> Evidence:
-    """What one run and the others of its sweep tell of a channel."""
+    """What one run and the others of its sweep show in a channel."""
     error, left = measured.error[channel], measured.against_scheme.get(channel)
     gone = _vanishes(measured_runs, [c.error[channel] for c in measured_runs], channel)
     orders = [VANISHED if gone else order_of(measured_runs, channel)]

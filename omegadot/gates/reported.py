@@ -1,4 +1,4 @@
-"""Gate 5, trajectory: a run reports what the contract asks, whatever the scheme and its order.
+"""Gate 5, trajectory: a run reports what the contract requires, whatever the scheme and its order.
 
 It begins at the state that it was given, its quaternions are of unit length, and an engine that
 works in double precision reports numbers of double precision. No step size excuses any of these.

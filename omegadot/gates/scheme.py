@@ -157,7 +157,7 @@ def match_row(
     nearest = min(alike.values(), key=lambda one: (np.isnan(one.share), one.share), default=None)
     if nearest is None:
         nothing = Likeness(float("nan"), "omega", float("nan"))
-        return _row(nothing, "info", "declares no scheme, and none was stepped beside it")
+        return _row(nothing, "info", "declares no scheme, and none was stepped for comparison")
     equals = [key.scheme for key, one in alike.items() if one.agree]
     text = f"declares no scheme, and equals {' and '.join(dict.fromkeys(equals)) or 'none known'}"
     return _row(nearest, "info", text)

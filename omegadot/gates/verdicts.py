@@ -105,7 +105,7 @@ class Evidence:
 
 
 def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Finding:
-    """Give the reason why an error may stand, or say that there is none.
+    """The reason why an error is accepted, or that there is none.
 
     An error that is not explained must shrink at the declared order, and so must what is left of
     it after the declared scheme: two schemes of an order differ by a term of that order, a fault

@@ -28,7 +28,7 @@ def adapters_named(extra: Sequence[str]) -> dict[str, str]:
 
 
 def engine_choices(wanted: Sequence[str], extra: Sequence[str] = ()) -> list[EngineChoice]:
-    """The engines of ``NAME[:INTEGRATOR]`` words; every one registered when there is none.
+    """The engines of ``NAME[:INTEGRATOR]`` arguments; every one registered when there is none.
 
     The same name may come several times with different integrators. Raises UsageError.
     """

@@ -20,8 +20,8 @@ from omegadot.reference_impl.system import Array, State
 from omegadot.reports.record import schema
 from omegadot.workers.wire import state_from
 
-# Causes are tried by stepping again, which takes seconds: a run asks about so many of an engine's
-# failed integrators, in the order of the scenarios. `omegadot check` asks about all.
+# Causes are tried by stepping again, which takes seconds: a run finds causes for so many of an engine's
+# failed integrators, in the order of the scenarios. `omegadot check` finds them for all.
 MOST_CAUSES = 12
 COLUMNS = {
     "orientation": ("qw", "qx", "qy", "qz"),
@@ -229,7 +229,7 @@ def _labels(
 
 
 def trajectories_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
-    """Every run's samples, and the exact trajectory of every case beside them."""
+    """Every run's samples, and the exact trajectory of every case."""
     frames = []
     for case in outcome.cases:
         name, truth = case.case.name, case.truth

@@ -32,7 +32,7 @@ from omegadot.workers.harness_end.pool import outcome_of
 
 
 class Runner:
-    """One run. on_start and on_advance tell a progress bar what has been planned and done."""
+    """One run. on_start and on_advance report to a progress bar what is planned and done."""
 
     def __init__(self, request: RunRequest) -> None:
         self.request = request

@@ -1,4 +1,4 @@
-"""Ask the exact solution and the reference's companions of their workers."""
+"""Requests to the workers of the exact solution and of the reference's companions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an integrator is queried beside its runs where no scheme is known that they should equal."""
+"""Further requests to an integrator whose declared scheme is unknown to the reference."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _restart(
 def rows_of_unknown(
     truth: Truth, system: System, integrator: Integrator, sweep: Sweep, result: CaseResult
 ) -> list[Row]:
-    """What these answers tell of one run; nothing where they were not requested, or failed."""
+    """The rows of these answers for one run; none where they were not requested, or failed."""
     found = []
     probe, steps = result.first_steps.get(integrator.name, (None, None))
     if probe is not None and steps is not None and steps.ok:

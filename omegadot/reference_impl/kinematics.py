@@ -1,7 +1,7 @@
 """Velocities of points of a moving body: section 2.2.1, equation (3).
 
 The paper's two-dimensional example differentiates ``(sin θ, cos θ)`` to ``(-cos θ, sin θ)``; the
-derivative is ``(cos θ, -sin θ)``, which is ``r(θ + π/2)`` as the line after it says. Equation (3)
+derivative is ``(cos θ, -sin θ)``, which is ``r(θ + π/2)`` as the line after it states. Equation (3)
 is not touched by the slip.
 """
 

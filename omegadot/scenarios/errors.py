@@ -28,7 +28,7 @@ class ScenarioError(ValueError):
 
 
 class Phrase(str):
-    """Words to show as they stand: not a value that the user wrote."""
+    """Text to show as it stands: not a value that the user wrote."""
 
     __slots__ = ()
 

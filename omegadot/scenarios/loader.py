@@ -46,7 +46,7 @@ def load_builtin(name: str) -> Scenario:
 def find_scenario(name_or_path: str) -> Scenario:
     """The built-in of this name; failing that, the scenario in the file of this path.
 
-    A word without a slash, a dot or a file of its name is taken for a mistyped built-in.
+    A name without a slash, a dot or a file of its name is taken for a mistyped built-in.
     Raises ScenarioError.
     """
     if name_or_path in builtin_names():

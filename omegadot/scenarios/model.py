@@ -160,7 +160,7 @@ class Scenario(_Table):
         alias="schema", description="schema = 1"
     )
     name: Name = Field(description="kebab-case")
-    title: Text = Field(description="a few words")
+    title: Text = Field(description="a short text")
     shows: Text | None = Field(default=None, description="one sentence on what it shows")
     source: Text | None = Field(default=None, description="where it comes from")
     body: Body = Field(description="the table [body]")

@@ -1,4 +1,4 @@
-"""Words from an engine, made fit for a record, a terminal and a page."""
+"""Text from an engine, made safe for a record, a terminal and a page."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ import numpy as np
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
 
-# Words that get into the channel look like a header of 10^18 bytes.
+# Text that gets into the channel looks like a header of 10^18 bytes.
 LONGEST_HEADER = 2**30
 
 

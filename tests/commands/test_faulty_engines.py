@@ -60,7 +60,7 @@ def test_the_last_words_of_a_dead_worker_are_kept(tmp_path: Path) -> None:
     run_faulty("Killed", tmp_path)
     run = json.loads((tmp_path / "out" / "run.json").read_text())
     reasons = {t["reason"] for t in run["tasks"] if t["outcome"] == "crashed"}
-    assert reasons == {"ended by signal 9 (SIGKILL); its last words: assertion failed: mass > 0"}
+    assert reasons == {"ended by signal 9 (SIGKILL); its last output: assertion failed: mass > 0"}
 
 
 def test_a_flood_on_both_streams_garbles_nothing(tmp_path: Path) -> None:

@@ -36,7 +36,7 @@ sample = 0.01
 BROKEN = {
     "KillNine": ("crashed", "ended by signal 9 (SIGKILL)"),
     "Segfault": ("crashed", "ended by signal 11 (SIGSEGV)"),
-    "Aborts": ("crashed", "(SIGABRT); its last words: [31mAssertion `inertia > 0' failed."),
+    "Aborts": ("crashed", "(SIGABRT); its last output: [31mAssertion `inertia > 0' failed."),
     "NamelessSignal": ("crashed", "ended by signal 35"),
     "ExitsWithZero": ("crashed", "ended with exit code 0"),
     "LeavesAChild": ("crashed", "ended with exit code 9"),

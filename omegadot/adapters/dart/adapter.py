@@ -32,7 +32,7 @@ SEMI_IMPLICIT = Integrator(
 )
 CONVENTIONS = (
     "FreeJoint velocities are in body axes up to 6.16 and in world axes from 6.17; BallJoint "
-    "velocities are in body axes: the adapter asks for named frames or goes through the Jacobian",
+    "velocities are in body axes: the adapter requests named frames or uses the Jacobian",
     "orientation is kept as the rotation vector from the joint's frame",
     "spatial vectors are (angular, linear), at the body origin",
     "DART's joint damping is implicit in the step: here -damping * omega is an external torque at "

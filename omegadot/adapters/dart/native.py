@@ -1,4 +1,4 @@
-"""What the installed DART itself does and comes with, asked of it, not of its documents."""
+"""Conventions and defaults of the installed DART, measured on it, not read in its documents."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def _defaults(dart: Any) -> dict[str, str]:
 
 
 def _answer(owner: Any, *names: str) -> str:
-    """What the first of these calls that there is answers; versions name some anew."""
+    """What the first of these calls that there is answers; some versions rename them."""
     name = next((name for name in names if hasattr(owner, name)), None)
     return "no such setting" if name is None else described(getattr(owner, name)())
 

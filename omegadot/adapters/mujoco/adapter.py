@@ -1,4 +1,4 @@
-"""MuJoCo behind the protocol: one body on a free joint or hung on a ball joint."""
+"""MuJoCo behind the protocol: one body on a free joint or pivoted on a ball joint."""
 
 from __future__ import annotations
 

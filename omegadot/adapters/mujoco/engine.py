@@ -1,4 +1,4 @@
-"""The module mujoco, imported when it is asked for."""
+"""The module mujoco, imported when it is needed."""
 
 from __future__ import annotations
 

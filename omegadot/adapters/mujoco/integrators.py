@@ -1,6 +1,6 @@
 """MuJoCo's integrators, which change their mathematics from version to version.
 
-What each version does is told by MuJoCo's changelog and was confirmed against the reference's
+What each version does is stated in MuJoCo's changelog and was confirmed against the reference's
 schemes to rounding. A body without jointed children on a free joint ("standalone") is treated
 apart by some versions; a body on a ball joint never is.
 """
@@ -33,7 +33,7 @@ _MIDPOINT_NOTE = "I (ω₁ - ω₀) = dt (τ₀ - ω_m × I ω_m), ω_m = (ω₀
 class Case:
     """What the choice of scheme, and its orders, depend on.
 
-    pivoted: hung on a ball joint.  offset: free, with the centre of mass off the body's origin.
+    pivoted: on a ball joint.  offset: free, with the centre of mass off the body's origin.
     falls: gravity acts.  damped: the body has damping.  euler_damps: it is implicit in ``Euler``.
     turns_torque: a torque that depends on the attitude acts.
     """

@@ -1,4 +1,4 @@
-"""What the installed MuJoCo itself does and comes with, asked of it, not of its documents."""
+"""Conventions and defaults of the installed MuJoCo, measured on it, not read in its documents."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def quietly(mujoco: Any) -> Iterator[None]:
 
 
 class Stepper:
-    """Steps one model and keeps the rows asked for."""
+    """Steps one model and keeps the rows requested."""
 
     def __init__(self, mujoco: Any, model: Any, data: Any) -> None:
         self._mujoco, self._model, self._data = mujoco, model, data

@@ -104,7 +104,7 @@ def _measured_runs(probe: Probe, step: Stepper, lanes: Lanes) -> list[State]:
 def fingerprint(probe: Probe, step: Stepper) -> list[Match]:
     """The schemes that `step` equals on a probe, the simplest first; none where it is unknown.
 
-    Every reference scheme is stepped beside it at three step sizes; those that agree to round-off
+    Every reference scheme is stepped at the same three step sizes; those that agree to round-off
     are followed over a longer run. Raises NoAnswerError.
     """
     measured_runs = _measured_runs(probe, step, WEEDING)

@@ -107,7 +107,7 @@ def checked_native(found: Any) -> dict[str, dict[str, str]]:
 
 
 def checked_description(found: Any) -> Description:
-    """A description whose fields are what its annotations say."""
+    """A description whose fields are of the annotated types."""
     if not isinstance(found, Description):
         raise AnswerError(f"description is of type {type(found).__name__}; answer with Description")
     for name in ("name", "version", "licence"):

@@ -21,7 +21,7 @@ MOST_SEARCHES = 8
 
 
 def new_mark() -> str:
-    """A word that no other worker bears."""
+    """A mark that no other worker has."""
     return uuid.uuid4().hex
 
 
@@ -44,7 +44,7 @@ def _kill_marked(mark: str) -> int:
     """How many were killed. A number is held while its owner is looked at, so none is mistaken."""
     killed = 0
     for number in _numbers():
-        with contextlib.suppress(OSError):  # it may be gone by now, or somebody else's
+        with contextlib.suppress(OSError):  # it may be gone by now, or another process's
             held = os.pidfd_open(number)
             try:
                 if mark.encode() in Path(f"/proc/{number}/environ").read_bytes():

@@ -52,7 +52,7 @@ class Pipes:
         self._requests.put(encode_frame(message))
 
     def close_requests(self) -> None:
-        """Tell the worker, after what was sent, that nothing more will be requested."""
+        """End the requests: the worker sees the end of its input."""
         self._requests.put(None)
 
     def last_output(self) -> str:
@@ -87,7 +87,7 @@ class Pipes:
             self.answers.put(Lost(f"its answer cannot be read: {one_line(str(error), 100)}"))
 
     def _listen(self) -> None:
-        """Keep the last words on standard error and drop the rest, however much comes."""
+        """Keep the last lines of standard error and drop the rest, however much comes."""
         stream = self._process.stderr
         assert stream is not None
         with contextlib.suppress(OSError, ValueError):

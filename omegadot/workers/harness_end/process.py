@@ -1,4 +1,4 @@
-"""The harness's side of one worker: start it, ask it, and state how it died."""
+"""The harness's side of one worker: start it, send requests, and report how it ended."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class WorkerProcess:
 
     @property
     def started(self) -> bool:
-        """Whether there is a process to ask; one that died since then will be found out there."""
+        """Whether there is a process; one that died since then is found at the next request."""
         return self._process is not None
 
     def start(self) -> Answer:
@@ -137,7 +137,7 @@ class WorkerProcess:
             how = _ending(process.wait())
         self._process = self._pipes = None
         text = pipes.last_output()
-        found = f"{how}; its last words: {text}" if text else how
+        found = f"{how}; its last output: {text}" if text else how
         self.deaths.append(found)
         return found
 
