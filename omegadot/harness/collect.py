@@ -20,8 +20,8 @@ from omegadot.reference_impl.system import Array, State
 from omegadot.reports.record import schema
 from omegadot.workers.wire import state_from
 
-# Causes are tried by stepping again, which takes seconds: a run finds causes for so many of an engine's
-# failed integrators, in the order of the scenarios. `omegadot check` finds them for all.
+# Causes are tried by stepping again, which takes seconds: a run finds causes for so many failed
+# integrators of an engine, in the order of the scenarios. `omegadot check` finds them for all.
 MOST_CAUSES = 12
 COLUMNS = {
     "orientation": ("qw", "qx", "qy", "qz"),

@@ -1,4 +1,4 @@
-"""Conventions and defaults of the installed Pinocchio, measured on it, not read in its documents."""
+"""Conventions and defaults of the installed Pinocchio, measured on it, not read in documents."""
 
 from __future__ import annotations
 
