@@ -24,8 +24,7 @@ def skew(w: Array) -> Array:
 
     It is also the derivative of ``w × v`` by ``v``, equation (2).
     """
-    w = np.asarray(w)
-    matrix = np.zeros((*w.shape, 3), w.dtype)
+    matrix = np.zeros_like(w, shape=(*w.shape, 3))
     matrix[..., 0, 1] = -w[..., 2]
     matrix[..., 0, 2] = w[..., 1]
     matrix[..., 1, 0] = w[..., 2]

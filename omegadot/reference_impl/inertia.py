@@ -29,7 +29,7 @@ def inertia_of_moments(mass: Array | float, mean_squares: Array) -> Array:
 def parallel_axis(mass: Array | float, offset: Array) -> Array:
     """``m d_×^T d_×``, (..., 3, 3): what (5) adds when the axes move by ``offset`` d (..., 3)."""
     d_x = skew(offset)
-    return np.asarray(mass)[..., None, None] * (np.swapaxes(d_x, -1, -2) @ d_x)
+    return np.expand_dims(mass, (-2, -1)) * (np.swapaxes(d_x, -1, -2) @ d_x)
 
 
 def place(part: Body, position: Array, orientation: Array) -> Body:

@@ -14,7 +14,7 @@ from omegadot.reference_impl.system import Array, State, System
 
 def weight(system: System) -> Array:
     """``m g``, (..., 3) N, world axes, acting at the centre of mass."""
-    return np.asarray(system.body.mass)[..., None] * system.load.gravity
+    return system.body.mass[..., None] * system.load.gravity
 
 
 def gravity_torque(system: System, state: State) -> Array:
@@ -29,7 +29,7 @@ def gravity_torque(system: System, state: State) -> Array:
 
 def damping_torque(system: System, state: State) -> Array:
     """``-d ω``, (..., 3) N m, body axes."""
-    return -np.asarray(system.load.damping)[..., None] * state.angular_velocity
+    return -system.load.damping[..., None] * state.angular_velocity
 
 
 def applied_torque(system: System, state: State) -> Array:
@@ -54,7 +54,7 @@ def torque_of(system: System) -> Callable[[State], Array]:
 
     def torque(state: State) -> Array:
         w = state.angular_velocity
-        total = np.zeros(w.shape, w.dtype)
+        total = np.zeros_like(w)
         for part in acting:
             total = total + part(system, state)
         return total

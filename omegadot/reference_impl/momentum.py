@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import rotate
@@ -14,7 +12,7 @@ from omegadot.reference_impl.system import Array, State, System
 def linear_momentum(system: System, state: State) -> Array:
     """``m ẋ``, (..., 3) kg m/s, world: the gradient of K_v, section 2.3.1."""
     velocity = place_on_pivot(system, state).linear_velocity
-    return np.asarray(system.body.mass)[..., None] * velocity
+    return system.body.mass[..., None] * velocity
 
 
 def angular_momentum(system: System, state: State) -> Array:

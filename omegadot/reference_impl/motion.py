@@ -41,7 +41,7 @@ def center_of_mass_acceleration(system: System, state: State, w_dot: Array) -> A
     """
     w = state.angular_velocity
     if system.load.pivot is None:
-        return np.zeros(w.shape, w.dtype) + system.load.gravity
+        return np.zeros_like(w) + system.load.gravity
     r = lever(system)
     return rotate(state.orientation, cross(w_dot, r) + cross(w, cross(w, r)))
 

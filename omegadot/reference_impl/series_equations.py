@@ -1,4 +1,4 @@
-"""The equations of motion as one quadratic system with constant coefficients, in long double.
+"""The equations of motion as one quadratic system with constant coefficients, in the extended type.
 
 In principal axes equation (8) reads ``ω̇₁ = (I₂ - I₃)/I₁ ω₂ω₃ + τ₁/I₁`` and so on. Its coefficients
 are formed in eighty digits from the doubles that the system holds and rounded once, so that the
@@ -27,6 +27,7 @@ from omegadot.reference_impl.closed_forms.digits import (
     many_digits,
 )
 from omegadot.reference_impl.closed_forms.principal_axes import principal_axes
+from omegadot.reference_impl.precision import from_decimals, to_double, to_extended
 from omegadot.reference_impl.rotations import normalize, quaternion_product, rotate_inverse
 from omegadot.reference_impl.system import Array, State, System
 
@@ -38,8 +39,8 @@ class Equations:
     """``ẋ_a = Σ_bc quadratic[b, c, a] x_b ω_c + Σ_b linear[b, a] x_b + constant[a]``.
 
     axes: (3, 3), the principal axes, row by row, in body axes.  gravity and torque_world: (3,),
-    world axes, what x's last six components follow.  unit: s, what time is counted in here.  All in
-    long double.
+    world axes, what x's last six components follow.  unit: s, what time is counted in here.  All
+    but the unit in the extended type.
     """
 
     quadratic: Array
@@ -53,8 +54,13 @@ class Equations:
     def rates(self, x: Array) -> Array:
         """The ẋ of x, (..., 13)."""
         products = (x[..., :, None] * x[..., None, W]).reshape(*x.shape[:-1], 39)
-        rates: Array = products @ self.quadratic.reshape(39, 13) + x @ self.linear + self.constant
+        rates: Array = np.concatenate((products, x), -1) @ self.table + self.constant
         return rates
+
+    @property
+    def table(self) -> Array:
+        """(52, 13): from the 39 products of x with ω, then x, to their part of ẋ."""
+        return np.concatenate((self.quadratic.reshape(39, 13), self.linear))
 
     def in_own_time(self, x: Array) -> Equations:
         """The same with time in a unit of the motion's own, a power of two near ``1/rate``.
@@ -62,7 +68,8 @@ class Equations:
         Coefficients of high order are powers of the rate: in seconds those of a molecule would
         leave the range of numbers. The rate is ``max(|ω|, |ω̇|^½)``, the largest over the lanes.
         """
-        rate = max(np.max(np.abs(x[..., W])), np.sqrt(np.max(np.abs(self.rates(x)[..., W]))))
+        w, w_dot = (np.abs(to_double(y)[..., W]) for y in (x, self.rates(x)))
+        rate = max(np.max(w), np.sqrt(np.max(w_dot)))
         unit = float(np.ldexp(1.0, 1 - int(np.frexp(rate)[1]))) if rate > 0 else 1.0
         linear, constant = self.linear.copy(), self.constant * unit**2
         linear[W, W] *= unit
@@ -71,11 +78,10 @@ class Equations:
         return replace(self, linear=linear, constant=constant, unit=unit)
 
     def unknown(self, state: State) -> Array:
-        """The x of states, (..., 13); the quaternion is made unit in long double."""
-        q = np.asarray(state.orientation, np.longdouble)
-        w = np.asarray(state.angular_velocity, np.longdouble)
+        """The x of states, (..., 13); the quaternion is made unit in the extended type."""
+        q, w = to_extended(state.orientation), to_extended(state.angular_velocity)
         shape = np.broadcast_shapes(q.shape[:-1], w.shape[:-1])
-        x = np.zeros((*shape, 13), np.longdouble)
+        x = to_extended(np.zeros((*shape, 13)))
         x[..., Q] = q
         x[..., W] = w @ self.axes.T * self.unit
         return self.refreshed(x)
@@ -111,22 +117,23 @@ def equations_of(system: System) -> Equations:
         damping = Decimal(float(load.damping))
         gyroscopic = [(moments[i - 2] - moments[i - 1]) * inverse[i] for i in range(3)]
         by_gravity = [[inverse[i] * columns[j][i] for j in range(3)] for i in range(3)]
-        linear = np.zeros((13, 13), np.longdouble)
-        constant = np.zeros(13, np.longdouble)
-        linear[W, W] = np.diag(_rounded([-damping * k for k in inverse]))
-        linear[W, G] = [_rounded(row) for row in by_gravity]
-        linear[W, T] = np.diag(_rounded(inverse))
-        constant[W] = _rounded([k * tau for k, tau in zip(inverse, push, strict=True)])
-        rows = np.array([_rounded(axis) for axis in axes])
-        turning = _rounded(gyroscopic)
+        linear, constant = to_extended(np.zeros((13, 13))), to_extended(np.zeros(13))
+        one = np.arange(W.start, W.stop)
+        linear[one, one] = from_decimals([-damping * k for k in inverse])
+        linear[one, one + T.start - W.start] = from_decimals(inverse)
+        for row, pull in zip(one, by_gravity, strict=True):
+            linear[row, G] = from_decimals(pull)
+        constant[W] = from_decimals([k * tau for k, tau in zip(inverse, push, strict=True)])
+        rows = from_decimals([part for axis in axes for part in axis]).reshape(3, 3)
+        turning = from_decimals(gyroscopic)
     pivoted = load.pivot is not None
     return Equations(
         quadratic=_quadratic(turning, rows),
         linear=linear.T,
         constant=constant,
         axes=rows,
-        gravity=np.asarray(load.gravity if pivoted else np.zeros(3), np.longdouble),
-        torque_world=np.asarray(load.torque_world, np.longdouble),
+        gravity=to_extended(load.gravity if pivoted else np.zeros(3)),
+        torque_world=to_extended(load.torque_world),
     )
 
 
@@ -145,16 +152,12 @@ def _about_fixed_point(system: System) -> tuple[Matrix, list[Decimal]]:
     return inertia, r
 
 
-def _rounded(values: list[Decimal]) -> Array:
-    return np.array([np.longdouble(str(value)) for value in values])
-
-
 def _quadratic(gyroscopic: Array, rows: Array) -> Array:
     """The table of products, (13, 3, 13): factor in x, factor in ω, component of ẋ."""
-    table = np.zeros((13, 3, 13), np.longdouble)
-    unit = np.eye(4, dtype=np.longdouble)
+    table = to_extended(np.zeros((13, 3, 13)))
+    unit = to_extended(np.eye(4))
     for c in range(3):
-        pure = np.concatenate(([np.longdouble(0)], rows[c]))  # body axes
+        pure = np.concatenate((to_extended(np.zeros(1)), rows[c]))  # body axes
         for b in range(4):
             table[b, c, Q] = quaternion_product(unit[b], pure) / 2
     for i in range(3):

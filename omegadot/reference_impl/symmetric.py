@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from omegadot.reference_impl.precision import like, to_extended
 from omegadot.reference_impl.system import Array
 
 
@@ -18,12 +19,11 @@ def inverse(matrix: Array) -> Array:
 
     ``M = L D L^T`` with unit lower triangular L gives ``M^-1 = L^-T D^-1 L^-1``; elimination of a
     positive definite matrix is stable without pivoting, so the error is of the size
-    ``eps * cond(M) * |M^-1|`` with the eps of long double. It is worked in long double because
+    ``eps * cond(M) * |M^-1|`` with the eps of the extended type. It is worked in that because
     ``numpy.linalg`` has none, and because an inertia of condition 1e6 then loses nothing in
     double. Raises ValueError where a pivot is not positive.
     """
-    matrix = np.asarray(matrix)
-    m = matrix.astype(np.longdouble)
+    m = to_extended(matrix)
     d1 = m[..., 0, 0]
     l21 = m[..., 1, 0] / d1
     l31 = m[..., 2, 0] / d1
@@ -39,5 +39,4 @@ def inverse(matrix: Array) -> Array:
     w[..., 1, 0] = -l21
     w[..., 2, 0] = l21 * l32 - l31
     w[..., 2, 1] = -l32
-    result: Array = (np.swapaxes(w, -1, -2) @ (w / pivots[..., None])).astype(matrix.dtype)
-    return result
+    return like(matrix, np.swapaxes(w, -1, -2) @ (w / pivots[..., None]))

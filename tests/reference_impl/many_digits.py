@@ -7,10 +7,12 @@ inverse; the package expands a quaternion in principal axes.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from decimal import Decimal
 
 import mpmath as mp
 import numpy as np
 
+from omegadot.reference_impl.precision import from_decimals
 from omegadot.reference_impl.system import Array, State, System
 
 DIGITS, ORDER = 40, 46
@@ -100,7 +102,7 @@ class Motion:
 def exact_states(
     system: System, initial: State, times: Sequence[float]
 ) -> list[tuple[Array, Array]]:
-    """``(world_R_body, ω)`` in long double at the times, which go outwards from zero."""
+    """``(world_R_body, ω)`` in the extended type at times that go outwards from zero."""
     with mp.workdps(DIGITS):
         motion, now = Motion(system), mp.mpf(0)
         R, w = _matrix_of(_numbers(initial.orientation)), _numbers(initial.angular_velocity)
@@ -118,9 +120,9 @@ def exact_states(
                 powers = [step**k for k in range(ORDER + 1)]
                 R, w = ([mp.fdot(row, powers) for row in rows] for rows in (Rs, ws))
                 now += step
-            found.append((_long(R).reshape(3, 3), _long(w)))
+            found.append((_extended(R).reshape(3, 3), _extended(w)))
         return found
 
 
-def _long(values: Row) -> Array:
-    return np.array([np.longdouble(mp.nstr(value, 25)) for value in values])
+def _extended(values: Row) -> Array:
+    return from_decimals([Decimal(mp.nstr(value, DIGITS)) for value in values])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import strategies as st
 
@@ -107,6 +109,12 @@ def rows(state: State, index: object) -> State:
         state.position[index],
         state.linear_velocity[index],
     )
+
+
+def in_long_double(value: State | Body | Load) -> object:
+    """The same arrays in long double, to step the schemes in: a double on some platforms."""
+    arrays = {k: None if v is None else v.astype(np.longdouble) for k, v in vars(value).items()}
+    return replace(value, **arrays)
 
 
 COUNT = 10

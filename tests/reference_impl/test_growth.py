@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference_cases import DAMPED, DRIVEN, EPS, TOP, rows, start, system
+from reference_cases import DAMPED, DRIVEN, EPS, TOP, in_long_double, rows, start, system
 from scipy.linalg import expm
 
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.growth import changed, changes, growth_along
 from omegadot.reference_impl.motion import acceleration_of
-from omegadot.reference_impl.precision import extended, extended_state
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.series import solve_series
 from omegadot.reference_impl.stepping import step_through
@@ -88,12 +87,12 @@ def test_rounding_stays_within_its_bound(scheme: str, on: System) -> None:
     rate, dt, steps = 3.0, 0.01, 400
     initial = start([0.01, rate, 0.01], on=on)
     times, double = step_through(SCHEMES[scheme], on, acceleration_of(on), initial, dt, steps, 20)
-    long = extended(on)
+    long = replace(on, bodies=(in_long_double(on.body),), load=in_long_double(on.load))
     _, spared = step_through(
         SCHEMES[scheme],
         long,
         acceleration_of(long),
-        extended_state(initial),
+        in_long_double(initial),
         np.longdouble(dt),
         steps,
         20,
