@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Callable
 from typing import Annotated
@@ -71,6 +72,9 @@ def _root(
 
 def main() -> None:
     """Entry point: wrong input is one sentence on standard error and exit code 2."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a pipe on Windows has no letter for omega
+            stream.reconfigure(errors="replace")
     try:
         code = app(standalone_mode=False)
     except (typer.Abort, KeyboardInterrupt):
@@ -99,11 +103,13 @@ def _sentence(error: Exception) -> str | None:
         return text if text.endswith(".") else f"{text}."
     from omegadot.adapters.registry import AdapterError
     from omegadot.harness.usage import UsageError
+    from omegadot.reference_impl.precision import ExtendedTypeError
     from omegadot.reports.record.schema import RecordError
     from omegadot.scenarios import ScenarioError
 
     if _is_our_own(error):
         return str(error)
-    if isinstance(error, AdapterError | UsageError | RecordError | ScenarioError):
+    wrong_input = AdapterError | ExtendedTypeError | RecordError | ScenarioError | UsageError
+    if isinstance(error, wrong_input):
         return str(error)
     return None

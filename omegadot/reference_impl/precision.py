@@ -27,11 +27,20 @@ LONG_EPS = float(np.finfo(np.longdouble).eps)
 Arrays = TypeVar("Arrays", State, Acceleration, Body, Load, System)
 
 
+class ExtendedTypeError(ValueError):
+    """The environment forces a type that there is not."""
+
+
 def extended_type() -> str:
-    """``"long double"`` or ``"double-double"``. Raises ValueError for an unknown forced one."""
+    """``"long double"`` or ``"double-double"``.
+
+    Raises ExtendedTypeError where the environment forces another.
+    """
     forced = os.environ.get(VARIABLE, "")
     if forced not in ("", DOUBLE_DOUBLE):
-        raise ValueError(f"{VARIABLE} is {forced!r}; set it to {DOUBLE_DOUBLE!r}, or unset it.")
+        raise ExtendedTypeError(
+            f"{VARIABLE} is {forced!r}; set it to {DOUBLE_DOUBLE!r}, or unset it."
+        )
     return DOUBLE_DOUBLE if forced or LONG_EPS > LEAST_EPS else LONG_DOUBLE
 
 

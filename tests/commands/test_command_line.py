@@ -1,6 +1,8 @@
 """The command line: exit codes, sentences, and what a run leaves behind."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import polars as pl
@@ -172,6 +174,43 @@ def test_scenarios_and_engines_are_listed(tmp_path: Path) -> None:
     assert missing.code == 0
     assert "not available" in missing.out
     assert "semi-implicit-euler" in missing.out
+
+
+def test_letters_that_the_output_cannot_hold_end_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # as of a pipe on Windows, whose code pages know no omega
+    monkeypatch.setenv("PYTHONIOENCODING", "ascii")
+    quick_scenario(tmp_path)
+    result = omegadot("run", "quick.toml", "--engine", "reference:lie-rk4", folder=tmp_path)
+    assert result.code == 0, result.err
+    assert "?" in result.out
+
+
+def test_an_extended_type_that_there_is_not_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OMEGADOT_EXTENDED", "quad")
+    quick_scenario(tmp_path)
+    (tmp_path / "trace.csv").write_text("t,qw,qx,qy,qz\n0,1,0,0,0\n1,1,0,0,0\n", encoding="utf-8")
+    quick = QUICK.replace("[run]", "[load]\ndamping = 0.1\n[run]")  # no closed form: by series
+    quick_scenario(tmp_path, quick)
+    message = sentence(omegadot("score", "trace.csv", "--scenario", "quick.toml", folder=tmp_path))
+    assert "OMEGADOT_EXTENDED is 'quad'" in message
+
+
+def test_a_memory_limit_that_is_not_kept_is_reported(tmp_path: Path) -> None:
+    quick_scenario(tmp_path)
+    code = (
+        "import omegadot.workers.engine_end.worker as w; w.memory_can_be_limited = lambda: False; "
+        "from omegadot.commands.cli import main; main()"
+    )
+    command = ["run", "quick.toml", "--engine", "reference:lie-rk4", "--memory", "1"]
+    done = subprocess.run(
+        [sys.executable, "-c", code, *command], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0
+    assert "--memory is ignored" in done.stderr
 
 
 def test_help_and_version_are_quick_to_ask(tmp_path: Path) -> None:

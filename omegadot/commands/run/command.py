@@ -61,7 +61,7 @@ def run(
         typer.Option(
             metavar="GIB",
             min=0.1,
-            help="Memory limit for one engine. Default: half of the machine's.",
+            help="Memory limit for one engine, on Linux. Default: half of the machine's.",
         ),
     ] = None,
     seed: Annotated[
@@ -82,7 +82,10 @@ def run(
     from omegadot.harness.arguments import case_of, engine_choices, scenarios_of
     from omegadot.harness.outcome import RunRequest
     from omegadot.reports.record.record import check_folder
+    from omegadot.workers.engine_end import worker
 
+    if memory is not None and not worker.memory_can_be_limited():
+        typer.echo("omegadot: --memory is ignored: this system keeps no such limit.", err=True)
     choices = engine_choices(engine or [], adapter or [])
     cases = [case_of(scenario, timestep or []) for scenario in scenarios_of(scenarios or [])]
     known = exceptions_of(choices, exceptions or [])
