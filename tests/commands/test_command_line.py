@@ -202,7 +202,7 @@ def test_an_extended_type_that_there_is_not_is_refused(
 def test_a_memory_limit_that_is_not_kept_is_reported(tmp_path: Path) -> None:
     quick_scenario(tmp_path)
     code = (
-        "import omegadot.workers.engine_end.worker as w; w.memory_can_be_limited = lambda: False; "
+        "import omegadot.commands.run.command as c; c._memory_is_limited = lambda: False; "
         "from omegadot.commands.cli import main; main()"
     )
     command = ["run", "quick.toml", "--engine", "reference:lie-rk4", "--memory", "1"]

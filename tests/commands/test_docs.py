@@ -73,6 +73,18 @@ def test_the_two_commands_stand_at_the_top_and_in_ci() -> None:
     assert ".venv/bin/pytest" in script
 
 
+def test_the_versions_of_python_are_the_same_everywhere() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    label = "Programming Language :: Python :: 3."
+    minors = [int(c.removeprefix(label)) for c in project["classifiers"] if c.startswith(label)]
+    assert minors == list(range(minors[0], minors[-1] + 1))
+    assert project["requires-python"] == f">=3.{minors[0]},<3.{minors[-1] + 1}"
+    readme = " ".join((ROOT / "README.md").read_text().split())
+    *others, last = (f"3.{minor}" for minor in minors)
+    assert f"On a machine with Python {', '.join(others)} or {last}" in readme
+    assert f"with CPython {', '.join(others)} and {last}" in readme
+
+
 @pytest.fixture(scope="module")
 def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder that looks like the checkout to the commands, and takes what they write."""

@@ -7,7 +7,6 @@ import time
 import numpy as np
 import pytest
 
-from omegadot.workers.engine_end import worker
 from omegadot.workers.harness_end import process as worker_process
 from omegadot.workers.harness_end.process import WorkerProcess
 from omegadot.workers.machine import memory_of_machine
@@ -85,15 +84,6 @@ def test_a_worker_has_half_of_the_memory_or_what_it_is_given(memory: int | None)
     worker = worker_of(NAMES_ITS_LIMIT, 20.0, memory)
     assert worker.start().result == str(memory or memory_of_machine() // 2)
     worker.stop()
-
-
-@pytest.mark.parametrize("platform", ["darwin", "win32"])
-def test_no_limit_is_set_where_the_system_keeps_none(
-    platform: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(sys, "platform", platform)
-    assert not worker.memory_can_be_limited()
-    worker.limit_memory(1)  # a limit of a byte would end this very process
 
 
 def test_a_death_between_requests_is_counted() -> None:

@@ -82,9 +82,8 @@ def run(
     from omegadot.harness.arguments import case_of, engine_choices, scenarios_of
     from omegadot.harness.outcome import RunRequest
     from omegadot.reports.record.record import check_folder
-    from omegadot.workers.engine_end import worker
 
-    if memory is not None and not worker.memory_can_be_limited():
+    if memory is not None and not _memory_is_limited():
         typer.echo("omegadot: --memory is ignored: this system keeps no such limit.", err=True)
     choices = engine_choices(engine or [], adapter or [])
     cases = [case_of(scenario, timestep or []) for scenario in scenarios_of(scenarios or [])]
@@ -98,3 +97,12 @@ def run(
     else:
         print_text(record, out)
     raise typer.Exit(code)
+
+
+def _memory_is_limited() -> bool:
+    """Whether the system keeps a limit of one process's data.
+
+    Windows has none for a process alone; that of macOS is for `sbrk`, which no allocator there
+    uses.
+    """
+    return sys.platform.startswith(("linux", "freebsd"))

@@ -30,24 +30,15 @@ MEMORY_VARIABLE = "OMEGADOT_WORKER_MEMORY"
 _reserve = [bytearray(1 << 22)]
 
 
-def memory_can_be_limited() -> bool:
-    """Whether the system keeps a limit of one process's data.
-
-    Windows has none for a process alone, and macOS counts what the C library's `sbrk` gives, which
-    no allocator there uses.
-    """
-    return sys.platform.startswith(("linux", "freebsd"))
-
-
 def limit_memory(most: int) -> None:
     """Have allocations beyond `most` bytes of data refused, where the system can.
 
     Data, not address space: engines and numerical libraries reserve much more than they use.
     """
-    if not memory_can_be_limited():
+    try:
+        import resource
+    except ImportError:  # there is no such limit on this system
         return
-    import resource
-
     _, hard = resource.getrlimit(resource.RLIMIT_DATA)
     if hard != resource.RLIM_INFINITY:
         most = min(most, hard)
