@@ -1,4 +1,4 @@
-"""Double-double arithmetic against exact fractions, and what it refuses."""
+"""Double-word arithmetic against exact fractions, and what it refuses."""
 
 from __future__ import annotations
 
@@ -11,13 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from omegadot.reference_impl.double_double import (
-    DoubleDouble,
-    fast_two_sum,
-    split,
-    two_product,
-    two_sum,
-)
+from omegadot.reference_impl.double_double import DoubleDouble
+from omegadot.reference_impl.double_words import fast_two_sum, split, two_product, two_sum
 
 U = Fraction(1, 2**53)
 

@@ -8,7 +8,8 @@ from decimal import Decimal
 import numpy as np
 
 from omegadot.reference_impl.closed_forms.arcs import ARCS, unit_circle_at
-from omegadot.reference_impl.closed_forms.times import SPLITTER, Grid, Times
+from omegadot.reference_impl.closed_forms.times import Grid, Times
+from omegadot.reference_impl.double_words import SPLITTER
 from omegadot.reference_impl.system import Array
 
 _SHORT = 1e-9  # turns: the square of what is left out, (2π 1e-9)²/2, is below eps/8

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
+from omegadot.reference_impl.double_words import SPLITTER
 from omegadot.reference_impl.system import Array
 
-SPLITTER = 2.0**27 + 1.0
 COLUMNS = 512
 _FEWEST = 8  # rows; with fewer of them a grid saves nothing
 _EVEN = 2.0**-32  # of the span of a row: others are not worth the trouble
