@@ -1,7 +1,7 @@
 """What is shown: the record's format, the summary, the terminal's table, the HTML page.
 
 This room reads records alone, so that a page can be drawn again from a stored run. What is named
-here is imported when it is first asked for.
+here is imported on first use.
 """
 
 from importlib import import_module

@@ -31,7 +31,7 @@ def _pipe():
 
 
 class Chromium:
-    """One page in one browser. messages: what its console said; requests: what it asked for."""
+    """One page in one browser. messages: of its console; requests: what it fetched."""
 
     def __init__(self, profile: Path):
         program = shutil.which("chromium")

@@ -9,9 +9,9 @@ from omegadot.reports import draw_page
 HOSTILE = "<script>document.title='broken'</script><img src=x onerror=\"document.title='broken'\">"
 CHARTS = 14
 DRAWN = f"Number(document.documentElement.dataset.drawn || 0) >= {CHARTS}"
-# A chart of courses of the first scenario, by its place.
-COURSE = "((place) => document.querySelector(`[data-place='${place}']`))"
-# The runs in the attitude error of the first scenario, its fourth course.
+# A chart over time of the first scenario, by its place.
+OVER_TIME = "((place) => document.querySelector(`[data-place='${place}']`))"
+# The runs in the attitude error of the first scenario, its fourth chart over time.
 LINES = """[...document.querySelector("[data-place='3']").data].filter((t) => t.meta).map(
     (t) => ({name: t.name, end: t.y.at(-1), colour: t.line.color, dash: t.line.dash}))"""
 
@@ -52,7 +52,7 @@ def test_charts_are_drawn_and_nothing_is_complained_of(page, path):
     assert page.evaluate("document.querySelectorAll('.chart svg.main-svg').length") >= CHARTS
     assert page.evaluate("document.getElementById('no-charts').hidden")
     # Five lines a chart; beside them two guides and rounding's for convergence, the Pareto front
-    # for cost, and the bounds in two of the four courses: equal for all runs, so one line.
+    # for cost, and the bounds in two of the four charts: equal for all runs, so one line.
     lines = 2 * (4 * 5 + 5 + 3 + 5 + 1 + 2)
     assert (
         page.evaluate("document.querySelectorAll('.chart .scatterlayer .js-line').length") == lines
@@ -82,7 +82,7 @@ def test_the_charts_hold_what_the_record_holds(page):
 
 
 def test_one_step_is_shown_at_a_time_and_axes_stay(page):
-    axis = f"JSON.stringify({COURSE}(3).layout.yaxis.range)"
+    axis = f"JSON.stringify({OVER_TIME}(3).layout.yaxis.range)"
     before = page.evaluate(axis)
     assert page.evaluate("[...document.getElementById('step').options].map((o) => o.text)") == [
         *("finest (0.005 s)", "second finest (0.01 s)", "third finest (0.02 s)")
@@ -114,7 +114,7 @@ def test_a_switch_acts_on_all_charts_and_the_keyboard_reaches_it(page):
     page.press(" ", 32, " ")
     page.wait(DRAWN)
     counts = page.evaluate("[...document.querySelectorAll('.chart')].map((c) => c.data.length)")
-    # Identical states hold a bound and two kinds of them; two of the courses hold a bound.
+    # Identical states hold a bound and two kinds of them; two of the charts over time hold a bound.
     assert counts == [3, 3, 3, 4, 4, 6, 4] * 2
     assert page.evaluate(LINES)[0]["name"] == "mujoco Euler"
 

@@ -15,7 +15,7 @@ RANGES = "[...document.querySelectorAll('.scenario')[{}].querySelectorAll('[data
 RANGES += "(c) => [...c._fullLayout.xaxis.range].map((v) => Number(v.toPrecision(3))))"
 HOSTILE = "it's <b>bold</b>; rm -rf $HOME"
 CARD = "document.getElementById('card')"
-COMMANDS = f"[...{CARD}.querySelectorAll('.again code')].map((c) => c.textContent)"
+COMMANDS = f"[...{CARD}.querySelectorAll('.command code')].map((c) => c.textContent)"
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +66,7 @@ def drag(page, place, start, end):
     mouse(page, "mouseReleased", left + end * width, y, **button)
 
 
-def test_zoom_in_time_acts_on_all_courses_of_the_scenario_and_on_no_other(page):
+def test_zoom_in_time_acts_on_all_charts_over_time_of_the_scenario_and_on_no_other(page):
     assert page.evaluate(RANGES.format(0)) == [[0, 4]] * 4
     drag(page, 1, 0.25, 0.75)
     page.wait(f"{RANGES.format(0)}.every((r) => r[0] > 0.9 && r[1] < 3.1)")
@@ -84,7 +84,7 @@ def test_zoom_in_time_acts_on_all_courses_of_the_scenario_and_on_no_other(page):
     page.wait(f"{RANGES.format(0)}.every((r) => r[0] === 0 && r[1] === 4)")
 
 
-def test_the_time_under_the_pointer_is_shown_in_all_courses(page):
+def test_the_time_under_the_pointer_is_shown_in_all_charts_over_time(page):
     left, top, width, height = plot(page, 0)
     mouse(page, "mouseMoved", left + 0.5 * width, top + 0.5 * height)
     rules = "[...document.querySelectorAll('.now:not([hidden])')].map((r) => +r.dataset.time)"
@@ -98,7 +98,7 @@ def focus(page, selector):
     page.evaluate(f"document.querySelector({json.dumps(selector)}).focus()")
 
 
-def test_a_cell_of_the_matrix_tells_its_runs_by_keyboard(page):
+def test_a_cell_of_the_matrix_shows_its_runs_by_keyboard(page):
     focus(page, ".matrix tbody tr:nth-child(2) td:nth-child(2) a")
     page.press("Enter", 13, "\r")
     page.wait(f"{CARD}.open")
@@ -118,10 +118,10 @@ def test_a_cell_of_the_matrix_tells_its_runs_by_keyboard(page):
     assert page.evaluate("document.activeElement.dataset.card") is not None
 
 
-def test_a_row_tells_its_run_and_the_command_is_safe_to_paste(page):
+def test_a_row_shows_its_run_and_the_command_is_safe_to_paste(page):
     page.evaluate("document.querySelectorAll('.scenario details')[2].open = true")
-    page.wait("document.querySelector('.told button.way') !== null")
-    rows = "[...document.querySelectorAll('.told button.way')]"
+    page.wait("document.querySelector('.with-reasons button.source') !== null")
+    rows = "[...document.querySelectorAll('.with-reasons button.source')]"
     page.evaluate(f"{rows}.find((b) => b.textContent === 'RK4, step 0.01 s').focus()")
     page.press("Enter", 13, "\r")
     page.wait(f"{CARD}.open")
@@ -137,11 +137,11 @@ def test_a_row_tells_its_run_and_the_command_is_safe_to_paste(page):
     assert page.evaluate("window.copied") == command
 
 
-def test_a_point_tells_its_run_by_keyboard_and_by_click(page):
+def test_a_point_shows_its_run_by_keyboard_and_by_click(page):
     focus(page, "[data-place='3']")
     for key, code in (("ArrowDown", 40), ("End", 35)):
         page.press(key, code)
-    message = page.evaluate("document.getElementById('said').textContent")
+    message = page.evaluate("document.getElementById('announcement').textContent")
     assert message.startswith("reference lie-rk4 at 4 s: ")
     assert page.evaluate("document.querySelectorAll('.hoverlayer .hovertext').length") >= 1
     page.press("Enter", 13, "\r")
@@ -160,15 +160,15 @@ def test_a_point_tells_its_run_by_keyboard_and_by_click(page):
 
 def column(page, number):
     return page.evaluate(
-        "[...document.querySelectorAll('.told')[0].tBodies[0].rows]"
+        "[...document.querySelectorAll('.with-reasons')[0].tBodies[0].rows]"
         f".filter((r) => r.offsetHeight > 0).map((r) => r.cells[{number}].textContent)"
     )
 
 
 def test_a_table_sorts_filters_and_copies(page):
     page.evaluate("document.querySelectorAll('.scenario details')[2].open = true")
-    page.wait("document.querySelector('.told').dataset.ready === 'yes'")
-    heads = "[...document.querySelector('.told').tHead.querySelectorAll('button.sort')]"
+    page.wait("document.querySelector('.with-reasons').dataset.ready === 'yes'")
+    heads = "[...document.querySelector('.with-reasons').tHead.querySelectorAll('button.sort')]"
     drift = f"{heads}.find((b) => b.textContent.startsWith('drift full'))"
     place = 2 + page.evaluate(f"[...{drift}.closest('tr').cells].indexOf({drift}.closest('th'))")
     page.evaluate(f"{drift}.focus()")
@@ -179,14 +179,14 @@ def test_a_table_sorts_filters_and_copies(page):
     assert page.evaluate(f"{drift}.closest('th').ariaSort") == "ascending"
     page.press("Enter", 13, "\r")
     assert [float(value) for value in column(page, place)] == values[::-1]
-    assert page.evaluate("document.querySelectorAll('.told [aria-sort]').length") == 1
-    tools = "document.querySelector('.told').closest('.scroll').previousElementSibling"
+    assert page.evaluate("document.querySelectorAll('.with-reasons [aria-sort]').length") == 1
+    tools = "document.querySelector('.with-reasons').closest('.scroll').previousElementSibling"
     page.evaluate(
         f"{{ const f = {tools}.querySelector('input'); f.value = 'RK4 mujoco';"
         " f.dispatchEvent(new Event('input')); }"
     )
     assert set(column(page, 0)) == {"mujoco"}
-    assert page.evaluate(f"{tools}.querySelector('.said').textContent") == "3 of 15 rows"
+    assert page.evaluate(f"{tools}.querySelector('.feedback').textContent") == "3 of 15 rows"
     page.evaluate("navigator.clipboard.writeText = async (text) => { window.csv = text; }")
     page.evaluate(f"{tools}.querySelector('.copy').click()")
     page.wait("window.csv !== undefined")
@@ -239,7 +239,7 @@ def test_a_page_without_charts_still_has_its_tables_and_cards(browser, tmp_path)
 
 
 def test_paper_gets_every_chart_and_the_bodies(browser, path):
-    """Printing waits for nobody: what was never scrolled to is drawn at once."""
+    """Printing does not wait: what was never scrolled to is drawn at once."""
     browser.messages.clear()
     browser.open(path, width=1000, height=200)
     browser.wait(

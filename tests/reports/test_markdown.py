@@ -42,7 +42,7 @@ def test_a_skip_is_no_pass(record) -> None:
     assert all("✓" not in line and "unsupported" in line for line in matrix)
 
 
-def test_a_record_without_a_run_is_told(record) -> None:
+def test_a_record_without_a_run_is_reported_as_such(record) -> None:
     record.run.update(tasks=[], engines=[], scenarios=[])
     assert "No run was made." in markdown_of(record)
 

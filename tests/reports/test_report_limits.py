@@ -35,7 +35,7 @@ def judged(record):
     return with_metrics(record, *drifts, *floors)
 
 
-def test_a_bound_holds_up_to_its_part_of_the_run_and_says_something(judged):
+def test_a_bound_holds_up_to_its_fraction_of_the_run_and_means_something(judged):
     found = bounds_of(judged.metrics)["sphere"][KEY]
     # A relative bound of 2 allows everything: it is no bound.
     assert found["energy"] == [(0.25, 1e-12), (1.0, 4e-12)]
@@ -52,7 +52,7 @@ def test_floors_are_those_of_the_exact_solution_and_zero_is_none(judged):
     assert floors_of(judged.metrics) == {"sphere": {"attitude": 3e-14, "energy": 2e-15}}
 
 
-def test_limits_are_told_in_the_chart_s_unit_alone(judged):
+def test_limits_are_drawn_in_the_chart_s_unit_alone(judged):
     limits = limits_of(judged.metrics)["sphere"]
     deviation = next(c for c in chart_deviations(judged)["sphere"].deviations if c.engine == "dart")
     assert limits.floor("energy", "1") == 2e-15
@@ -72,7 +72,7 @@ def test_the_axes_hold_the_floor_and_the_bounds(judged):
     assert axes["omega_dot"]["resolvable"] is None
     (bounds,) = [
         entry[5]
-        for entry in scenario["courses"]
+        for entry in scenario["deviations"]
         if described["lines"][entry[0]]["engine"] == "dart" and entry[5][1][:1] == [0.25]
     ]
     assert bounds[list(axes).index("energy")] == [0.25, 1e-12, 1.0, 4e-12]
@@ -134,7 +134,7 @@ def test_every_run_is_matched_by_the_front_and_no_member_beats_another(values):
         )
 
 
-def test_a_default_record_has_a_line_of_the_front_in_words():
+def test_a_default_record_has_a_line_of_the_front_as_text():
     from omegadot.reports import draw_page
 
     page = draw_page(build(("sphere",)))

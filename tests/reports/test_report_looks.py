@@ -1,4 +1,4 @@
-"""Colours that can be told apart and read; dashes that do not repeat within an engine."""
+"""Colours that can be distinguished and read; dashes that do not repeat within an engine."""
 
 import re
 from importlib.resources import files
@@ -69,7 +69,7 @@ def lab(rgb):
 
 @pytest.mark.parametrize("theme", [0, 1])
 @pytest.mark.parametrize("kind", SEEN)
-def test_the_first_engines_can_be_told_apart_by_everybody(theme, kind):
+def test_the_first_engines_can_be_distinguished_by_every_reader(theme, kind):
     # CIE76: a difference of 2.3 is just noticeable; side by side on thin lines, ten are wanted.
     def seen(colour):
         rgb = linear(colour)

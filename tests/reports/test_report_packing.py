@@ -1,4 +1,4 @@
-"""What travels in the page comes back: to 0.1 %, in order, with zero and gaps told apart."""
+"""What travels in the page comes back: to 0.1 %, in order, with zero and gaps distinguished."""
 
 import base64
 import gzip
@@ -39,7 +39,7 @@ def test_the_order_of_values_is_kept(values):
     assert np.all(np.diff(codes_of(np.sort(values)).astype(int)) >= 0)
 
 
-def test_zero_gaps_and_overflow_are_told_apart():
+def test_zero_gaps_and_overflow_are_distinguished():
     values = np.array([0.0, FLOOR, FLOOR / 3, np.nan, np.inf, 1e300, 1e20])
     assert codes_of(values).tolist() == [0, 0, 0, 65535, 65534, 65534, 65534]
 

@@ -82,7 +82,7 @@ def test_the_matrix_needs_no_script(sound):
     assert f"{short(0.005**4)} … 5.0e-3" in matrix
 
 
-def test_every_run_and_every_course_has_a_row(sound):
+def test_every_run_has_a_row_in_every_table(sound):
     assert sound.count('<th scope="row">Euler, step 0.005 s') == 2 * 2
     assert sound.count("explained by semi-implicit-euler, to 1.7e-11") == 30
 
@@ -104,7 +104,7 @@ def test_every_chart_has_a_text_alternative_and_a_table(sound):
     assert sound.count("The numbers behind these charts") == 2
 
 
-def test_equations_errata_and_limitations_are_told(sound):
+def test_equations_errata_and_limitations_are_stated(sound):
     text = text_of(sound)
     for terms in ("(8)", "(9) is printed without its minus sign", "2.2.1", "Limitations"):
         assert terms in text
@@ -160,7 +160,7 @@ def test_failures_are_listed_once_a_measure_with_their_worst_run(record):
     ]
     declared = metric(*add, 0.01, "model", "model", "inertia", 1.0, verdict="declared", note="see")
     page = draw_page(with_metrics(record, declared, *rows))
-    table = re.search(r"Failures and declared exceptions</h3>.*?</table>", page, re.S).group(0)
+    table = re.search(r"Failures and declared exceptions .*?</h3>.*?</table>", page, re.S).group(0)
     cells = re.findall(r"<td[^>]*>(.*?)</td>", table)
     assert [re.sub("<.*?>", "", cell) for cell in cells[:10]] == [
         *("fail", "sphere", "dart 1.0", "trajectory", "omega", "error_max"),
@@ -170,29 +170,30 @@ def test_failures_are_listed_once_a_measure_with_their_worst_run(record):
     assert "2.0e-2 ✗ fail, bound 1.0e-13" in page
 
 
-def test_a_long_list_of_failures_says_how_much_is_left(record):
+def test_a_long_list_of_failures_names_how_many_are_left(record):
     rows = [
         metric("sphere", "dart", None, None, "model", "model", f"m{k}", 1.0, verdict="fail")
         for k in range(_JUDGED_SHOWN + 7)
     ]
-    assert "7 more stand in metrics.parquet" in draw_page(with_metrics(record, *rows))
+    assert "7 more are in metrics.parquet" in draw_page(with_metrics(record, *rows))
 
 
-def test_the_page_says_why(sound):
+def test_the_page_shows_the_source_of_error(sound):
     why = re.search(r'<section id="why".*?</section>', sound, re.S).group(0)
     text = text_of(why)
-    assert "mujoco Euler and dart semi-implicit are one scheme, semi-implicit-euler: two" in text
-    assert "On all of 2 scenarios." in text
+    assert "mujoco Euler and dart semi-implicit produce identical trajectories" in text
+    assert "(both step semi-implicit-euler)" in text
+    assert "On all 2 scenarios." in text
     assert why.count("6 of 6") == 3
     assert "1.01 (1)" in text
-    assert text_of(sound).count("3 runs at step 0.005 s make 2 different courses") == 2
+    assert text_of(sound).count("3 runs at step 0.005 s produce 2 different trajectories") == 2
     assert sound.count('data-kind="convergence"') == sound.count('data-kind="cost"') == 2
 
 
 def test_a_record_from_before_clusters_is_still_drawn(record):
     run = {key: value for key, value in record.run.items() if key != "clusters"}
     page = draw_page(replace(record, run=run))
-    assert "copies, one vote" not in page
+    assert "identical trajectories (" not in page
     assert 'id="why"' in page
 
 

@@ -1,6 +1,6 @@
 """Who gave a number, and what must stand in the command that gives it again."""
 
-from synthetic_record import build
+from synthetic_record import build, metric, with_metrics
 
 from omegadot.reports.page.glance import glances
 from omegadot.reports.page.matrix_cards import cards
@@ -22,12 +22,12 @@ def run(*terms, names=("sphere", "spun")):
     return {"command": ["omegadot", "run", *terms], "scenarios": [{"name": n} for n in names]}
 
 
-def test_a_scenario_of_a_file_is_asked_for_by_its_path():
+def test_a_scenario_of_a_file_is_requested_by_its_path():
     given = run("--engine", "mujoco", "a folder/sphere.toml", "--timestep=0.1", "spun")
     assert requested_as(given) == {"sphere": "a folder/sphere.toml", "spun": "spun"}
 
 
-def test_where_nothing_or_something_else_was_asked_for_the_name_stands():
+def test_where_nothing_or_something_else_was_requested_the_name_stands():
     assert requested_as(run()) == {"sphere": "sphere", "spun": "spun"}
     assert requested_as(run("one")) == {"sphere": "sphere", "spun": "spun"}
     assert requested_as({"scenarios": [{"name": "x"}]}) == {"x": "x"}
@@ -48,7 +48,7 @@ def test_a_source_has_one_number_and_the_engine_s_version():
     found = provenance_payload(run("sphere", "spun"), sources, {"sphere": "a", "spun": "b"})
     assert found["sources"][0] == ["mujoco", "4.0.0", "physics", "RK4", 0.01, None]
     assert found["scenarios"] == {"a": ["sphere", "sphere"], "b": ["spun", "spun"]}
-    assert found["asked"] == ["sphere", "spun"]
+    assert found["requested"] == ["sphere", "spun"]
 
 
 def test_rows_of_all_tables_name_one_and_the_same_run(record):
@@ -92,8 +92,21 @@ def test_each_engine_in_one_row(record):
     # Of the two scenarios the errors are 1.2 h^4 and twice that.
     assert mujoco.best[0] == f"{1.5 * 1.2 * 0.005**4:.1e}".replace("e-0", "e-") + " rad"
     assert "RK4, step 0.005 s on spun-again" in mujoco.best[1]
-    assert mujoco.why == ("its schemes' errors", "all 12 runs equal the declared scheme")
+    assert mujoco.error_source == (
+        "truncation error of the scheme",
+        "equals the declared scheme in all 12 runs",
+    )
     assert mujoco.cost[0] == "2 … 2 µs"
+
+
+def test_a_failed_gate_is_the_source_of_error_though_every_scheme_matches(record):
+    add = ["sphere", "dart", None, None, "equation", "omega_dot", "residual"]
+    broken = with_metrics(record, metric(*add, 0.1, bound=1e-13, verdict="fail"))
+    found = {g.engine: g for g in glances(summarise(broken), broken.metrics, Sources())}
+    assert found["dart 1.0"].error_source == (
+        "failed gate: equation",
+        "equals the declared scheme in all 6 runs",
+    )
 
 
 def test_an_engine_that_does_not_step_its_scheme_is_not_excused():
@@ -107,7 +120,7 @@ def test_an_engine_that_does_not_step_its_scheme_is_not_excused():
         .otherwise("verdict")
     )
     found = {g.engine: g for g in glances(summarise(record), metrics, Sources())}
-    assert found["dart 1.0"].why == (
-        "not its schemes alone",
-        "1 of 2 runs equal the declared one",
+    assert found["dart 1.0"].error_source == (
+        "not the scheme alone",
+        "equals the declared scheme in 1 of 2 runs",
     )

@@ -191,7 +191,7 @@ def test_a_wrong_run_file_is_one_sentence(folder, text, message):
     one_sentence(error)
 
 
-def test_words_outside_the_contract_are_refused(folder, tmp_path, record):
+def test_values_outside_the_contract_are_refused(folder, tmp_path, record):
     run = json.loads((folder / "run.json").read_text())
     run["tasks"][3]["outcome"] = "green"
     (folder / "run.json").write_text(json.dumps(run))

@@ -1,4 +1,4 @@
-"""The summary shows the worst, and says no more than the record holds."""
+"""The summary shows the worst, and claims no more than the record holds."""
 
 from dataclasses import replace
 
@@ -63,14 +63,14 @@ def test_the_order_of_statuses():
     assert set(OUTCOMES) - {"ok"} <= set(STATUSES)
 
 
-def test_a_run_that_nobody_judged_is_not_a_pass():
+def test_a_run_that_was_not_judged_is_not_a_pass():
     measured = task("s", "e", "i", 0.1, gates={"cost": "info"})
     assert task_status(measured) == "not-judged"
     assert task_status(task("s", "e", "i", 0.1, gates={})) == "not-judged"
     assert task_status(task("s", "e", "i", 0.1, gates={"a": "fail"}, outcome="diverged")) == "fail"
 
 
-def test_a_failing_row_counts_though_its_task_says_pass(record):
+def test_a_failing_row_counts_though_its_task_passes(record):
     row = metric("sphere", "dart", None, None, "model", "model", "mass", 1.0, verdict="fail")
     assert cell(with_metrics(record, row), "sphere", "dart").status == "fail"
 
@@ -154,14 +154,14 @@ def test_an_engine_without_a_verdict_does_not_agree(record):
             crashed = change(crashed, place, outcome="crashed", gates={})
     message = headline(summarise(crashed))
     assert message.startswith("mujoco (of 2 engines) agrees")
-    assert "6 of 30 runs gave no verdict; each has its reason." in remarks(summarise(crashed))
+    assert "6 of 30 runs gave no verdict; the reasons are listed." in remarks(summarise(crashed))
 
 
 def test_a_partial_and_an_empty_record():
     run = {"schema": 1, "complete": False, "engines": [], "scenarios": [], "tasks": []}
     summary = summarise(Record(run, empty(METRICS), empty(TRAJECTORIES)))
     assert headline(summary).startswith("No verdict")
-    assert remarks(summary) == ["Partial record: the run was cut short."]
+    assert remarks(summary) == ["Partial record: the run was interrupted."]
 
 
 def test_yardsticks_alone_speak_for_themselves():

@@ -26,10 +26,11 @@ def row(text, name):
 
 
 @pytest.mark.parametrize(("engines", "width"), [(4, 100), (5, 120)])
-def test_all_three_numbers_fit(engines, width):
+def test_all_three_numbers_fit_below_their_headings(engines, width):
     some = dict(list(FIVE.items())[:engines])
     text = printed(build(NAMES, engines=some), width)
     assert row(text, "sphere").count("✓ 6e-15 5e-3 1e-2") == engines
+    assert text.count("resid mom. att.") == engines
     assert max(map(len, text.splitlines())) <= width
 
 
@@ -57,7 +58,7 @@ def test_an_encoding_without_signs(record):
     assert "FAIL 3e-15" in text
 
 
-def test_what_did_not_run_is_a_word_and_a_reason(record):
+def test_what_did_not_run_has_its_outcome_and_reason(record):
     tasks = [dict(entry) for entry in record.run["tasks"]]
     tasks[-1].update(outcome="crashed", reason="signal 9 [bold]", gates={})
     drake = {"name": "drake", "installed": False, "reason": "no pydrake"}
@@ -69,7 +70,7 @@ def test_what_did_not_run_is_a_word_and_a_reason(record):
     assert "1 crashed" in text
 
 
-def test_an_empty_record_says_so(record):
+def test_an_empty_record_is_reported_as_such(record):
     run = {**record.run, "tasks": [], "scenarios": [], "engines": []}
     text = printed(replace(record, run=run, metrics=record.metrics.clear()), 80)
     assert "No run was made." in text

@@ -1,4 +1,4 @@
-"""Why engines differ, as the page tells it: copies, schemes, orders, convergence, cost."""
+"""Sources of error on the page: clusters, schemes, orders, convergence, cost."""
 
 from dataclasses import replace
 
@@ -17,7 +17,12 @@ from omegadot.reports.charts.sweeps import (
     sweeps_of,
 )
 from omegadot.reports.page.why import order_table, scheme_table
-from omegadot.reports.summary.copies import copies_of, sentence, votes, where
+from omegadot.reports.summary.clusters import (
+    clusters_over_scenarios,
+    extent,
+    on_scenario,
+    sentence,
+)
 from omegadot.reports.summary.headline import truth
 from omegadot.reports.summary.summary import summarise
 
@@ -35,30 +40,34 @@ def of(*clusters):
     return {"clusters": list(clusters)}
 
 
-def test_three_copies_are_one_vote():
-    (copies,) = copies_of(of(cluster("a", "x:Euler y:step z:aba+euler"), cluster("a", "x:RK4")))
-    assert sentence(copies) == (
-        "x Euler, y step and z aba+euler are one scheme, euler: three copies, one vote."
+def test_identical_trajectories_are_not_independent_evidence():
+    clusters = of(cluster("a", "x:Euler y:step z:aba+euler"), cluster("a", "x:RK4"))
+    (found,) = clusters_over_scenarios(clusters)
+    assert sentence(found) == (
+        "x Euler, y step and z aba+euler produce identical trajectories (all step euler), "
+        "so their agreement is not independent evidence."
     )
-    assert where(copies) == "On all of 1 scenario."
-    assert copies.engines == 3
+    assert extent(found) == "On 1 scenario."
+    assert found.engines == 3
 
 
-def test_an_exception_does_not_part_copies_and_is_named():
+def test_an_exception_does_not_split_a_cluster_and_is_named():
     same = [cluster(name, "x:a y:b") for name in ("one", "two", "three")]
     apart = [cluster("four", "x:a", "other"), cluster("four", "y:b")]
-    (copies,) = copies_of(of(*same, *apart))
-    assert copies.scheme == "euler"
-    assert where(copies) == "On 3 of 4 scenarios; they part on four."
+    (found,) = clusters_over_scenarios(of(*same, *apart))
+    assert found.scheme == "euler"
+    assert extent(found) == "On 3 of 4 scenarios; the trajectories differ on four."
     many = [cluster(n, m) for n in "pqrst" for m in ("x:a", "y:b")]
-    (copies,) = copies_of(of(*same, *[cluster(n, "x:a y:b") for n in "klmno"], *many))
-    assert where(copies) == "On 8 of 13 scenarios; they part on p, q, r and 2 more."
+    (found,) = clusters_over_scenarios(of(*same, *[cluster(n, "x:a y:b") for n in "klmno"], *many))
+    assert extent(found) == "On 8 of 13 scenarios; the trajectories differ on p, q, r and 2 more."
 
 
-def test_a_motion_that_tells_nothing_apart_makes_no_copies():
+def test_a_motion_on_which_all_schemes_agree_makes_no_cluster():
     simple = cluster("sphere", "x:a y:b x:c")
     listing = [cluster(name, own) for name in ("one", "two") for own in ("x:a y:b", "x:c")]
-    assert [copies.members for copies in copies_of(of(simple, *listing))] == [("x:a", "y:b")]
+    assert [found.members for found in clusters_over_scenarios(of(simple, *listing))] == [
+        ("x:a", "y:b")
+    ]
 
 
 def test_together_means_at_every_step():
@@ -67,7 +76,7 @@ def test_together_means_at_every_step():
         cluster("one", "x:a", timestep=0.01),
         cluster("one", "y:b", timestep=0.01),
     ]
-    assert copies_of(of(*clusters)) == []
+    assert clusters_over_scenarios(of(*clusters)) == []
 
 
 def test_in_a_group_every_two_agree():
@@ -77,24 +86,24 @@ def test_in_a_group_every_two_agree():
         *(cluster("two", own) for own in ("y:b z:c", "x:a")),
         cluster("three", "x:a y:b z:c"),
     ]
-    assert [copies.members for copies in copies_of(of(*clusters))] == [("x:a", "y:b")]
+    assert [found.members for found in clusters_over_scenarios(of(*clusters))] == [("x:a", "y:b")]
 
 
-def test_a_scheme_that_nobody_knows_has_no_name():
-    (copies,) = copies_of(of(cluster("one", "x:a y:b", None)))
-    assert "one scheme that the reference does not know: two copies" in sentence(copies)
+def test_a_scheme_that_the_reference_lacks_has_no_name():
+    (found,) = clusters_over_scenarios(of(cluster("one", "x:a y:b", None)))
+    assert "identical trajectories (no scheme of the reference)" in sentence(found)
 
 
-def test_a_record_without_clusters_says_nothing():
-    assert copies_of({}) == []
-    assert votes({}, "sphere") == ""
-    assert votes(of(cluster("one", "x:a")), "sphere") == ""
+def test_a_record_without_clusters_has_no_sentence():
+    assert clusters_over_scenarios({}) == []
+    assert on_scenario({}, "sphere") == ""
+    assert on_scenario(of(cluster("one", "x:a")), "sphere") == ""
 
 
-def test_one_scenarios_votes_are_those_of_its_finest_step():
+def test_one_scenarios_clusters_are_those_of_its_finest_step():
     coarse = cluster("one", "x:a y:b z:c", timestep=0.02)
-    message = votes(of(coarse, cluster("one", "x:a z:c"), cluster("one", "y:b")), "one")
-    assert message == "3 runs at step 0.01 s make 2 different courses: x a = z c."
+    message = on_scenario(of(coarse, cluster("one", "x:a z:c"), cluster("one", "y:b")), "one")
+    assert message == "3 runs at step 0.01 s produce 2 different trajectories: x a = z c."
 
 
 def row(table, *heads):
@@ -110,7 +119,7 @@ def test_the_scheme_table_leaves_the_reference_out(record):
     assert [value.text for value in euler.values] == ["6 of 6", "4.0e-4", "–", "2.0e-14"]
 
 
-def test_a_scheme_that_is_not_equalled_stands_out(record):
+def test_a_scheme_that_is_not_implemented_stands_out(record):
     add = ["sphere", "dart", "semi-implicit", 0.04, "scheme", "omega", "match"]
     found = with_metrics(record, metric(*add, 3e8, verdict="fail"))
     equalled, share, *_ = row(scheme_table(found), "dart").values
@@ -118,7 +127,7 @@ def test_a_scheme_that_is_not_equalled_stands_out(record):
     assert share.text == "3.0e8"
 
 
-def test_a_scheme_that_depends_on_the_system_is_told(record):
+def test_a_scheme_that_depends_on_the_system_is_reported(record):
     tasks = [dict(task) for task in record.run["tasks"]]
     for task in tasks:
         if task["integrator"] == "Euler" and task["scenario"] == "sphere":
@@ -210,12 +219,12 @@ def test_only_lines_of_the_page_are_drawn():
     assert sweep_payload([sweep(1.0, 1e-3, 2e-3, 4e-3)], {})["lines"] == []
 
 
-def test_the_kinds_of_truth_are_counted(record):
-    assert truth(summarise(record)) == ["Truth: closed-form on 2 of 2 scenarios."]
+def test_the_kinds_of_exact_solution_are_counted(record):
+    assert truth(summarise(record)) == ["Exact solution: closed-form on 2 of 2 scenarios."]
     series = pl.when(pl.col("scenario") == "sphere").then(pl.lit("series"))
     mixed = record.trajectories.with_columns(integrator=series.otherwise(pl.col("integrator")))
     assert truth(summarise(replace(record, trajectories=mixed))) == [
-        "Truth: closed-form on 1 and series on 1 of 2 scenarios."
+        "Exact solution: closed-form on 1 and series on 1 of 2 scenarios."
     ]
     empty = build(("sphere",)).trajectories.clear()
     assert truth(summarise(replace(record, trajectories=empty))) == []

@@ -176,20 +176,20 @@ def test_a_run_without_an_error_is_named_and_not_drawn(charts) -> None:
     assert np.isnan(np.asarray(line.get_ydata(), dtype=float)).all()
 
 
-def test_rounding_s_bound_and_the_floor_are_drawn(charts) -> None:
+def test_round_off_bound_and_floor_are_drawn(charts) -> None:
     figure = draw(charts, "attitude")
     levels = [set(np.asarray(line.get_ydata(), dtype=float)) for line in lines_of(figure)]
     assert {1e-13} in levels  # every bound of the synthetic record
     assert {3e-9} in levels
-    assert {"rounding's bound", "resolvable floor"} <= set(texts_of(figure))
+    assert {"round-off bound", "floor"} <= set(texts_of(figure))
     drift = draw(charts, "angular_momentum")
     assert {1e-13} in [set(np.asarray(x.get_ydata(), dtype=float)) for x in lines_of(drift)]
 
 
-def test_a_floor_far_below_is_told_and_does_not_flatten_the_rest(charts) -> None:
+def test_a_floor_far_below_is_named_and_does_not_flatten_the_rest(charts) -> None:
     far = Limits(charts.limits.bounds, {"attitude": 1e-16})
     figure = draw_convergence(type(charts)(**{**vars(charts), "limits": far}))
-    assert "resolvable floor 1.0e-16, below" in texts_of(figure)
+    assert "floor 1.0e-16, below" in texts_of(figure)
     assert figure.axes[0].get_ylim()[0] > 1e-16
 
 

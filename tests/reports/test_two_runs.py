@@ -1,4 +1,4 @@
-"""Two records held against each other: rounding is no change, and every change is told."""
+"""Two records compared: rounding is no change, and every change is reported."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_a_record_and_itself_have_no_change(base) -> None:
 @settings(derandomize=True, max_examples=10)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_rounding_on_either_machine_is_no_change(seed: int) -> None:
-    """Each run anywhere within its own round-off bound of the same course."""
+    """Each run anywhere within its own round-off bound of the same trajectory."""
     base, draw = build(**SMALL), np.random.default_rng(seed)
     bounded = base.metrics.get_column("metric") != "observed_order"
 
@@ -149,7 +149,7 @@ def test_an_order_that_is_not_resolved_any_more_is_no_change(base) -> None:
     assert compare_records(base, edited(base, figure=order, verdict="fail")).regressed
 
 
-def test_a_gate_that_fails_without_a_figure_is_told(base) -> None:
+def test_a_gate_that_fails_without_a_figure_is_reported(base) -> None:
     def failing(entry):
         if (entry["engine"], entry["integrator"], entry["timestep"]) == ("mujoco", "RK4", 0.01):
             entry["gates"] = {**entry["gates"], "trajectory": "fail"}
@@ -287,7 +287,7 @@ def test_versions_are_an_axis_and_not_a_key(base) -> None:
     assert len(apart.vanished) == len(base.run["tasks"])
 
 
-def test_costs_are_told_and_never_judged(base) -> None:
+def test_costs_are_reported_and_never_judged(base) -> None:
     slower = base.metrics.with_columns(
         value=pl.when(pl.col("gate") == "cost").then(pl.col("value") * 50).otherwise("value")
     )
@@ -297,7 +297,7 @@ def test_costs_are_told_and_never_judged(base) -> None:
     assert all(cost.low <= cost.median <= cost.high for cost in found.costs)
 
 
-def test_what_an_engine_says_of_itself_is_a_difference(base) -> None:
+def test_what_an_engine_declares_is_a_difference(base) -> None:
     other = with_run(base, seed=8)
     other.run["engines"][1]["integrators"][0]["scheme"] = "lie-rk4"
     other.run["machine"]["processor"] = "arm64"

@@ -20,11 +20,11 @@ def requirements_row(wanted: Requirements) -> Row:
             "requirement": key,
             "limit": limit,
             "unit": ACCURACY[key][1],
-            "asked": wanted.requested[key],
+            "requested": wanted.requested[key],
         }
         for key, limit in wanted.limits.items()
     ]
-    rest = {k: v for k, v in vars(wanted).items() if k not in ("limits", "asked")}
+    rest = {k: v for k, v in vars(wanted).items() if k not in ("limits", "requested")}
     return {"accuracy": limits, **rest}
 
 

@@ -115,7 +115,7 @@ def change_record(change: Change) -> Record:
 def bisection_record(arguments: str, matched: Sequence[Name], found: Bisection) -> Record:
     """The releases found, and what was looked at on the way."""
     return {
-        "words": arguments,
+        "query": arguments,
         "metrics": [title(name) for name in matched],
         "low": found.low.version if found.low else None,
         "high": found.high.version if found.high else None,

@@ -1,4 +1,4 @@
-"""A course on its axis: what is drawn of it, beside which limits, over what range."""
+"""An error along a run on its axis: what is drawn, with which limits, over what range."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from omegadot.reports.text.numbers import knob
 
 
 def bounds_drawn(limits: Limits, deviation: Series, chart: Chart) -> list[list[float]]:
-    """A list a channel: ``[part, bound, part, bound, ...]``."""
+    """A list a channel: ``[fraction, bound, fraction, bound, ...]``."""
     return [
         [float(f"{v:.3g}") for step in limits.bound(deviation, channel, unit) for v in step]
         for channel, unit in chart.units.items()
@@ -24,16 +24,16 @@ def bounds_drawn(limits: Limits, deviation: Series, chart: Chart) -> list[list[f
 
 
 def drawn(deviation: Series, channel: str) -> Array:
-    """A course as it is drawn: without the start where it was given, so that nothing is off."""
+    """The errors as drawn: without the start, which is given and so has no error."""
     values = deviation.values[channel]
     start = (deviation.time == 0.0) & (values <= FLOOR)
     return np.where(start, np.nan, values)
 
 
 def axis_of(chart: Chart, channel: str, limits: Limits) -> dict[str, Any]:
-    """Decades that hold every step size's courses, so that a change of step moves no axis.
+    """Decades that hold the errors of every step size, so that a change of step moves no axis.
 
-    And the bounds and the floor with them: what is judged by must be seen.
+    They hold the bounds and the floor too: what judges an error must be visible.
     """
     unit = chart.units[channel]
     values = np.concatenate([drawn(deviation, channel) for deviation in chart.deviations])
@@ -45,7 +45,7 @@ def axis_of(chart: Chart, channel: str, limits: Limits) -> dict[str, Any]:
 
 
 def captions(rank: Mapping[tuple[float | None, float | None], int]) -> list[str]:
-    """By rank: the steps and accuracies that it stands for, in words."""
+    """By rank: the steps and accuracies that it stands for, as text."""
     by_rank: dict[int, list[str]] = {}
     for (timestep, accuracy), place in rank.items():
         by_rank.setdefault(place, []).append(knob(timestep, accuracy))

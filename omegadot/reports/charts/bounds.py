@@ -11,7 +11,7 @@ import polars as pl
 
 from omegadot.reports.charts.deviations import Series
 
-# The part of a run up to which each of an invariant's bounds holds.
+# The fraction of a run up to which each of an invariant's bounds holds.
 HORIZONS = {"drift_quarter": 0.25, "drift_half": 0.5, "drift_full": 1.0}
 # From here on a bound allows everything: half a turn, or the whole of a relative quantity.
 WITHOUT_MEANING = {"attitude": math.pi}
@@ -29,17 +29,18 @@ _RELATIVE = ("energy", "angular_momentum", "linear_momentum")
 
 @dataclass(frozen=True)
 class Limits:
-    """What may be drawn into a scenario's charts beside the errors.
+    """What may be drawn into a scenario's charts with the errors.
 
-    bounds: by run and channel, how far rounding may take the error: ``(part, bound)``, part of the
-    run's length up to which it holds.  floors: by channel, the exact solution's own uncertainty.
+    bounds: by run and channel, how far rounding may take the error: ``(fraction, bound)``,
+    fraction of the run's length up to which it holds.  floors: by channel, the uncertainty of the
+    exact solution.
     """
 
     bounds: Mapping[RunKey, Mapping[str, Steps]]
     floors: Mapping[str, float]
 
     def bound(self, deviation: Series, channel: str, unit: str) -> Steps:
-        """The bounds of one course in one chart; none where they do not speak of its unit."""
+        """The bounds of one run in one chart; none where they have another unit."""
         if channel in _RELATIVE and unit != "1":
             return []
         run = tuple(getattr(deviation, name) for name in _RUN)
@@ -51,7 +52,7 @@ class Limits:
 
 
 def floor_of(limits: Limits) -> float:
-    """rad: the attitude error below which nothing can be told apart; 0 where it is not known."""
+    """rad: the attitude error below which runs cannot be distinguished; 0 where it is unknown."""
     return limits.floors.get("attitude", 0.0)
 
 
@@ -64,7 +65,7 @@ def limits_of(metrics: pl.DataFrame) -> dict[str, Limits]:
 @dataclass(frozen=True)
 class Residual:
     """An engine's omega-dot residuals at identical states: the worst at random states and along
-    the exact path, each with its bound; relative to the terms of equation (8) by size.
+    the exact trajectory, each with its bound; relative to the terms of equation (8) by size.
     """
 
     engine: str
@@ -75,10 +76,10 @@ class Residual:
 
 
 def bounds_of(metrics: pl.DataFrame) -> dict[str, dict[RunKey, dict[str, Steps]]]:
-    """By scenario, run and channel: how far rounding may take the error, ``(part, bound)``.
+    """By scenario, run and channel: how far rounding may take the error, ``(fraction, bound)``.
 
-    run: (engine, setup, integrator, step, accuracy).  part: of the run's length, up to which the
-    bound holds.  Bounds that are not finite, or allow everything, are left out.
+    run: (engine, setup, integrator, step, accuracy).  fraction: of the run's length, up to which
+    the bound holds.  Bounds that are not finite, or allow everything, are left out.
     """
     wanted = metrics.filter(
         pl.col("bound").is_finite()
@@ -108,7 +109,7 @@ def bounds_of(metrics: pl.DataFrame) -> dict[str, dict[RunKey, dict[str, Steps]]
 def floors_of(metrics: pl.DataFrame) -> dict[str, dict[str, float]]:
     """By scenario and channel: the exact solution's own uncertainty, where it is recorded.
 
-    An error below it cannot be told from none: a perfect answer in double is that far off.
+    An error below it cannot be distinguished from zero: a perfect answer in double is that far off.
     """
     rows = metrics.filter((pl.col("metric") == "resolvable_floor") & (pl.col("value") > 0.0))
     found: dict[str, dict[str, float]] = {}

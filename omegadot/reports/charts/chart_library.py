@@ -19,7 +19,7 @@ def pack(data: bytes) -> str:
 def packed_library() -> Future[str]:
     """Plotly's own script, out of the installed package, packed.
 
-    It takes a core a third of a second and leaves the others free: ask early, use late.
+    It takes one core a third of a second: call it early, use the result late.
     """
     aside = ThreadPoolExecutor(1, "packing")
     packed = aside.submit(_pack_plotly)

@@ -1,4 +1,4 @@
-"""How far each run strays from the exact solution, sample by sample: what the charts draw."""
+"""How far each run deviates from the exact solution, sample by sample: what the charts draw."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from omegadot.reference_impl.system import Array
 from omegadot.reports.charts.divergence import CHANNELS, STATE, divergence, system_from
 from omegadot.reports.record.record import Record
 
-# A course longer than this is thinned; each point is then the largest since the point before.
+# A run longer than this is thinned; each point is then the largest error since the last one.
 POINTS = 120
 _RUN = ("scenario", "engine", "setup", "integrator", "timestep", "accuracy")
 _PREFERRED_TRUTH = ("closed-form", "series")
@@ -38,8 +38,8 @@ class Series:
 
 @dataclass(frozen=True)
 class Chart:
-    """A scenario's courses. units: by channel, only of those that say something here; "1" is
-    relative to the exact course's greatest.  unmatched: samples without an exact one beside them.
+    """A scenario's runs. units: by channel, only of those that matter here; "1" is relative to
+    the largest value of the exact solution.  unmatched: samples without an exact one.
     """
 
     units: Mapping[str, str]
@@ -48,10 +48,10 @@ class Chart:
 
 
 def chart_deviations(record: Record) -> dict[str, Chart]:
-    """Every scenario's courses, by name; a scenario without an engine's trajectory is left out."""
+    """Every scenario's deviations, by name; one without an engine's trajectory is left out."""
     if record.trajectories.filter(pl.col("engine") != "exact").is_empty():
         return {}
-    samples = _beside_truth(record.trajectories)
+    samples = _with_truth(record.trajectories)
     errors = np.full((len(samples), len(CHANNELS)), np.nan)
     units: dict[str, dict[str, str]] = {}
     names = samples.get_column("scenario")
@@ -62,13 +62,13 @@ def chart_deviations(record: Record) -> dict[str, Chart]:
         if systems.get(name):
             part = samples[int(start) : int(stop)]
             errors[start:stop], units[name] = divergence(system_from(systems[name]), part)
-    measured = samples.select(*_RUN, "course", "time", "matched").with_columns(
+    measured = samples.select(*_RUN, "run", "time", "matched").with_columns(
         pl.Series(channel, errors[:, k]) for k, channel in enumerate(CHANNELS)
     )
     return _charts(measured, units)
 
 
-def _beside_truth(trajectories: pl.DataFrame) -> pl.DataFrame:
+def _with_truth(trajectories: pl.DataFrame) -> pl.DataFrame:
     """Every engine's samples with the exact solution's at the same time, sorted by run."""
     exact = pl.col("engine") == "exact"
     rank = pl.col("integrator").replace_strict(
@@ -81,19 +81,19 @@ def _beside_truth(trajectories: pl.DataFrame) -> pl.DataFrame:
         .select("scenario", "time", *STATE, matched=pl.lit(value=True))
     )
     others = trajectories.filter(~exact)
-    runs = others.select(_RUN).unique(maintain_order=True).with_row_index("course")
+    runs = others.select(_RUN).unique(maintain_order=True).with_row_index("run")
     order = others.select("scenario").unique(maintain_order=True).with_row_index("place")
     return (
         others.join(runs, on=_RUN, nulls_equal=True, how="left")
         .join(order, on="scenario", how="left")
         .join(truth, on=["scenario", "time"], how="left", suffix="_exact")
-        .sort("place", "course", "time", maintain_order=True)
+        .sort("place", "run", "time", maintain_order=True)
         .with_columns(pl.col("matched").fill_null(value=False))
     )
 
 
 def _charts(measured: pl.DataFrame, units: Mapping[str, dict[str, str]]) -> dict[str, Chart]:
-    index, count = pl.int_range(pl.len()).over("course"), pl.len().over("course")
+    index, count = pl.int_range(pl.len()).over("run"), pl.len().over("run")
     thinned = pl.when(count > POINTS).then(
         (index * (POINTS - 1) / (count - 1)).ceil().cast(pl.Int64)
     )
@@ -101,10 +101,10 @@ def _charts(measured: pl.DataFrame, units: Mapping[str, dict[str, str]]) -> dict
     points = (
         measured.with_columns(point=thinned.otherwise(index))
         .with_columns(column.fill_nan(None) for column in channels)
-        .group_by("course", "point", maintain_order=True)
+        .group_by("run", "point", maintain_order=True)
         .agg(pl.col("time").last(), *(column.max() for column in channels))
     )
-    runs = measured.group_by("course", maintain_order=True).agg(
+    runs = measured.group_by("run", maintain_order=True).agg(
         *(pl.col(name).first() for name in _RUN),
         (~pl.col("matched")).sum().alias("unmatched"),
         *(_largest(channel).alias("largest_" + channel) for channel in CHANNELS),
@@ -115,7 +115,7 @@ def _charts(measured: pl.DataFrame, units: Mapping[str, dict[str, str]]) -> dict
     )
     times = points.get_column("time").to_numpy()
     values = points.select(CHANNELS).fill_null(float("nan")).to_numpy()
-    stops = np.cumsum(points.group_by("course", maintain_order=True).len().get_column("len"))
+    stops = np.cumsum(points.group_by("run", maintain_order=True).len().get_column("len"))
     grouped: dict[str, list[tuple[Series, int]]] = {}
     for row, start, stop in zip(runs.iter_rows(named=True), [0, *stops[:-1]], stops, strict=True):
         deviation = Series(
@@ -133,6 +133,6 @@ def _charts(measured: pl.DataFrame, units: Mapping[str, dict[str, str]]) -> dict
 
 
 def _largest(channel: str) -> pl.Expr:
-    """NaN where any sample beside an exact one is: such a run has no largest error."""
+    """NaN where any sample with an exact one is: such a run has no largest error."""
     column = pl.col(channel).filter(pl.col("matched"))
     return pl.when(column.is_nan().any()).then(float("nan")).otherwise(column.max())

@@ -1,4 +1,4 @@
-"""The charts that are not courses: omega-dot at identical states, and the Pareto front."""
+"""The charts that are not over time: omega-dot at identical states, and the Pareto front."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far samples stray from the exact ones beside them, channel by channel."""
+"""How far samples diverge from the exact ones at the same time, channel by channel."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _norm(vectors: Array) -> Array:
 
 
 def _relative(error: Array, size: Array) -> tuple[Array, bool]:
-    """The error over the greatest size of the exact course; as it is where that is zero."""
+    """The error over the largest size of the exact solution; absolute where that is zero."""
     greatest = float(np.fmax.reduce(size, initial=0.0))
     return (error / greatest, True) if greatest > 0.0 else (error, False)
 
@@ -68,17 +68,16 @@ def _placed(found: State, exact: State) -> State:
 
 
 def divergence(system: System, samples: pl.DataFrame) -> tuple[Array, dict[str, str]]:
-    """(n, channels) errors of samples of one system, and the unit of each channel that says much.
+    """(n, channels) errors of samples of one system, and the unit of each channel that matters.
 
     samples: time, and the columns STATE with and without the suffix ``_exact``; null becomes NaN.
     omega_dot: ``|omega_dot - exact|``, rad/s².  attitude: the angle between the two, rad.
-    energy: ``|E - E_exact|`` over the exact course's greatest kinetic energy; of the rotation where
-    a trace gives no position and velocity.  Momenta:
-    ``|H - H_exact|`` and ``|p - p_exact|``, world axes, over the exact course's greatest; all
-    absolute where that is zero.
+    energy: ``|E - E_exact|`` over the largest exact kinetic energy; of the rotation alone where a
+    trace gives no position and velocity.  Momenta: ``|H - H_exact|`` and ``|p - p_exact|``, world
+    axes, over the largest exact one. All are absolute where that is zero.
     """
     (found, found_rate), (exact, exact_rate) = _states(samples, ""), _states(samples, "_exact")
-    # Samples at the same time stand beside the same exact one: what it has is worked out once.
+    # Samples at the same time share the exact one: its quantities are computed once.
     _, first, at = np.unique(samples["time"], return_index=True, return_inverse=True)
     once = State(*(values[first] for values in vars(exact).values()))
     errors, units = np.full((len(samples), len(CHANNELS)), np.nan), {}

@@ -25,8 +25,8 @@ class FrontPoint:
 def pareto_front(sweeps: Sequence[Sweep], floor: float = 0.0) -> list[FrontPoint]:
     """The runs than which none is both cheaper and more accurate, the cheapest first.
 
-    Below `floor`, rad, errors cannot be told apart, and the cheaper run stands for all of them.
-    The reference stands aside: it is the yardstick, and nobody's choice.
+    Below `floor`, rad, errors cannot be distinguished, and the cheaper run stands for all of them.
+    The reference is left out: it is the yardstick, not a candidate.
     """
     points = sorted(
         (
@@ -51,7 +51,7 @@ def _of(sweep: Sweep) -> tuple[str, str, str]:
 
 
 def named(point: FrontPoint) -> tuple[str, str]:
-    """Who a point of the front is, and what it gives: for a list in words."""
+    """The run of a point of the front, and its error and cost, as text."""
     setup = "" if point.setup == "physics" else f" ({point.setup})"
     return (
         f"{point.engine} {point.integrator}{setup} at step {plain(point.timestep)} s",

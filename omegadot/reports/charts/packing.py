@@ -9,7 +9,7 @@ import numpy as np
 from omegadot.reference_impl.system import Array
 from omegadot.reports.charts.chart_library import pack
 
-# What a logarithmic axis cannot show, zero among it, is drawn at the floor and said to be there.
+# What a logarithmic axis cannot show, zero among it, is drawn at the floor, with a label.
 FLOOR_DECADE, CEILING_DECADE = -17, 20
 FLOOR = 10.0**FLOOR_DECADE
 _MISSING = 0xFFFF

@@ -1,4 +1,4 @@
-"""What the page's script gets: the lines' looks, and every course as packed 16-bit logarithms."""
+"""What the page's script gets: the lines' looks, and every error as packed 16-bit logarithms."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ class Line:
 
     @property
     def name(self) -> str:
-        """What its legend and its hover text say."""
+        """Its name in the legend and the hover text."""
         return f"{self.engine} {self.integrator}" + (self.setup != "physics") * f" ({self.setup})"
 
 
 def lines_of(charts: Iterable[Chart], engines: list[Mapping[str, Any]]) -> list[Line]:
     """Every line on the page, in the order of the engines.
 
-    The engines first in order are drawn broadest, below the others: where courses coincide, each
-    stays to be seen.
+    The engines first in order are drawn broadest, below the others: where lines coincide, each
+    stays visible.
     """
     runs = {(c.engine, c.setup, c.integrator): None for chart in charts for c in chart.deviations}
     order = {entry["name"]: place for place, entry in enumerate(engines)}
@@ -93,9 +93,9 @@ def payload(
 ) -> tuple[dict[str, Any], Array]:
     """The script's description of every chart, by the scenario's place, and all codes in a row.
 
-    A course is ``[line, rank, times, start, count, bounds, source]``: its channels' codes follow
+    A run is ``[line, rank, times, start, count, bounds, source]``: its channels' codes follow
     each other from `start`, `count` of each, in the order of the scenario's charts; bounds, a
-    channel each, are ``[part, bound, part, bound, ...]``.
+    channel each, are ``[fraction, bound, fraction, bound, ...]``.
     """
     known = sources or Sources()
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
@@ -122,7 +122,7 @@ def payload(
                 used += count
         scenarios[name] = {
             "charts": [axis_of(chart, channel, own) for channel in chart.units],
-            "courses": entries,
+            "deviations": entries,
             "steps": captions(rank),
             "sweeps": sweep_payload(sweeps.get(name, []), places, known, floor_of(own)),
         }

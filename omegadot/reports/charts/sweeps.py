@@ -144,7 +144,7 @@ def sweep_payload(
     """What the script draws: ``[line, [[h, error, cost, source], ...]]`` an integrator, guides,
     axis.
 
-    floor: rad, below which attitude errors cannot be told apart; 0 where it is not known.
+    floor: rad, below which attitude errors cannot be distinguished; 0 where it is unknown.
     """
 
     def digits(value: float | None) -> float | None:

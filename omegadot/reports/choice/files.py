@@ -28,7 +28,7 @@ def check_choice_folder(folder: Path) -> None:
 
 
 def read_choice(folder: Path) -> Section | None:
-    """The section of a choice that was written beside a run; None where there is none.
+    """The section of a choice that is stored with a run; None where there is none.
 
     Raises RecordError, one sentence, where it is not one that omegadot wrote.
     """

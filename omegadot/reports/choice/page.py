@@ -44,7 +44,7 @@ def parts(choice: Mapping[str, Any]) -> list[Part]:
 
 @dataclass(frozen=True)
 class Section:
-    """What a page says of a choice, its own page or a run's. asked: the requirements in words."""
+    """A choice on a page, its own or a run's. requested: the requirements as text."""
 
     requested: str
     command: str

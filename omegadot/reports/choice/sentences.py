@@ -1,4 +1,4 @@
-"""A choice in words, the same for the terminal and the page."""
+"""A choice as text, the same for the terminal and the page."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ NAMES = {
     "flip-time": "flip-time error",
     "real-time-factor": "real-time factor",
 }
-LONGEST = 3600.0  # s, for a run that anybody might wait for
+LONGEST = 3600.0  # s, for a run that a user might wait for
 
 
 def step_text(timestep: float, duration: float) -> str:
-    """A step in s to seven digits, rounded down: it then fills the horizon as often as it did."""
+    """A step in s to seven digits, rounded down: as many of them fit into the horizon as before."""
     digits = 6 - math.floor(math.log10(timestep))
     scaled = math.floor(timestep * 10.0**digits)
     while duration / (scaled / 10.0**digits) < round(duration / timestep):
@@ -46,9 +46,9 @@ def measure_text(value: float | None, unit: str) -> str:
 def requested(choice: Row) -> str:
     """The requirements as they were written, in one line."""
     wanted = choice["requirements"]
-    message = [f"{NAMES[r['requirement']]} within {r['asked']}" for r in wanted["accuracy"]]
+    message = [f"{NAMES[r['requirement']]} within {r['requested']}" for r in wanted["accuracy"]]
     if wanted["real_time_factor"] is not None:
-        message.append(f"real-time factor of {plain(wanted['real_time_factor'])} at least")
+        message.append(f"real-time factor of at least {plain(wanted['real_time_factor'])}")
     if wanted["precision"]:
         message.append(f"{wanted['precision']} precision")
     message += [f"feature {name}" for name in wanted["features"]]
@@ -67,35 +67,34 @@ def headline(case: Row) -> str:
     """What came out of a case, in a sentence or two."""
     start = f"{case['name']}, {plain(case['duration'])} s: "
     if case["reason"]:
-        return f"{start}nothing was chosen, {case['reason']}."
+        return f"{start}nothing was chosen: {case['reason']}."
     if case["unverifiable"]:
         keys = listed([NAMES[key] for key in case["unverifiable"]])
-        return f"{start}nothing qualifies: the {keys} asked for cannot be verified in doubles."
+        return f"{start}nothing qualifies: double precision cannot verify the requested {keys}."
     rows = case["candidates"]
     best = [row for row in rows if row["rank"] == 1]
     if not best:
         return start + _nothing(rows)
     more = sum(1 for row in rows if row["predicted"] and row["predicted"]["seconds"] <= LONGEST)
-    left = f" ({more} more might, in runs longer than the budget)" if more else ""
-    count = f"{case['qualifying']} of {times(len(rows), 'integrator')} qualify{left}"
-    if case["qualifying"] == 1:
-        count = f"1 of {times(len(rows), 'integrator')} qualifies{left}"
+    open_ = f" ({more} more might, in runs longer than the budget)" if more else ""
+    verb = "qualifies" if case["qualifying"] == 1 else "qualify"
+    count = f"{case['qualifying']} of {times(len(rows), 'integrator')} {verb}{open_}"
     first = best[0]
     step = step_text(first["found"]["timestep"], case["duration"])
     named = f"{_label(first)} with a step of {step} s"
     if len(best) > 1:
         others = listed([_label(row) for row in best[1:]])
-        return f"{start}{count}; cheapest is {named}, not told apart from {others}."
-    return f"{start}{count}; cheapest is {named}."
+        return f"{start}{count}. The cheapest is {named}, within the timing error of {others}."
+    return f"{start}{count}. The cheapest is {named}."
 
 
 def _nothing(rows: Sequence[Row]) -> str:
-    """Nothing qualifies; what comes nearest, if anything ran."""
+    """Nothing qualifies; the nearest candidate, if anything ran."""
     ran = [row for row in rows if row["nearest"] and row["missed"]]
     if not ran:
         return "nothing qualifies, and nothing ran."
     near = min(ran, key=lambda row: max((m["factor"] or math.inf) for m in row["missed"]))
-    return f"nothing qualifies; nearest comes {_label(near)}, {missed_text(near['missed'][0])}."
+    return f"nothing qualifies. The nearest is {_label(near)}: {missed_text(near['missed'][0])}."
 
 
 def missed_text(missed: Row) -> str:
@@ -106,7 +105,7 @@ def missed_text(missed: Row) -> str:
     limit = measure_text(missed["limit"], missed["unit"])
     found = measure_text(missed["found"], missed["unit"])
     wanted = "at least" if missed["requirement"] == "real-time-factor" else "at most"
-    return f"{name} {found}, {wanted} {limit} asked: {figure(missed['factor'])} times off"
+    return f"{name} {found}, required {wanted} {limit} ({figure(missed['factor'])} times off)"
 
 
 def variant_lines(case: Row) -> Iterator[str]:
@@ -134,12 +133,12 @@ def variant_lines(case: Row) -> Iterator[str]:
 
 
 def notes(choice: Row) -> Iterator[str]:
-    """Engines that did not take part, and what is open about those that did."""
+    """Engines that were excluded, and open points about the others."""
     for engine in choice["engines"]:
         if not engine["installed"]:
             yield f"{engine['name']}: {engine['outcome']}: {engine['reason']}"
         for clause in engine["refused"]:
-            yield f"{engine['name']} {engine['version']} is out, {clause}."
+            yield f"{engine['name']} {engine['version']} is excluded: {clause}."
         if engine["note"] and not engine["refused"]:
             yield f"{engine['name']} {engine['version']}: {engine['note']}."
     for death in choice["worker_deaths"]:
@@ -149,15 +148,19 @@ def notes(choice: Row) -> Iterator[str]:
         for key in case["unverifiable"]:
             unit = {r["requirement"]: r["unit"] for r in choice["requirements"]["accuracy"]}[key]
             floor = measure_text(case["floor"][key], unit)
-            yield f"{case['name']}: doubles leave {floor} of {NAMES[key]} open; ask for more."
+            yield (
+                f"{case['name']}: double precision resolves the {NAMES[key]} to {floor} only; "
+                "require a larger limit."
+            )
 
 
 GUARANTEE = (
-    "Of each step: this run met every limit at every sample looked at, so did every smaller step "
-    "that was tried, and the next larger one that was tried did not. To spare is the limit over "
-    "the error. Steps are known to 5 %: costs within 5 %, or not told apart in three of four "
-    "rounds, share a rank. The front: no run tried is cheaper, more accurate and smaller at once. "
-    "The real-time factor is of stepping alone, median and quartiles."
+    "The listed step is the largest verified one: it and all smaller steps tried met every limit "
+    "at every sample, and the next larger one tried failed. The margin is the limit over the "
+    "error. Steps are known to 5 %, so candidates share a rank where their costs differ by less, "
+    "or differ by more in fewer than three of four timing rounds. A candidate is Pareto-optimal "
+    "where no run tried is better in cost, error and memory at once. The real-time factor counts "
+    "stepping alone: median and quartiles."
 )
 
 
@@ -166,4 +169,5 @@ def verdict_everywhere(choice: Row) -> str:
     best = [row["candidate"] for row in choice["everywhere"] if row["rank"] == 1]
     if not best:
         return "Nothing qualifies in every scenario."
-    return f"Cheapest in all of them: {listed(best)}{', not told apart' if len(best) > 1 else ''}."
+    tie = " (within the timing error)" if len(best) > 1 else ""
+    return f"Cheapest over all scenarios: {listed(best)}{tie}."

@@ -34,7 +34,7 @@ def ranking(choice: Row, case: Row) -> Grid:
     wanted = choice["requirements"]["accuracy"]
     errors = (NAMES[r["requirement"]] for r in wanted)
     heads: tuple[str, ...] = ("rank", "engine", "integrator", "step in s", "steps", *errors)
-    heads = (*heads, "real-time factor", "memory in MB", "front", "next larger step tried")
+    heads = (*heads, "real-time factor", "memory in MB", "Pareto-optimal", "next larger step tried")
     rows = [
         (
             _rank(row),
@@ -60,7 +60,7 @@ def _error(found: Row, requirement: Row) -> str:
         return "–"
     text = measure_text(error["value"], requirement["unit"])
     margin = error["margin"]
-    return text if margin is None else f"{text} ({figure(margin)}x to spare)"
+    return text if margin is None else f"{text} (margin {figure(margin)}x)"
 
 
 def _factor(row: Row) -> str:
@@ -82,7 +82,7 @@ def _memory(row: Row) -> str:
 def _larger(case: Row, row: Row) -> str:
     larger = row["larger"]
     if larger is None:
-        return "none: passes at every step tried"
+        return "none: every step tried passes"
     message = (
         f"{step_text(larger['timestep'], case['duration'])} fails ({figure(larger['ratio'])}x)"
     )
@@ -93,7 +93,7 @@ def _larger(case: Row, row: Row) -> str:
 
 
 def refusals(case: Row) -> Grid:
-    """Those that do not qualify: which requirement each misses, and the nearest it comes."""
+    """Those that do not qualify: which requirement each misses, and its nearest run."""
     rows: list[tuple[str, ...]] = []
     for row in case["candidates"]:
         if row["status"] == "qualifies":
@@ -105,26 +105,26 @@ def refusals(case: Row) -> Grid:
             continue
         misses = "; ".join(missed_text(missed) for missed in row["missed"])
         rows.append((engine, row["integrator"], misses, at, _guess(row)))
-    heads = ("engine", "integrator", "misses", "at step in s", "what its order suggests")
-    return Grid(f"{case['name']}: what is out, at the nearest it comes", heads, rows)
+    heads = ("engine", "integrator", "misses", "at step in s", "predicted from its order")
+    return Grid(f"{case['name']}: what does not qualify, at its nearest run", heads, rows)
 
 
 def _guess(row: Row) -> str:
     guess = row["predicted"]
     if guess is None:
-        return "" if row["found"] else "no order to go by at these steps"
+        return "" if row["found"] else "no order observed at these steps"
     if guess["seconds"] > LONGEST:
         return "out of reach: a run would take more than an hour"
     step, seconds = short(guess["timestep"]), figure(guess["seconds"])
-    return f"a step of {step} s might do, {seconds} s a run: not verified"
+    return f"a step of {step} s may suffice, {seconds} s a run (not verified)"
 
 
 def everywhere(choice: Row) -> Grid | None:
-    """Of several scenarios, what qualifies in all; None where there is but one."""
+    """What qualifies in all of several scenarios; None where there is only one."""
     cases = choice["scenarios"]
     if len(cases) < 2:
         return None
-    heads = ("rank", "engine and integrator", "s for all", "steps in s, scenario by scenario")
+    heads = ("rank", "engine and integrator", "total in s", "steps in s, scenario by scenario")
     rows: list[tuple[str, ...]] = []
     for row in choice["everywhere"]:
         steps = zip(row["timesteps"], cases, strict=True)

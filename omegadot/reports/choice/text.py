@@ -17,10 +17,10 @@ _WIDTH_WHEN_PIPED = 240
 
 
 def print_choice(choice: Mapping[str, Any], console: Console | None = None) -> None:
-    """Print, case by case, who qualifies, who does not and what would change it."""
+    """Print, case by case, what qualifies, what does not and what would change it."""
     if console is None:
         console = Console(width=None if sys.stdout.isatty() else _WIDTH_WHEN_PIPED, highlight=False)
-    console.print(Text(f"Asked: {texts.requested(choice)}."))
+    console.print(Text(f"Required: {texts.requested(choice)}."))
     for case in choice["scenarios"]:
         console.print()
         for grid in (tables.ranking(choice, case), tables.refusals(case)):

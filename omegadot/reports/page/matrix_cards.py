@@ -1,4 +1,4 @@
-"""What the page tells of a cell of the matrix: each of its numbers with the run that gave it."""
+"""The cards of the matrix: each number of a cell with the run that gave it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from omegadot.reports.summary.summary import Cell, Summary
 
 
 def cards(summary: Summary, sources: Sources, anchors: Mapping[str, str]) -> list[list[Any]]:
-    """What lies behind each cell: ``[address, verdict, part, [[what, value, source], ...]]``.
+    """The card of each cell: ``[address, verdict, part, [[what, value, source], ...]]``.
 
     In the order of the matrix, row by row.
     """

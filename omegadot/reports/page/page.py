@@ -13,6 +13,7 @@ from omegadot.reports.charts.packing import FLOOR_DECADE, pack_codes, pack_json
 from omegadot.reports.charts.payload import lines_of, step_choices
 from omegadot.reports.choice.page import Section
 from omegadot.reports.page.glance import glances
+from omegadot.reports.page.glossary import INTRODUCTION, TERMS
 from omegadot.reports.page.matrix_cards import cards
 from omegadot.reports.page.sections import drawings, measured_in, sections_of
 from omegadot.reports.page.templating import asset, environment, script
@@ -20,7 +21,7 @@ from omegadot.reports.page.view_3d.view import see_part
 from omegadot.reports.page.why import order_table, scheme_table
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
-from omegadot.reports.summary.copies import copies_of, sentence, where
+from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.provenance import (
     Sources,
@@ -44,7 +45,7 @@ CHART_TITLES = {
 def draw_page(record: Record, choice: Section | None = None) -> str:
     """The report of a record, as one self-contained HTML text.
 
-    choice: a choice of engine made beside the run, a section of its own.
+    choice: a choice of engine stored with the run, a section of its own.
     Charts need JavaScript; the verdicts and every table do not.
     """
     library = packed_library()
@@ -68,7 +69,7 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         command=command_of(record.run),
         choice=choice,
         headline=record.run.get("headline") or headline(summary),
-        beside=remarks(summary) + truth(summary),
+        remarks=remarks(summary) + truth(summary),
         counts=[(status, summary.runs[status]) for status in STATUSES if summary.runs[status]],
         summary=summary,
         matrix=matrix.matrix(summary),
@@ -78,7 +79,7 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         judged=judged,
         schemes=schemes,
         orders=orders,
-        copies=[(sentence(copies), where(copies)) for copies in copies_of(record.run)],
+        clusters=[(sentence(c), extent(c)) for c in clusters_over_scenarios(record.run)],
         sections=sections,
         lines=lines,
         line_groups=_line_groups(lines),
@@ -86,6 +87,8 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         chart_titles=CHART_TITLES,
         floor_decade=FLOOR_DECADE,
         points=POINTS,
+        glossary=TERMS,
+        glossary_introduction=INTRODUCTION,
         css=asset("report.css") + asset("see.css") + (asset("choice.css") if choice else ""),
         see=see_part(record, charts, lines, anchors),
         js=script(),

@@ -1,4 +1,4 @@
-"""The page scenario by scenario: what each section says and draws."""
+"""The page scenario by scenario: what each section shows and draws."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from omegadot.reports.charts.sweeps import Sweep, sweeps_of
 from omegadot.reports.page import tables
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
-from omegadot.reports.summary.copies import votes
+from omegadot.reports.summary.clusters import on_scenario
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import Summary
 
@@ -43,7 +43,7 @@ class Section:
     lines: list[matrix.Line]
     chart: Chart | None
     deviations: tables.Table | None
-    votes: str
+    clusters: str
     residuals: list[Residual]
     front: list[tuple[str, str]]
     engines: tables.Table
@@ -52,7 +52,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Measured:
-    """What the charts draw beside the courses, by scenario."""
+    """What the charts draw besides the errors, by scenario."""
 
     limits: Mapping[str, Limits]
     sweeps: Mapping[str, list[Sweep]]
@@ -63,7 +63,7 @@ class Measured:
 def measured_in(metrics: pl.DataFrame) -> Measured:
     """Read from the measures once, for all sections.
 
-    A Pareto front is one of cost and attitude error, above the resolvable floor.
+    A Pareto front is one of cost and attitude error, above the floor.
     """
     limits, sweeps, none = limits_of(metrics), sweeps_of(metrics), Limits({}, {})
     fronts = {n: pareto_front(own, floor_of(limits.get(n, none))) for n, own in sweeps.items()}
@@ -97,7 +97,7 @@ def sections_of(
                 matrix.lines(summary, name, sources),
                 chart,
                 tables.deviation_table(chart, sources) if chart else None,
-                votes(record.run, name),
+                on_scenario(record.run, name),
                 measured.residuals.get(name, []),
                 [named(point) for point in measured.fronts.get(name, [])],
                 tables.engine_table(own, sources),

@@ -44,7 +44,7 @@ class Value(NamedTuple):
 @dataclass(frozen=True)
 class Row:
     """heads: the cells that name the row.  values: the cells below the columns.  source: the
-    number of who gave them, where that is known.
+    number of their source, where that is known.
     """
 
     heads: tuple[str, ...]
@@ -104,7 +104,7 @@ def run_table(
 
 
 def deviation_table(chart: Chart, sources: Sources | None = None) -> Table:
-    """The numbers behind a scenario's charts: each course's largest value, and its last."""
+    """The numbers behind a scenario's charts: each run's largest error, and its last."""
     sources = sources or Sources()
     rows = [
         Row(
@@ -131,7 +131,7 @@ def _engine_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
 
 @lru_cache(maxsize=4096)
 def run_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
-    """The cells that name a run: (engine, version, setup, integrator, step, accuracy) in words."""
+    """The cells that name a run: (engine, version, setup, integrator, step, accuracy) as text."""
     engine, _, setup, integrator, timestep, accuracy = key
     name = engine if setup in ("physics", None) else f"{engine} {setup}"
     return name, ", ".join(filter(None, (integrator, knob(timestep, accuracy))))

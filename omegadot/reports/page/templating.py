@@ -11,13 +11,14 @@ from typing import Any
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup, escape
 
+from omegadot.reports.page.glossary import linked
 from omegadot.reports.page.tables import Table, unit_text
 from omegadot.reports.text.numbers import knob, short
 
-# One idea a file; what comes first is spoken of by what comes after.
+# One idea a file; later files use what earlier ones define.
 SCRIPTS = (
     *("unpack", "copying", "cards", "tables"),
-    *("looks", "courses", "sweeps", "equation", "linked", "report"),
+    *("looks", "deviations", "sweeps", "equation", "linked", "report"),
 )
 
 
@@ -50,7 +51,7 @@ def table_body(table: Table) -> Markup:
 
 
 def unbroken(text: str) -> str:
-    """The text with its exponents kept on one line: ``1e-10`` may else part at the hyphen."""
+    """The text with its exponents kept on one line: ``1e-10`` could break at the hyphen."""
     return re.sub(r"(?<=\de)-(?=\d)", "-\u2060", text)
 
 
@@ -69,6 +70,7 @@ def environment() -> Environment:
     found.filters["unit"] = unit_text
     found.filters["unbroken"] = unbroken
     found.filters["body"] = table_body
+    found.filters["linked"] = linked
     return found
 
 
@@ -79,6 +81,6 @@ def asset(name: str) -> Markup:
 
 
 def script(names: Iterable[str] = SCRIPTS) -> Markup:
-    """The page's own script: its files in their order, in one scope that nothing else sees."""
+    """The page's own script: its files in their order, in one scope of their own."""
     parts = (asset(f"{name}.js") for name in names)
     return Markup('"use strict";\n(() => {{\n{}}})();\n').format(Markup("").join(parts))

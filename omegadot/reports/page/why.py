@@ -1,4 +1,4 @@
-"""Why an engine differs: the scheme that each integrator equals, and the orders that it shows."""
+"""Sources of error: the scheme that each integrator implements, and the orders that it shows."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _key(row: Mapping[str, Any]) -> Key:
 
 
 def _declared(record: Record) -> dict[Key, Counter[str]]:
-    """How often each integrator declares which scheme; it may depend on the system."""
+    """How often each integrator declares which scheme: it may depend on the system."""
     found: dict[Key, Counter[str]] = {}
     for task in record.run["tasks"]:
         if task.get("scheme"):
@@ -32,22 +32,22 @@ def _declared(record: Record) -> dict[Key, Counter[str]]:
 
 
 def scheme_table(record: Record, sources: Sources | None = None) -> Table:
-    """One row an integrator, over all scenarios and steps: does it equal the scheme it declares?
+    """One row an integrator, over all scenarios and steps: does it implement the declared scheme?
 
-    In how many runs, at what largest part of the round-off bound, and how far off in omega and
-    attitude. The reference is left out: it is what the others are held against.
+    In how many runs, with what largest deviation as a fraction of the round-off bound, and in
+    omega and attitude. The reference is left out: the others are compared with it.
     """
     sources = sources or Sources()
     metrics = _of_runs(record).filter(pl.col("engine") != "reference")
     matches = _by_key(metrics.filter(pl.col("metric") == "match"))
-    left = _by_key(metrics.filter(pl.col("metric") == "unexplained_max"))
+    deviations = _by_key(metrics.filter(pl.col("metric") == "unexplained_max"))
     declared = _declared(record)
     rows = [
         Row(
             (*_heads(key), _named(declared.get(key, Counter()))),
             (
                 *_equal_cells(found),
-                *(_largest(left.get(key, []), channel) for channel in ("omega", "attitude")),
+                *(_largest(deviations.get(key, []), channel) for channel in ("omega", "attitude")),
             ),
             _source(key, sources),
         )
@@ -55,8 +55,8 @@ def scheme_table(record: Record, sources: Sources | None = None) -> Table:
     ]
     return Table(
         ("engine", "integrator", "scheme"),
-        (("equalled in", 1), ("largest distance from it", 3)),
-        ("runs judged", "over rounding's bound", "omega, relative", "attitude, rad"),
+        (("implemented in", 1), ("max. deviation from the scheme", 3)),
+        ("runs judged", "fraction of round-off bound", "omega, relative", "attitude, rad"),
         tuple(rows),
     )
 
@@ -116,11 +116,10 @@ def _equal_cells(matches: list[dict[str, Any]]) -> tuple[Value, Value]:
     judged = [row for row in matches if row["verdict"] in _JUDGED]
     equal = sum(row["verdict"] == "pass" for row in judged)
     mark = "fail" if equal < len(judged) else ""
-    reported = f"{equal} of {len(judged)}" if judged else "–"
+    text = f"{equal} of {len(judged)}" if judged else "–"
     values = [row["value"] for row in judged if row["value"] is not None]
-    return Value(f"{reported} ✗ fail" if mark else reported, mark), Value(
-        short(max(values, default=None))
-    )
+    largest = Value(short(max(values, default=None)))
+    return Value(f"{text} ✗ fail" if mark else text, mark), largest
 
 
 def _largest(rows: list[dict[str, Any]], channel: str) -> Value:

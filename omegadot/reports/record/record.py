@@ -39,7 +39,7 @@ def check_folder(folder: Path) -> None:
     """Raise RecordError unless a record may be written to `folder`.
 
     It may be absent, empty, or hold an earlier record and nothing else; no other file is ever
-    replaced. Call it before a long run, so that nobody learns of it afterwards.
+    replaced. Call it before a long run, not after it.
     """
     folder = folder.resolve()
     if Path.cwd().is_relative_to(folder):
@@ -61,9 +61,9 @@ def check_folder(folder: Path) -> None:
 def write_record(record: Record, folder: Path, page: str) -> None:
     """Write the record and its page to `folder`, whole or not at all.
 
-    The files go to a hidden folder beside it, which then takes its name; an earlier record gives
-    way at that moment only. Raises RecordError as `check_folder` does, when the tables break the
-    contract, and when the disk refuses.
+    The files go to a hidden folder next to it, which then takes its name; an earlier record is
+    replaced only at that moment. Raises RecordError as `check_folder` does, when the tables break
+    the contract, and when the disk refuses.
     """
     check_folder(folder)
     folder = folder.resolve()
@@ -87,7 +87,7 @@ def write_record(record: Record, folder: Path, page: str) -> None:
 
 
 def _take_the_place_of(folder: Path, fresh: Path) -> None:
-    # A folder that is not empty cannot be renamed over, so the earlier record steps aside first.
+    # A folder that is not empty cannot be renamed over, so the earlier record is moved away first.
     aside = fresh.with_suffix(".old")
     had_earlier = folder.exists()
     if had_earlier:
@@ -102,10 +102,10 @@ def _take_the_place_of(folder: Path, fresh: Path) -> None:
 
 
 def _write_parquet(frame: pl.DataFrame, fields: Mapping[str, Field], path: Path) -> None:
-    import pyarrow.parquet as pq  # only who writes waits for it
+    import pyarrow.parquet as pq  # imported by writers only
 
     table = frame.to_arrow(compat_level=pl.CompatLevel.oldest()).cast(schema.arrow_schema(fields))
-    # Words and steps repeat and pack well; measured numbers do not, and trying costs time.
+    # Texts and steps repeat and pack well; measured numbers do not, and trying costs time.
     repeating = [n for n, f in fields.items() if f.dtype is pl.String or n in _REPEATING]
     pq.write_table(table, path, compression="zstd", compression_level=1, use_dictionary=repeating)
 

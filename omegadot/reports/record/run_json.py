@@ -43,9 +43,9 @@ def check_run(run: dict[str, Any], where: str) -> None:
                     raise RecordError(f"{where}: {key}[{number}].{name} must be a text; run again.")
     _check_clusters(run.get("clusters", []), where)
     for number, task in enumerate(run["tasks"]):
-        _check_word(task.get("outcome"), schema.OUTCOMES, f"{where}: tasks[{number}].outcome")
+        _check_value(task.get("outcome"), schema.OUTCOMES, f"{where}: tasks[{number}].outcome")
         for gate, verdict in (task.get("gates") or {}).items():
-            _check_word(verdict, schema.VERDICTS, f"{where}: tasks[{number}].gates.{gate}")
+            _check_value(verdict, schema.VERDICTS, f"{where}: tasks[{number}].gates.{gate}")
 
 
 def _check_clusters(clusters: object, where: str) -> None:
@@ -69,7 +69,7 @@ def _check_clusters(clusters: object, where: str) -> None:
             )
 
 
-def _check_word(found: object, allowed: tuple[str, ...], where: str) -> None:
+def _check_value(found: object, allowed: tuple[str, ...], where: str) -> None:
     if found not in allowed:
         raise RecordError(f"{where} is {found!r}, expected one of {', '.join(allowed)}.")
 

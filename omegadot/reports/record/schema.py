@@ -1,4 +1,4 @@
-"""What a record's tables hold: columns, types, units and the words that may stand in them."""
+"""What a record's tables hold: columns, types, units and allowed values."""
 
 from __future__ import annotations
 
@@ -54,24 +54,24 @@ class Field:
     allowed: tuple[str, ...] | None = None
 
 
-_WORD = Field(pl.String)
+_TEXT = Field(pl.String)
 _KNOBS = {
     "timestep": Field(pl.Float64, "s", nullable=True),
     "accuracy": Field(pl.Float64, "1", nullable=True),
 }
 
 METRICS: Mapping[str, Field] = {
-    "scenario": _WORD,
-    "engine": _WORD,
-    "engine_version": _WORD,
+    "scenario": _TEXT,
+    "engine": _TEXT,
+    "engine_version": _TEXT,
     "setup": Field(pl.String, allowed=SETUPS),
     "integrator": Field(pl.String, nullable=True),
     **_KNOBS,
     "gate": Field(pl.String, allowed=GATES),
     "channel": Field(pl.String, allowed=CHANNELS),
-    "metric": _WORD,
+    "metric": _TEXT,
     "value": Field(pl.Float64, nullable=True),
-    "unit": _WORD,
+    "unit": _TEXT,
     "bound": Field(pl.Float64, nullable=True),
     "verdict": Field(pl.String, allowed=VERDICTS),
     "note": Field(pl.String, nullable=True),
@@ -83,10 +83,10 @@ def _vector(prefix: str, unit: str, axes: str = "xyz") -> dict[str, Field]:
 
 
 TRAJECTORIES: Mapping[str, Field] = {
-    "scenario": _WORD,
-    "engine": _WORD,
+    "scenario": _TEXT,
+    "engine": _TEXT,
     "setup": Field(pl.String, allowed=SETUPS),
-    "integrator": _WORD,
+    "integrator": _TEXT,
     **_KNOBS,
     "time": Field(pl.Float64, "s"),
     **_vector("q", "1", "wxyz"),
@@ -99,7 +99,7 @@ TRAJECTORIES: Mapping[str, Field] = {
 
 def arrow_schema(fields: Mapping[str, Field]) -> pa.Schema:
     """The same columns for Arrow, each with its unit in the field's metadata."""
-    import pyarrow as pa  # only who writes waits for it
+    import pyarrow as pa  # imported by writers only
 
     kinds = {pl.String: pa.large_string(), pl.Float64: pa.float64()}
     return pa.schema(
@@ -119,7 +119,7 @@ def conform(frame: pl.DataFrame, fields: Mapping[str, Field], where: str) -> pl.
     """The frame with exactly these columns, in order and cast.
 
     Raises RecordError naming `where` and the column that is missing, of another type, null where a
-    value must stand, or holding a word the contract does not know.
+    value must stand, or holding a value the contract does not allow.
     """
     missing = [name for name in fields if name not in frame.columns]
     if missing:

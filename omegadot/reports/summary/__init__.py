@@ -1,1 +1,1 @@
-"""What a record shows at first sight: verdicts and the few figures behind them."""
+"""A record at a glance: verdicts and the few figures behind them."""

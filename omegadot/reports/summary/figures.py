@@ -42,7 +42,7 @@ class Range:
 
 
 def size(figure: Figure) -> float:
-    """How large it is, for ordering: what is not a number is larger than any number."""
+    """Its magnitude, for ordering: what is not a number is larger than any number."""
     return abs(figure.value) if not math.isnan(figure.value) else float("inf")
 
 

@@ -1,4 +1,4 @@
-"""The one sentence of verdict, computed from the summary and claiming no more than it holds."""
+"""The verdict in one sentence, computed from the summary and claiming no more than it holds."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from omegadot.reports.text.numbers import knob, listed, short, times
 
 
 def headline(summary: Summary) -> str:
-    """Who agrees with the equations and how far, who fails where: one sentence."""
+    """Which engines agree with the equations and how closely, which fail where: one sentence."""
     return _verdict(summary, _judged_engines(summary))
 
 
 def remarks(summary: Summary) -> list[str]:
-    """What must be said beside the headline: what is missing, and how far trajectories part."""
-    message = [] if summary.complete else ["Partial record: the run was cut short."]
+    """What belongs with the headline: what is missing, and the range of the attitude errors."""
+    message = [] if summary.complete else ["Partial record: the run was interrupted."]
     spread = _spread(_judged_engines(summary))
     return [*message, *summary.impossible, *([spread] if spread else []), *_remainder(summary)]
 
 
 def truth(summary: Summary) -> list[str]:
-    """What everything was measured by: one sentence, none where there is no exact course."""
+    """How the exact solutions were computed: one sentence, none where there are none."""
     kinds = [f"{name} on {count}" for name, count in sorted(summary.truths.items())]
     if not kinds:
         return []
-    return [f"Truth: {listed(kinds)} of {times(len(summary.scenarios), 'scenario')}."]
+    return [f"Exact solution: {listed(kinds)} of {times(len(summary.scenarios), 'scenario')}."]
 
 
 def _judged_engines(summary: Summary) -> dict[str, list[Cell]]:
-    """Cells per column; the yardsticks stand aside unless nothing else ran or they fail."""
+    """Cells per column; the yardsticks are left out unless they alone ran or they fail."""
     cells: dict[str, list[Cell]] = {}
     for (_, column), cell in summary.cells.items():
         if column.engine not in YARDSTICKS or cell.status == "fail":
@@ -46,26 +46,27 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
         places = sorted({s for (s, c), cell in summary.cells.items() if cell.status == "fail"})
         shown = ", ".join(places[:3]) + (f" and {len(places) - 3} more" if len(places) > 3 else "")
         verb = "fails" if len(failing) == 1 else "fail"
-        who = f"{len(failing)} of {times(len(engines), 'engine')} {verb}"
-        return f"{who} a gate: {listed(failing)}, on {shown}."
+        count = f"{len(failing)} of {times(len(engines), 'engine')}"
+        return f"{count} {verb} a gate: {listed(failing)}, on {shown}."
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
-    # A declared exception is a failure that is known: such an engine is not said to agree.
+    # A declared exception is a known failure: such an engine is not reported as agreeing.
     excused = [n for n, cells in engines.items() if any(c.runs.get("declared") for c in cells)]
     agreeing = [name for name in measured if name in passed and name not in excused]
     if excused and not agreeing:
-        return f"Every gate holds but for declared exceptions: {listed(excused)}."
+        return f"Every gate holds except for declared exceptions: {listed(excused)}."
     if not agreeing:
         return "No verdict: no run of an engine was judged on the equation of motion."
     largest = max((measured[name] for name in agreeing), key=size)
-    who = {1: agreeing[0], 2: "Both engines"}.get(len(agreeing), f"All {len(agreeing)} engines")
+    named = {1: agreeing[0], 2: "Both engines"}.get(len(agreeing), f"All {len(agreeing)} engines")
     if len(agreeing) < len(engines):
-        who = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
+        named = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
     verb = "agrees" if len(agreeing) == 1 else "agree"
     apart = f" Declared exceptions: {listed(excused)}." if excused else ""
     return (
-        f"{who} {verb} with the Newton–Euler equations at identical states: the largest omega-dot "
-        f"residual is {_quantity(largest)} ({largest.engine} on {largest.scenario}).{apart}"
+        f"{named} {verb} with the Newton–Euler equations at identical states: the largest "
+        f"omega-dot residual is {_quantity(largest)} ({largest.engine} on {largest.scenario})."
+        f"{apart}"
     )
 
 
@@ -82,8 +83,8 @@ def _spread(engines: dict[str, list[Cell]]) -> str:
     if best.value == largest.value:
         return ""
     return (
-        "Accuracy over time differs more: at the finest step the attitude error is largest on "
-        f"{largest.scenario}, {_run(largest)}, against {_run(best)}."
+        "The errors over time differ more. At the finest step the attitude error on "
+        f"{largest.scenario} ranges from {_run(best)} to {_run(largest)}."
     )
 
 
@@ -108,5 +109,7 @@ def _remainder(summary: Summary) -> list[str]:
     )
     if skipped:
         total = sum(summary.runs.values())
-        message.append(f"{skipped} of {times(total, 'run')} gave no verdict; each has its reason.")
+        message.append(
+            f"{skipped} of {times(total, 'run')} gave no verdict; the reasons are listed."
+        )
     return message

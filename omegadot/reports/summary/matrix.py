@@ -21,7 +21,7 @@ NUMBERS = {
 
 @dataclass(frozen=True)
 class Shown:
-    """One cell in words. mark and status: a sign and a word.  part: how many of its runs passed,
+    """One cell as text. mark and status: a sign and its name.  part: how many of its runs passed,
     where not all did.  numbers: text by the keys of NUMBERS.  card: the number of its card among
     `cards`.  rank: for sorting, the worst first.
     """
@@ -39,7 +39,7 @@ class Line:
     """One engine on one scenario, spelt out.
 
     numbers: (value, the run behind it) of the worst residual, then best and worst of the drift and
-    best and worst of the attitude error.  source: the number of who gave them.
+    best and worst of the attitude error.  source: the number of the source.
     """
 
     engine: str
@@ -49,7 +49,7 @@ class Line:
 
 
 def origin_of(column: Column, figure: Figure | None = None) -> dict[str, Any]:
-    """Who gave a number of this column: the run of the figure, or the engine as a whole."""
+    """The source of a number of this column: the run of the figure, or the engine as a whole."""
     engine = {"engine": column.engine, "engine_version": column.version, "setup": column.setup}
     return engine if figure is None else {**vars(figure), **engine}
 
@@ -112,7 +112,7 @@ def _span(span: Range | None) -> str:
 
 
 def named(figure: Figure | None) -> tuple[str, str]:
-    """A figure in words: the value with its unit, and the run behind it."""
+    """A figure as text: the value with its unit, and the run behind it."""
     if figure is None:
         return "–", ""
     unit = "" if figure.unit == "1" else f" {figure.unit}"
@@ -122,7 +122,7 @@ def named(figure: Figure | None) -> tuple[str, str]:
 
 
 def text(status: str) -> str:
-    """A status as a person would say it."""
+    """A status in plain English."""
     return {"not-judged": "not judged", "not-installed": "not installed", "absent": "not run"}.get(
         status, status
     )

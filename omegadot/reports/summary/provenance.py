@@ -1,4 +1,4 @@
-"""The way back from a number: who gave it, and the command that gives it again."""
+"""The origin of a number: its source, and the command that reproduces it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _KEPT = ("--adapter", "--exceptions")
 
 @dataclass(frozen=True)
 class Source:
-    """Who gave a number; what is None was not part of it (an engine's residual has no step)."""
+    """The source of a number; None where a field does not apply (a residual has no step)."""
 
     engine: str
     version: str = ""
@@ -25,7 +25,7 @@ class Source:
 
 @dataclass
 class Sources:
-    """Every source that the page names, once: tables and charts speak of their numbers."""
+    """Every source that the page names, once: tables and charts refer to them by number."""
 
     versions: Mapping[str, str] = field(default_factory=dict)
     numbers: dict[Source, int] = field(default_factory=dict)
@@ -45,12 +45,12 @@ class Sources:
 
 
 def sources_for(engines: Iterable[Mapping[str, Any]]) -> Sources:
-    """An empty list of sources that knows the engines' versions."""
+    """An empty list of sources with the engines' versions."""
     return Sources({engine["name"]: str(engine.get("version") or "") for engine in engines})
 
 
 def _arguments(command: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
-    """The positional words behind ``run``, and the options with their values."""
+    """The positional arguments after ``run``, and the options with their values."""
     texts: list[str] = []
     options: list[tuple[str, str]] = []
     rest: Iterator[str] = iter(command[command.index("run") + 1 :] if "run" in command else [])
@@ -66,7 +66,7 @@ def _arguments(command: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]
 
 
 def requested_as(run: Mapping[str, Any]) -> dict[str, str]:
-    """By scenario: the word that asked for it, which for a file is its path as given."""
+    """By scenario: the argument that requested it, which for a file is its path as given."""
     names = [entry["name"] for entry in run["scenarios"]]
     texts, _ = _arguments([str(text) for text in run.get("command") or ()])
     given = texts if len(texts) == len(names) else names
@@ -74,13 +74,13 @@ def requested_as(run: Mapping[str, Any]) -> dict[str, str]:
 
 
 def kept_options(run: Mapping[str, Any]) -> list[str]:
-    """The options of the run's command that its repetition needs, as words."""
+    """The options of the run's command that its repetition needs, as arguments."""
     _, options = _arguments([str(text) for text in run.get("command") or ()])
     return [text for option in options if option[0] in _KEPT for text in option]
 
 
 def steps_given(run: Mapping[str, Any]) -> list[str]:
-    """The steps that the run's command asked for instead of the scenarios' own."""
+    """The steps that the run's command requested instead of the scenarios' own."""
     _, options = _arguments([str(text) for text in run.get("command") or ()])
     return [value for name, value in options if name == "--timestep"]
 
@@ -88,7 +88,7 @@ def steps_given(run: Mapping[str, Any]) -> list[str]:
 def provenance_payload(
     run: Mapping[str, Any], sources: Sources, anchors: Mapping[str, str]
 ) -> dict[str, Any]:
-    """What the page's script makes its cards of: sources by number, scenarios by address."""
+    """What the page's script makes its cards from: sources by number, scenarios by address."""
     requested = requested_as(run)
     texts, _ = _arguments([str(text) for text in run.get("command") or ()])
     return {
@@ -96,7 +96,7 @@ def provenance_payload(
         "scenarios": {
             anchor: [name, requested.get(name, name)] for name, anchor in anchors.items()
         },
-        "asked": texts,
+        "requested": texts,
         "seed": run.get("seed"),
         "options": kept_options(run),
         "steps": steps_given(run),

@@ -1,6 +1,6 @@
-"""From a record to what a person must see first: verdicts, and the numbers behind them.
+"""From a record to what a reader must see first: verdicts, and the numbers behind them.
 
-Pure functions: the terminal's table and the page both show what stands here, and nothing else.
+Pure functions: the terminal's table and the page show the same summary.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from omegadot.reports.record.impossible import impossible_bodies
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
 
-# From the worst to the best. A skip is never a pass, and neither is a run that nobody judged.
+# From the worst to the best. A skip is never a pass, and neither is a run that was not judged.
 STATUSES = (
     "fail",
     "crashed",
@@ -36,7 +36,7 @@ YARDSTICKS = ("exact", "reference")
 
 @dataclass(frozen=True)
 class Column:
-    """One engine in one version and one setup. label: what stands over its column."""
+    """One engine in one version and one setup. label: the heading of its column."""
 
     engine: str
     version: str
@@ -62,8 +62,8 @@ class Cell:
 
 @dataclass(frozen=True)
 class Missing:
-    """Runs of an engine that gave no verdict for the same reason; none were made of an engine
-    that is not installed.
+    """Runs of an engine that gave no verdict for the same reason; runs is 0 for an engine that is
+    not installed.
     """
 
     engine: str
@@ -76,8 +76,10 @@ class Missing:
 
 @dataclass(frozen=True)
 class Summary:
-    """What the record says at a glance. truths: on how many scenarios the exact course is of which
-    kind.  impossible: a sentence on each body that cannot be.
+    """The record at a glance.
+
+    truths: by kind of exact solution, the number of scenarios.  impossible: a sentence on each
+    body whose inertia is impossible.
     """
 
     complete: bool
@@ -163,7 +165,7 @@ def _columns(tasks: Iterable[Mapping[str, Any]]) -> tuple[Column, ...]:
 
 
 def _cell(statuses: list[str], rows: list[str], figures: dict[str, list[Figure]]) -> Cell:
-    # A row's verdict counts even where the task above it is silent: no failure gets lost.
+    # A row's verdict counts even where its task has none: no failure gets lost.
     status = worst([*statuses, *(verdict for verdict in rows if verdict == "fail")])
     residuals = figures.get("omega_dot", [])
     return Cell(

@@ -18,10 +18,10 @@ _FAILING = ("fail", "declared", "crashed", "timeout", "raised", "diverged")
 def markdown_of(record: Record) -> str:
     """The record in Markdown, below the length that a comment may have."""
     summary = summarise(record)
-    beside = " ".join(remarks(summary) + truth(summary))
+    notes = " ".join(remarks(summary) + truth(summary))
     message = record.run.get("headline") or headline(summary)
     lines = [f"### omegadot: {escape(message, 1000)}", ""]
-    lines += [escape(beside, 1000), ""] if beside else []
+    lines += [escape(notes, 1000), ""] if notes else []
     lines += [_counts(summary), ""]
     lines += _matrix(summary, COMMENT // 4)
     lines += _failures(record, COMMENT // 4)

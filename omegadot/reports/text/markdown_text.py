@@ -59,5 +59,5 @@ def _size(line: str) -> int:
 
 
 def folded(title: str, lines: Iterable[str]) -> list[str]:
-    """Lines that are shown when the reader asks for them."""
+    """Lines that are shown when the reader opens them."""
     return ["", f"<details><summary>{title}</summary>", "", *lines, "", "</details>"]

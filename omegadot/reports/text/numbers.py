@@ -34,7 +34,7 @@ def listed(names: Sequence[str]) -> str:
 
 
 def knob(timestep: float | None, accuracy: float | None) -> str:
-    """The step or the accuracy that a run was made with, in words."""
+    """The step or the accuracy of a run, as text."""
     if timestep is not None:
         return f"step {plain(timestep)} s"
     return "" if accuracy is None else f"accuracy {plain(accuracy)}"

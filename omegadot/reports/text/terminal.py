@@ -1,4 +1,4 @@
-"""The table at the end of a run: what a person reads in ten seconds."""
+"""The table at the end of a run: what a reader takes in within ten seconds."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.summary.copies import copies_of, sentence
+from omegadot.reports.summary.clusters import clusters_over_scenarios, sentence
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.summary import Cell, Column, Missing, Summary, summarise
@@ -22,7 +22,12 @@ _NOT_RUN = "magenta"
 _WIDTH_WHEN_PIPED = 240
 _SIGNS = {"pass": "every gate holds", "fail": "a gate fails", "declared": "declared exception"}
 _WITH_NUMBERS = ("pass", "fail", "declared", "not-judged")
-_NUMBERS = ("omega-dot residual", "angular-momentum drift", "attitude error in rad")
+# The heading of each number, and what it stands for.
+_NUMBERS = (
+    ("resid", "resid: largest omega-dot residual at identical states, relative"),
+    ("mom.", "mom.: angular-momentum drift, relative"),
+    ("att.", "att.: attitude error in rad"),
+)
 
 
 def print_summary(record: Record, console: Console | None = None) -> None:
@@ -41,8 +46,8 @@ def print_summary(record: Record, console: Console | None = None) -> None:
         console.print(_legend(summary, shown, console), style="dim", highlight=False)
     for line in _extremes(summary):
         console.print(Text(line))
-    for copies in copies_of(record.run)[:1]:  # those of most engines; the page names the others
-        console.print(Text(sentence(copies)))
+    for cluster in clusters_over_scenarios(record.run)[:1]:  # the largest; the page names all
+        console.print(Text(sentence(cluster)))
     for missing in summary.missing:
         console.print(Text(_missing_line(missing), style=_NOT_RUN))
     console.print(Text(_counts(summary)))
@@ -71,16 +76,20 @@ def _table(summary: Summary, shown: int, console: Console) -> Table:
         # Where space is short the scenarios' names give way, not the verdicts.
         table.add_column(Text(column.label), no_wrap=True, overflow="ellipsis", min_width=width)
         columns.append(texts)
-    for place, scenario in enumerate(summary.scenarios):
+    if shown:
+        table.add_row("", *(texts[0] for texts in columns), style="dim")
+    for place, scenario in enumerate(summary.scenarios, 1):
         table.add_row(Text(scenario), *(texts[place] for texts in columns))
     return table
 
 
 def _column(cells: list[Cell], shown: int, console: Console) -> list[Text]:
-    """An engine's cells, their numbers standing below each other."""
+    """An engine's cells below the headings of their numbers, aligned."""
     numbers = [_terse(cell)[:shown] for cell in cells]
-    widths = [max(map(len, column)) for column in zip(*numbers, strict=True)]
-    texts = []
+    heads = [head for head, _ in _NUMBERS[:shown]]
+    widths = [max(map(len, column)) for column in zip(heads, *numbers, strict=True)]
+    aligned = [f"{head:<{width}}" for head, width in zip(heads, widths, strict=True)]
+    texts = [Text(" ".join([" ", *aligned]).rstrip())]
     for cell, own in zip(cells, numbers, strict=True):
         terms = [f"{text:<{width}}" for text, width in zip(own, widths, strict=True)]
         style = _STYLES.get(cell.status, _NOT_RUN)
@@ -92,7 +101,7 @@ def _column(cells: list[Cell], shown: int, console: Console) -> list[Text]:
 
 
 def _mark(cell: Cell, console: Console) -> str:
-    """A sign for what was judged, a word for what did not run, with how many of its runs passed."""
+    """A sign for what was judged, the outcome for what did not run, with how many runs passed."""
     wide = console.encoding.startswith("utf")
     signs = {"pass": "✓" if wide else "ok", "fail": "✗" if wide else "FAIL"}
     signs |= {"declared": "!", "absent": "-"}
@@ -114,15 +123,14 @@ def _terse(cell: Cell) -> list[str]:
 def _legend(summary: Summary, shown: int, console: Console) -> str:
     present = {cell.status: _mark(cell, console) for cell in summary.cells.values()}
     message = [f"{present[status]} {text}" for status, text in _SIGNS.items() if status in present]
-    if shown:
-        message.append("numbers: " + ", ".join(_NUMBERS[:shown]))
+    message += [text for _, text in _NUMBERS[:shown]]
     if shown > 1:
-        message[-1] += " (all but the first of the worst integrator at its finest step)"
+        message[-1] += " (mom. and att. of the worst integrator at its finest step)"
     return "; ".join(message) + "." if message else ""
 
 
 def _extremes(summary: Summary) -> list[str]:
-    """Per engine: its worst attitude error, and what its best integrator does there."""
+    """Per engine: its worst attitude error, and that of its best integrator on that scenario."""
     lines = []
     for column in summary.columns:
         found = _worst_attitude(summary, column)

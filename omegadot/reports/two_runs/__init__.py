@@ -1,4 +1,4 @@
-"""Two records held against each other: what got better, worse, appeared and vanished."""
+"""Two records compared: what got better, worse, appeared and vanished."""
 
 from omegadot.reports.two_runs.comparison import Comparison, compare_records
 

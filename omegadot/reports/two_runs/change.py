@@ -1,4 +1,4 @@
-"""One thing that is not as it was, and what it is that it was."""
+"""One change: what it was and what it is."""
 
 from __future__ import annotations
 
@@ -70,10 +70,10 @@ class Change:
 
 
 def of_factor(measure: Measure) -> str:
-    """The change in words: 3.1 times, 24100 times less."""
+    """The change as text: 3.1 times, 24100 times less."""
     factor = measure.factor
     if math.isnan(factor):
-        return "finite no more" if not math.isfinite(measure.now) else "finite again"
+        return "no longer finite" if not math.isfinite(measure.now) else "finite again"
     if math.isinf(factor):
         return "was zero"
     if factor == 0.0:

@@ -1,4 +1,4 @@
-"""Two records held against each other."""
+"""Two records compared."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Comparison:
         if not self.runs:
             return "Nothing to compare: the two records have no run in common."
         message = [
-            f"{term}: {_who(changes)}."
+            f"{term}: {_engines(changes)}."
             for changes, term in ((self.worse, "Worse"), (self.better, "Better"))
             if changes
         ]
@@ -70,7 +70,7 @@ class Comparison:
         return " ".join([*message, compared])
 
 
-def _who(changes: Iterable[Change]) -> str:
+def _engines(changes: Iterable[Change]) -> str:
     """The engines and integrators of some changes and how many, the largest change first."""
     found: dict[str, Counter[str]] = {}
     for change in changes:
@@ -85,10 +85,10 @@ def _who(changes: Iterable[Change]) -> str:
 
 
 def compare_records(was: Record, now: Record, labels: tuple[str, str] = ("A", "B")) -> Comparison:
-    """Hold the second record against the first.
+    """Compare the second record with the first.
 
     Runs are the same where scenario, engine, setup, integrator and step are; the engine's version
-    may differ. A figure that has a bound of rounding got worse, or better, where it moved by more
+    may differ. A figure that has a round-off bound got worse, or better, where it moved by more
     than the bounds of both records together; a scenario that is another one under its old name
     compares by outcome and verdict alone.
     """

@@ -1,4 +1,4 @@
-"""How the time per step went from one record to the other: told with its spread, never judged."""
+"""The change of the time per step between two records: reported with its spread, never judged."""
 
 from __future__ import annotations
 

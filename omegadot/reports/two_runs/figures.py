@@ -1,7 +1,7 @@
 """Figures that both records measured: which left their bands, and whose verdict changed.
 
-A band is rounding and nothing else. Each of two runs of one scheme lies within its round-off bound
-of one and the same exact course, so that no distance from the truth differs by more than the sum
+A band accounts for rounding alone. Each of two runs of one scheme lies within its round-off bound
+of the trajectory that the scheme has in exact arithmetic, so their errors differ by at most the sum
 of the two bounds.
 """
 
@@ -88,7 +88,7 @@ def _change(row: dict[str, Any]) -> Change:
     measure = Measure(row["value"], row["value_now"], row["band"], row["unit"])
     was, now = row["verdict"], row["verdict_now"]
     grew = _size(measure.now) >= _size(measure.was)
-    # A verdict says more than a size: an error that may stand now is no worse for being larger.
+    # A verdict outranks a size: an error that passes now is no worse for being larger.
     worse = grew if was == now else VERDICT_RANK[now] < VERDICT_RANK[was]
     return Change(
         RunKey(*(row[name] for name in _KEY)),

@@ -1,4 +1,4 @@
-"""The parts of a comparison as rows of words, which text, Markdown and page show alike."""
+"""The parts of a comparison as rows of text, shared by terminal, Markdown and page."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from omegadot.reports.two_runs.change import Change, Group, from_to, grouped, na
 from omegadot.reports.two_runs.comparison import Comparison
 from omegadot.reports.two_runs.sides import Side, Task
 
-CHANGE_HEADS = ("engine", "integrator", "what", "largest at", "change", "in all", "reason now")
+CHANGE_HEADS = ("engine", "integrator", "what", "largest at", "change", "total", "reason now")
 PRESENCE_HEADS = ("engine", "outcome", "runs", "scenarios", "reason")
 SETTING_HEADS = ("", "first", "second")
 COST_HEADS = ("engine", "integrator", "median", "quartiles", "runs")
-COST_NOTE = "Time per step, second over first; told, not judged."
+COST_NOTE = "Time per step, second over first; reported, not judged."
 _SCENARIOS_NAMED = 4
 
 Rows = list[tuple[str, ...]]
@@ -89,18 +89,18 @@ def side_facts(side: Side) -> str:
         *engines,
         str(machine.get("processor") or ""),
         f"seed {plain(seed)}" if isinstance(seed, int | float) else "",
-        "" if side.complete else "cut short",
+        "" if side.complete else "interrupted",
     )
     return ", ".join(filter(None, facts))
 
 
 def remarks(comparison: Comparison) -> list[str]:
-    """What must be said beside the headline."""
+    """What belongs with the headline."""
     message = []
     if comparison.redefined:
         names = ", ".join(sorted(comparison.redefined))
-        message.append(f"Another scenario under its old name, so verdicts alone compare: {names}.")
+        message.append(f"Redefined under the same name, so only verdicts are compared: {names}.")
     for side, term in ((comparison.was, "first"), (comparison.now, "second")):
         if not side.complete:
-            message.append(f"The {term} record is partial: its run was cut short.")
+            message.append(f"The {term} record is partial: its run was interrupted.")
     return message

@@ -32,7 +32,7 @@ class PairCell:
     """A cell of the matrix: what either record shows, and what changed.
 
     status: the second record's, or the first one's where the second has nothing.
-    mood: "worse", "better", "mixed", "same", "appeared" or "vanished".  change: in words.
+    mood: "worse", "better", "mixed", "same", "appeared" or "vanished".  change: as text.
     """
 
     was: matrix.Shown
@@ -74,7 +74,7 @@ def draw_two_runs(comparison: Comparison) -> str:
 
 
 def _facts(side: Side) -> dict[str, str]:
-    """What stands of a record at the top of the page."""
+    """The facts about a record at the top of the page."""
     run = side.run
     machine = run.get("machine") or {}
     engines = (
@@ -89,19 +89,19 @@ def _facts(side: Side) -> dict[str, str]:
         "engines": ", ".join(engines),
         "machine": ", ".join(f"{key} {value}" for key, value in machine.items()),
         "seed": str(run.get("seed", "")),
-        "runs": times(len(run["tasks"]), "run") + ("" if side.complete else ", cut short"),
+        "runs": times(len(run["tasks"]), "run") + ("" if side.complete else ", interrupted"),
         "command": side.command,
     }
 
 
 def _columns(was: Summary, now: Summary, versioned: set[str]) -> list[Pair]:
-    """The engines of both records, each beside itself; several versions of one each alone."""
+    """The engines of both records, each paired with itself; several versions of one kept apart."""
 
     def key(column: Column) -> tuple[str, str, str]:
         version = column.version if column.engine in versioned else ""
         return column.engine, column.setup, version
 
-    # An engine that did not start has no version, and is no column beside the one that did.
+    # An engine that did not start has no version, and is no column of its own.
     then, today = ({key(c): c for c in sorted(s.columns, key=_named)} for s in (was, now))
     found = []
     for place in dict.fromkeys((*map(key, was.columns), *map(key, now.columns))):
@@ -180,7 +180,7 @@ def _parts(comparison: Comparison) -> list[Part]:
         ),
         (
             "settings",
-            "Made otherwise",
+            "Different settings",
             ("what", *listing.SETTING_HEADS[1:]),
             listing.setting_rows(comparison),
         ),

@@ -16,7 +16,7 @@ _UNKNOWN_BEFORE = ("not-installed", "interrupted")
 
 @dataclass(frozen=True)
 class Runs:
-    """pairs: what both records say of one run.  vanished, appeared: what one of them alone has."""
+    """pairs: runs of both records.  vanished, appeared: runs that one of them alone has."""
 
     pairs: tuple[tuple[Task, Task], ...]
     vanished: tuple[Task, ...]
@@ -34,7 +34,7 @@ def _stand_ins(tasks: Iterable[Task]) -> dict[tuple[str, str, str], list[Task]]:
 
 
 def _stand_in(key: RunKey, tasks: Mapping[tuple[str, str, str], list[Task]]) -> Task | None:
-    """Whoever stands for this run: an engine that did not start stands for all its runs."""
+    """The task that stands for this run: an engine that did not start stands for all its runs."""
     for task in tasks.get((key.scenario, key.engine, key.setup), ()):
         if task.key.integrator in ("", key.integrator):
             return task
@@ -42,7 +42,7 @@ def _stand_in(key: RunKey, tasks: Mapping[tuple[str, str, str], list[Task]]) -> 
 
 
 def pair_runs(was: Mapping[RunKey, Task], now: Mapping[RunKey, Task]) -> Runs:
-    """Each run with what the other record says of it; one that did not start counts for it."""
+    """Each run with the same one of the other record; an engine that did not start stands in."""
     pairs, vanished, appeared = [], [], []
     absent_now, absent_then = _stand_ins(now.values()), _stand_ins(was.values())
     stood_in: set[RunKey] = set()
@@ -97,17 +97,17 @@ def changed_runs(pairs: Iterable[tuple[Task, Task]]) -> Iterator[Change]:
 def without_repetition(gates: Iterable[Change], figures: Iterable[Change]) -> list[Change]:
     """Both, without the gates whose change is that of a figure in them.
 
-    A figure of model or equation is one of the engine, and speaks for all its runs.
+    A figure of model or equation belongs to the engine, and stands for all its runs.
     """
     reported = list(figures)
-    as_text = {
+    covered = {
         (change.key, change.gate, change.worse) for change in reported if change.was != change.now
     }
     whole = [
         change
         for change in gates
         if not {(k, change.gate, change.worse) for k in (change.key, engine_key(change.key))}
-        & as_text
+        & covered
     ]
     return whole + reported
 

@@ -57,7 +57,7 @@ def _each(what: str, was: Any, now: Any) -> Iterator[Difference]:
 
 
 def _engines(was: Side, now: Side) -> Iterator[Difference]:
-    """Of the engines that both records describe: what they say of themselves."""
+    """Of the engines that both records describe: what they declare."""
     then = {entry["name"]: entry for entry in was.run["engines"]}
     for entry in now.run["engines"]:
         before = then.get(entry["name"])

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.summary import task_status, worst
 
-# Scenario keys that change no number: what is told of it, and which steps it is run with.
-REPORTED_OR_STEPS = {"schema", "name", "title", "shows", "source"}
+# Scenario keys that change no number: its description, and the steps it is run with.
+DESCRIPTION_OR_STEPS = {"schema", "name", "title", "shows", "source"}
 
 
 class RunKey(NamedTuple):
@@ -28,7 +28,7 @@ class RunKey(NamedTuple):
 
 @dataclass(frozen=True)
 class Task:
-    """What one record says of a run. status: of STATUSES.  why: the reason, in words."""
+    """A run as one record has it. status: of STATUSES.  why: the reason."""
 
     key: RunKey
     status: str
@@ -44,7 +44,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Side:
-    """A record with the name that the reader gave it."""
+    """A record with its label."""
 
     label: str
     record: Record
@@ -61,7 +61,7 @@ class Side:
 
     @property
     def complete(self) -> bool:
-        """False where the run was cut short."""
+        """False where the run was interrupted."""
         return bool(self.run.get("complete", True))
 
 
@@ -79,7 +79,7 @@ def several_versions(sides: Iterable[Side]) -> set[str]:
 
 
 def integrator_of(engine: str, integrator: str | None) -> str:
-    """The exact solution is one engine, whichever way it is come by."""
+    """The exact solution is one engine, however it is computed."""
     return "" if engine == "exact" else integrator or ""
 
 
@@ -105,16 +105,16 @@ def tasks_of(side: Side, versioned: set[str]) -> dict[RunKey, Task]:
 
 
 def definition_of(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """What of a scenario decides its numbers: all but its words and its set of steps."""
+    """What of a scenario decides its numbers: all but its description and its set of steps."""
     whole = entry.get("definition") or {}
-    found = {key: value for key, value in whole.items() if key not in REPORTED_OR_STEPS}
+    found = {key: value for key, value in whole.items() if key not in DESCRIPTION_OR_STEPS}
     if isinstance(found.get("run"), Mapping):
         found["run"] = {k: v for k, v in found["run"].items() if k != "timesteps"}
     return found
 
 
 def redefined(was: Side, now: Side) -> set[str]:
-    """The scenarios that are others in the two records though they bear one name."""
+    """The scenarios that differ between the two records under one name."""
     then = {entry["name"]: definition_of(entry) for entry in was.run["scenarios"]}
     return {
         entry["name"]

@@ -1,4 +1,4 @@
-"""A comparison in words: for the terminal, for a pull request, and for machines."""
+"""A comparison as text: for the terminal, for a pull request, and for machines."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _sections(comparison: Comparison) -> list[tuple[str, listing.Rows]]:
         ("Better", listing.change_rows(comparison.better)),
         ("Vanished", listing.presence_rows(comparison.vanished)),
         ("Appeared", listing.presence_rows(comparison.appeared)),
-        ("Made otherwise", [(f"{a}:", f"{b} → {c}") for a, b, c in _settings(comparison)]),
+        ("Different settings", [(f"{a}:", f"{b} → {c}") for a, b, c in _settings(comparison)]),
         (listing.COST_NOTE, _costs(comparison)),
     ]
 
@@ -81,7 +81,7 @@ def as_markdown(comparison: Comparison) -> str:
         if rows:
             lines += ["", f"**{title}**", "", *table(heads, rows, COMMENT // 6)]
     if rows := listing.setting_rows(comparison):
-        lines += folded("Made otherwise", table(listing.SETTING_HEADS, rows, COMMENT // 8))
+        lines += folded("Different settings", table(listing.SETTING_HEADS, rows, COMMENT // 8))
     if rows := listing.cost_rows(comparison):
         reported = table(listing.COST_HEADS, rows, COMMENT // 8)
         lines += folded(listing.COST_NOTE, reported)

@@ -8,7 +8,7 @@ from typing import Any
 from omegadot.reports.text.numbers import listed, times
 
 Record = dict[str, Any]
-Line = tuple[str, str]  # what it is about, and what is said
+Line = tuple[str, str]  # the subject, and the text
 ARROW = "→"
 MOST_DRIFTS = 3
 RATIO = "energy ratio E/E0"  # the last part of a metric's name that stands for E/E0
@@ -82,7 +82,7 @@ def _orders(changes: Sequence[Record]) -> list[str]:
 
 
 def _drifts(changes: Sequence[Record]) -> list[str]:
-    """How many of its errors moved, and those that say most: E/E0 first, then the largest."""
+    """How many of its errors moved, and the most telling ones: E/E0 first, then the largest."""
     own = [change for change in changes if change["kind"] == "drift"]
     if not own:
         return []
@@ -107,9 +107,9 @@ def pace_text(ratio: Record) -> str:
 
 
 def pace_lines(step: Record) -> list[Line]:
-    """Integrators whose time a step changed by more than the timings spread."""
+    """Integrators whose time per step changed beyond the range of the timings."""
     return [
-        (name, f"time a step ×{pace_text(ratio)}")
+        (name, f"time per step ×{pace_text(ratio)}")
         for name, ratio in step["paces"].items()
         if ratio["apart"]
     ]

@@ -32,7 +32,7 @@ class Chart:
     """One scenario: its lines, the ticks of its axes (place, text)."""
 
     title: str
-    deviations: list[Series]
+    series: list[Series]
     versions: list[tuple[float, str]]
     decades: list[tuple[float, str]]
 
@@ -65,7 +65,7 @@ def _chart(case: Record, known: Sequence[Record], names: Sequence[str]) -> Chart
     def y(decade: float) -> float:
         return TOP + (HEIGHT - TOP - BOTTOM) * (high - decade) / (high - low)
 
-    deviations = []
+    series = []
     for number, name in enumerate(names):
         dots = [
             (x(n), y(math.log10(e)), f"{name}, {known[n]['version']}: {short(e)} rad")
@@ -73,11 +73,11 @@ def _chart(case: Record, known: Sequence[Record], names: Sequence[str]) -> Chart
             if e is not None
         ]
         dash = DASHES[number % len(DASHES)]
-        deviations.append(Series(name, number, dash, _path(dots, across), dots))
+        series.append(Series(name, number, dash, _path(dots, across), dots))
     every = max(1, (high - low) // 6)
     return Chart(
         f"{case['title']}, steps of {plain(case['timestep'])} s: largest error in attitude, rad",
-        deviations,
+        series,
         [(x(n), version["version"]) for n, version in enumerate(known)],
         [(y(d), f"1e{d}") for d in range(low, high + 1, every)],
     )

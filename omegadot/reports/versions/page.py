@@ -1,4 +1,4 @@
-"""The page of several versions of an engine: what changed, drawn and told; it fetches nothing."""
+"""The page of several versions of an engine: what changed, in text and charts, offline."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was found of several versions of an engine, in words: the same sheet for every form."""
+"""What was found of several versions of an engine, as text: the same sheet for every format."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ class Table:
 
 @dataclass(frozen=True)
 class Sheet:
-    """title: one line.  absent: versions that could not be asked.  wrong: faults and troubles."""
+    """title: one line.  absent: versions that did not run.  wrong: faults and troubles."""
 
     title: str
-    beside: list[str]
+    remarks: list[str]
     absent: list[Line]
     parts: list[Part]
     tables: list[Table]
@@ -56,7 +56,7 @@ def sheet_of(record: Record) -> Sheet:
     known = [version for version in versions if version["outcome"] == "ok"]
     return Sheet(
         title=_title(record, known),
-        beside=_next_to(record),
+        remarks=_remarks(record),
         absent=[
             (v["version"], f"{v['outcome']}: {v['reason']}") for v in versions if v not in known
         ],
@@ -67,9 +67,9 @@ def sheet_of(record: Record) -> Sheet:
 
 
 def _wrong(version: Record) -> list[str]:
-    """What is not as declared, in full, and the first of the questions that failed."""
+    """What is not as declared, in full, and the first of the queries that failed."""
     troubles = version["troubles"]
-    more = [f"and {len(troubles) - MOST_NAMED} questions more"]
+    more = [f"and {len(troubles) - MOST_NAMED} more queries"]
     return [*version["faults"], *troubles[:MOST_NAMED], *more[: len(troubles) > MOST_NAMED]]
 
 
@@ -78,10 +78,10 @@ def _title(record: Record, known: Sequence[Record]) -> str:
     named = engine if engine == package else f"{engine} ({package})"
     requested = times(len(record["versions"]), "version")
     if not known:
-        return f"{named}: {requested}, and none could be asked"
+        return f"{named}: {requested}, none of which ran"
     ends = f"{known[0]['version']} to {known[-1]['version']}"
     if record["bisect"]:
-        return f"{named} {ends}: {record['bisect']['words']}"
+        return f"{named} {ends}: {record['bisect']['query']}"
     changed = sum(bool(step["changes"]) for step in record["steps"])
     answered = (
         f"{requested}" if len(known) == len(record["versions"]) else f"{len(known)} of {requested}"
@@ -89,19 +89,19 @@ def _title(record: Record, known: Sequence[Record]) -> str:
     return f"{named} {ends}: {answered}, {times(changed, 'step')} with changes"
 
 
-def _next_to(record: Record) -> list[str]:
+def _remarks(record: Record) -> list[str]:
     bisected = record["bisect"]
     if bisected is None:
         cases = [f"{c['name']} ({plain(c['timestep'])} s)" for c in record["cases"]]
         return [f"Run on {listed(cases)}, setup {record['setup']}."]
     followed = bisected["metrics"]
-    if not followed:  # no release could be asked which metrics there are
-        return [f"Looked at: {listed(bisected['looked_at'])}."]
+    if not followed:  # no release ran, so that no metric is known
+        return [f"Releases run: {listed(bisected['looked_at'])}."]
     named = listed(followed) if len(followed) <= MOST_NAMED else times(len(followed), "metric")
     return [
         f"Followed: {named}.",
-        f"Looked at: {listed(bisected['looked_at'])}. Between two releases that are alike it is "
-        "assumed that nothing changed.",
+        f"Releases run: {listed(bisected['looked_at'])}. Between two equal releases "
+        "nothing is assumed to change.",
     ]
 
 
@@ -124,27 +124,25 @@ def _parts(steps: Sequence[Record]) -> list[Part]:
 def _bisected(bisected: Record) -> list[Part]:
     low, high = bisected["low"], bisected["high"]
     if high is None:
-        return [Part("", [("", "fewer than two versions could be asked: nothing to tell apart")])]
+        return [Part("", [("", "fewer than two versions ran: nothing to compare")])]
     if not bisected["found"]:
         return [Part(f"{low} → {high}", [("", f"the ends do not differ: {NOTHING}")])]
     parts = []
     for step in bisected["found"]:
         lines = lines_of(step["changes"])
         if step["skipped"]:
-            between = f"{listed(step['skipped'])} between them could not be asked"
+            between = f"{listed(step['skipped'])} between them did not run"
             lines.append(("", between))
         parts.append(Part(f"changed in {step['to']} (after {step['from']})", lines))
     return parts
 
 
 def _tables(record: Record, known: Sequence[Record]) -> Iterator[Table]:
-    rows: list[tuple[str, ...]] = [
-        (what, _trajectory(known, what)) for what in _history(record, known)
-    ]
+    rows: list[tuple[str, ...]] = [(what, _values(known, what)) for what in _history(record, known)]
     yield Table("History", ("figure", "versions"), rows)
     names = list(dict.fromkeys(name for v in known for name in v["integrators"]))
     yield Table(
-        "Time a step, µs: median (least–most)",
+        "Time per step, µs: median (min–max)",
         ("version", *names),
         [(v["version"], *(_pace(v["seconds_per_step"].get(n)) for n in names)) for v in known]
         if any(v["seconds_per_step"] for v in known)
@@ -165,8 +163,8 @@ def _microseconds(pace: Record) -> Record:
 
 
 def _history(record: Record, known: Sequence[Record]) -> list[str]:
-    """The figures whose course is shown: conventions and defaults that changed, and for each
-    integrator its schemes, its order in attitude and what the first case makes of it.
+    """The figures whose history is shown: conventions and defaults that changed, and for each
+    integrator its schemes, its order in attitude and its error on the first case.
     """
     reported = {
         change["metric"]
@@ -188,7 +186,7 @@ def _history(record: Record, known: Sequence[Record]) -> list[str]:
     return [name for name in found if name in names]
 
 
-def _trajectory(known: Sequence[Record], metric: str) -> str:
+def _values(known: Sequence[Record], metric: str) -> str:
     figures = [(v["version"], v["figures"].get(metric)) for v in known]
     texts = [(version, figure["text"] if figure else "none") for version, figure in figures]
     return "; ".join(f"{versions}: {text}" for versions, text in runs_of(texts))

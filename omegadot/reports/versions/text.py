@@ -11,9 +11,9 @@ WIDTH_WHEN_PIPED = 160
 
 def markdown_of(sheet: Sheet) -> str:
     """The sheet as Markdown, fit for a page or a pull request."""
-    lines = [f"# {sheet.title}", "", *sheet.beside, ""]
-    lines += _listed("## Could not be asked", sheet.absent)
-    lines += _listed("## Not as declared, or not answered", sheet.wrong)
+    lines = [f"# {sheet.title}", "", *sheet.remarks, ""]
+    lines += _listed("## Did not run", sheet.absent)
+    lines += _listed("## Not as declared, or failed queries", sheet.wrong)
     for part in sheet.parts:
         lines += _listed(f"## {part.head}", part.lines)
     for table in sheet.tables:
@@ -45,12 +45,12 @@ def print_sheet(sheet: Sheet) -> None:
         width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False, emoji=False
     )
     console.print(Text(sheet.title, style="bold"))
-    for line in sheet.beside:
+    for line in sheet.remarks:
         console.print(Text(line, style="dim"))
-    parts = [Part("could not be asked", sheet.absent)] if sheet.absent else []
+    parts = [Part("did not run", sheet.absent)] if sheet.absent else []
     parts += sheet.parts
     if sheet.wrong:
-        parts.append(Part("not as declared, or not answered", sheet.wrong))
+        parts.append(Part("not as declared, or failed queries", sheet.wrong))
     for part in parts:
         console.print()
         console.print(Text(part.head, style="bold"))

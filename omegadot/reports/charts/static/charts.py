@@ -27,7 +27,7 @@ class Charts:
 
     @property
     def finest(self) -> list[Series]:
-        """Each integrator's course at its finest step, in the order of the lines."""
+        """Each integrator's run at its finest step, in the order of the lines."""
         best: dict[Lane, Series] = {}
         for deviation in self.chart.deviations:
             lane = (deviation.engine, deviation.setup, deviation.integrator)

@@ -48,7 +48,7 @@ _CEILING = 1e6
 
 def shown(deviation: Series, channel: str) -> Array:
     """Values for a logarithmic axis: what is zero, too small to mean anything, or not finite is no
-    point of it. So the start, where it was given and nothing is off, is none either.
+    point of it. So the start, which is given and has no error, is none either.
     """
     values = deviation.values[channel]
     drawable = np.isfinite(values) & (values > FLOOR)
@@ -68,7 +68,7 @@ def draw(charts: Charts, channel: str) -> Figure | None:
         Entry(line := charts.lines[c.engine, c.setup, c.integrator], line.name, _text(c, channel))
         for c, _ in all_series
     ]
-    entries += [Entry(None, "rounding's bound")] * bool(bound)
+    entries += [Entry(None, "round-off bound")] * bool(bound)
     smallest = min(
         float(np.nanmin(values)) for _, values in all_series if np.isfinite(values).any()
     )
@@ -96,7 +96,7 @@ def _trajectory(axes: Axes, style: dict[str, Any], time: Array, values: Array) -
 
 
 def _text(deviation: Series, channel: str) -> str:
-    """What cannot be drawn is said: a run that is right to the last digit has no line."""
+    """What cannot be drawn is named: a run that is right to the last digit has no line."""
     if np.isfinite(shown(deviation, channel)).any():
         return ""
     finite = np.isfinite(deviation.values[channel]).any()
@@ -113,14 +113,14 @@ def _step(all_series: list[Series]) -> str:
 def _largest_bound(
     charts: Charts, all_series: list[Series], channel: str
 ) -> list[tuple[float, float]]:
-    """(part of the run, bound) of the integrator whose rounding may grow most."""
+    """(fraction of the run, bound) of the integrator whose rounding may grow most."""
     unit = charts.chart.units[channel]
     found = [charts.limits.bound(deviation, channel, unit) for deviation in all_series]
     return max((steps for steps in found if steps), key=lambda s: s[-1][1], default=[])
 
 
 def _bound(axes: Axes, duration: float, bound: list[tuple[float, float]]) -> list[Any]:
-    """How far rounding may take the error, up to each part of the run."""
+    """How far rounding may take the error, up to each fraction of the run."""
     if not bound:
         return []
     ends = [0.0, *(part * duration for part, _ in bound)]

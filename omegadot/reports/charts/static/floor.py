@@ -1,4 +1,4 @@
-"""The resolvable floor in a picture: a line where it is near, a word where it is far below."""
+"""The floor in a picture: a line where it is near, a label where it is far below."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def floor_entries(floor: float | None, smallest: float) -> list[Entry]:
     if not floor:
         return []
     if _is_near(floor, smallest):
-        return [Entry(None, "resolvable floor")]
-    return [Entry(None, "resolvable floor", f" {short(floor)}, below")]
+        return [Entry(None, "floor")]
+    return [Entry(None, "floor", f" {short(floor)}, below")]
 
 
 def floor_line(axes: Axes, floor: float | None, smallest: float) -> list[Any]:

@@ -18,13 +18,13 @@ _LONGEST = 44
 _LEFT = 0.02
 # Letters that the two columns have room for together.
 _ROOM = 58
-# in: beside the rows, between two blocks.
+# in: in addition to the rows, between two blocks.
 _GAP = 0.035
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One line of a picture. line: None for what belongs to no engine.  said: behind its name."""
+    """One line of a picture. line: None for what belongs to no engine.  message: after its name."""
 
     line: Line | None
     name: str
@@ -42,7 +42,7 @@ class Block:
 
     @property
     def columns(self) -> int:
-        """Two where there is room for two beside each other; the first is filled first."""
+        """Two where there is room for two side by side; the first is filled first."""
         half = math.ceil(len(self.names) / 2)
         widths = [max(map(len, part), default=0) for part in (self.names[:half], self.names[half:])]
         return 2 if sum(widths) <= _ROOM else 1

@@ -42,7 +42,7 @@ def draw_convergence(charts: Charts) -> Figure | None:
     floor, bound, slopes = floor_of(charts.limits), rounding(charts.sweeps), guides(charts.sweeps)
     smallest = min(error for _, points in lanes for _, error in points)
     entries = _entries(charts, lanes)
-    entries += [Entry(None, "rounding's bound")] * bool(bound)
+    entries += [Entry(None, "round-off bound")] * bool(bound)
     entries += [*floor_entries(floor, smallest)]
     entries += [Entry(None, "declared orders")] * bool(slopes)
     figure, axes = _log_log(height_of(entries))
@@ -122,13 +122,13 @@ def _slopes(axes: Axes, slopes: list[list[float]]) -> list[Any]:
     return found
 
 
-def _note(axes: Axes, text: str, at: tuple[float, float], beside: tuple[int, int]) -> None:
-    """A few words beside a point; beside: in points of type."""
+def _note(axes: Axes, text: str, at: tuple[float, float], offset: tuple[int, int]) -> None:
+    """A short text near a point; offset: in points of type."""
     axes.annotate(
         text,
         at,
         textcoords="offset points",
-        xytext=beside,
+        xytext=offset,
         ha="right",
         color=GREY,
         fontsize=5.8,
@@ -157,10 +157,10 @@ def _front(axes: Axes, front: list[FrontPoint]) -> list[Any]:
 
 
 def _named_front(front: list[FrontPoint]) -> list[str]:
-    """The runs of the front in words, numbered as they are in the picture."""
+    """The runs of the front as text, numbered as in the picture."""
     texts = []
     for number, point in enumerate(front[:_FRONT_SHOWN], 1):
-        who, what = named(point)
-        texts.append(f"{number}  {who}: {what}")
+        run, figures = named(point)
+        texts.append(f"{number}  {run}: {figures}")
     more = len(front) - len(texts)
     return [*texts, f"and {more} more"] if more else texts

@@ -1,25 +1,25 @@
 // Where a number comes from: engine, version, integrator, step, seed, and the command.
-const plainWord = /^[\w@%+=:,./-]+$/;
-const quoted = (word) => (plainWord.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+const plainArgument = /^[\w@%+=:,./-]+$/;
+const quoted = (text) => (plainArgument.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
 
 function sourceOf(origins, number) {
   const [engine, version, setup, integrator, timestep, accuracy] = origins.sources[number];
   return { engine, version, setup, integrator, timestep, accuracy };
 }
 
-// What is not of one scenario comes of all that the run was asked for.
+// A number that belongs to no single scenario comes from all that were requested.
 function commandFor(origins, source, anchor) {
   if (origins.traces.includes(source.engine)) return origins.command; // a file's, not an engine's
-  const asked = anchor ? [origins.scenarios[anchor][1]] : origins.asked;
+  const requested = anchor ? [origins.scenarios[anchor][1]] : origins.requested;
   const engine = source.engine + (source.integrator ? `:${source.integrator}` : "");
   const steps = source.timestep === null ? origins.steps : [String(source.timestep)];
-  const words = ["omegadot", "run", "--engine", engine, ...steps.flatMap((step) => ["--timestep", step])];
-  if (origins.seed !== null) words.push("--seed", String(origins.seed));
-  if (source.setup !== "physics") words.push("--setup", source.setup);
-  words.push(...origins.options);
-  const tail = asked.some((word) => word.startsWith("-")) ? ["--", ...asked] : [];
-  if (!tail.length) words.splice(2, 0, ...asked);
-  return [...words, ...tail].map(quoted).join(" ");
+  const given = ["omegadot", "run", "--engine", engine, ...steps.flatMap((step) => ["--timestep", step])];
+  if (origins.seed !== null) given.push("--seed", String(origins.seed));
+  if (source.setup !== "physics") given.push("--setup", source.setup);
+  given.push(...origins.options);
+  const tail = requested.some((name) => name.startsWith("-")) ? ["--", ...requested] : [];
+  if (!tail.length) given.splice(2, 0, ...requested);
+  return [...given, ...tail].map(quoted).join(" ");
 }
 
 function facts(origins, source) {
@@ -27,7 +27,7 @@ function facts(origins, source) {
   const named = [
     ["engine", `${source.engine} ${source.version}`.trim()],
     ["setup", source.setup],
-    ["integrator", source.integrator ?? "none takes part"],
+    ["integrator", source.integrator ?? "not applicable (no time stepping)"],
     ["step", source.timestep === null ? null : `${source.timestep} s`],
     ["accuracy", source.accuracy],
     ["seed", origins.seed],
@@ -40,9 +40,9 @@ function facts(origins, source) {
 
 function block(origins, anchor, number, numbers) {
   const source = sourceOf(origins, number), command = commandFor(origins, source, anchor);
-  const pre = made("pre", { tabIndex: 0, className: "again" }, made("code", { textContent: command }));
-  const told = numbers.map(([what, value]) => made("p", {}, made("b", { textContent: value }), ` ${what}`));
-  return made("section", {}, ...told, facts(origins, source), pre, made("p", {}, ...copyButton("Copy the command", () => command)));
+  const pre = made("pre", { tabIndex: 0, className: "command" }, made("code", { textContent: command }));
+  const figures = numbers.map(([what, value]) => made("p", {}, made("b", { textContent: value }), ` ${what}`));
+  return made("section", {}, ...figures, facts(origins, source), pre, made("p", {}, ...copyButton("Copy the command", () => command)));
 }
 
 // numbers: [[what, value, source], ...]; those of one source share a block.
@@ -80,14 +80,14 @@ async function cellCard(link) {
 for (const link of document.querySelectorAll("a[data-card]")) {
   link.setAttribute("role", "button");
   link.setAttribute("aria-haspopup", "dialog");
-  link.title = "Where these numbers come from, and the command that gives them again";
+  link.title = "Where these numbers come from, and the command that reproduces them";
 }
 document.addEventListener("click", (event) => {
-  const link = event.target.closest?.("a[data-card]"), way = event.target.closest?.("button.way");
+  const link = event.target.closest?.("a[data-card]"), source = event.target.closest?.("button.source");
   if (link) {
     event.preventDefault();
     cellCard(link);
-  } else if (way) rowCard(way.closest("tr"));
+  } else if (source) rowCard(source.closest("tr"));
 });
 document.addEventListener("keydown", (event) => {
   if (event.key !== " " || !event.target.matches?.("a[data-card]")) return;

@@ -1,4 +1,4 @@
-// Copying text, with a way for pages that may not touch the clipboard, and a word about it.
+// Copying text, with a fallback for pages that may not use the clipboard, and feedback on it.
 async function copyText(text) {
   try {
     await navigator.clipboard.writeText(text);
@@ -15,14 +15,14 @@ async function copyText(text) {
   }
 }
 
-// A button that copies what `text` gives when it is pressed, and says how that went.
+// A button that copies what `text` returns when it is pressed, and reports the result.
 function copyButton(label, text) {
   const button = made("button", { type: "button", className: "copy", textContent: label });
-  const said = made("span", { className: "said" });
-  said.setAttribute("role", "status");
+  const feedback = made("span", { className: "feedback" });
+  feedback.setAttribute("role", "status");
   button.addEventListener("click", async () => {
-    said.textContent = "";
-    said.textContent = (await copyText(text())) ? "copied" : "this browser refuses; select and copy by hand";
+    feedback.textContent = "";
+    feedback.textContent = (await copyText(text())) ? "copied" : "this browser refuses; select and copy by hand";
   });
-  return [button, said];
+  return [button, feedback];
 }

@@ -1,5 +1,5 @@
-// Omega-dot at identical states: one row an engine, its residuals beside the bound. A residual of
-// exactly zero has no place on a logarithmic axis; it stands apart, left of it.
+// Omega-dot at identical states: one row an engine, its residuals and the bound. A residual of
+// exactly zero has no place on a logarithmic axis; it is drawn apart, left of the axis.
 function equationScale(rows) {
   const sizes = rows.flatMap((row) => row.slice(4)).filter((v) => v > 0).map(Math.log10);
   const low = Math.floor(Math.min(...sizes, -16)), high = Math.ceil(Math.max(...sizes, -13));
@@ -16,7 +16,7 @@ function engineShown(name, data) {
 function equationTraces({ data }, scenario) {
   const { lane } = equationScale(scenario.equation);
   const rows = scenario.equation.filter((row) => engineShown(row[0], data)).reverse();
-  const kinds = [["random states", 4, "circle", 10], ["along the exact path", 6, "diamond-open", 11]];
+  const kinds = [["random states", 4, "circle", 10], ["along the exact trajectory", 6, "diamond-open", 11]];
   const points = kinds.map(([name, place, symbol, size]) => {
     const own = rows.filter((row) => row[place] !== null), colours = own.map((row) => ownColour(row[2]));
     return {

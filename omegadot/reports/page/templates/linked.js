@@ -83,7 +83,7 @@ function leave(section) {
   for (const chart of timeCharts(section)) Plotly.Fx.unhover(chart);
 }
 
-const pointWords = (chart, trace, k) => {
+const pointText = (chart, trace, k) => {
   const text = trace.text[k].replaceAll("<br>", ", ");
   return chart.dataset.kind === "equation" ? `${trace.y[k]}, ${trace.name}: ${text}`
     : chart.dataset.kind ? `${trace.name}, ${text}` : `${trace.name} at ${trace.x[k]} s: ${text}`;
@@ -93,7 +93,7 @@ async function pointCard(section, chart, trace, k) {
   const number = trace.meta?.sources?.[k] ?? trace.meta?.source;
   if (number === undefined) return;
   const origins = await loadOrigins(), title = chart.closest("figure").querySelector("b").textContent;
-  openCard(origins, nameOf(sourceOf(origins, number)), section.node.id, [[`(${title})`, pointWords(chart, trace, k), number]]);
+  openCard(origins, nameOf(sourceOf(origins, number)), section.node.id, [[`(${title})`, pointText(chart, trace, k), number]]);
 }
 
 // Arrow keys walk: along a line, and from line to line. Enter opens the card of the point.
@@ -111,7 +111,7 @@ function walk(section, chart, event) {
   else {
     hoverAt(chart, curve, at.point);
     hoverEverywhere(section, chart, { data: trace, x: trace.x[at.point], pointNumber: at.point });
-    element("said").textContent = pointWords(chart, trace, at.point);
+    element("announcement").textContent = pointText(chart, trace, at.point);
   }
 }
 
@@ -121,7 +121,7 @@ function link(section, chart) {
   chart.tabIndex = 0;
   chart.setAttribute("role", "application");
   chart.setAttribute("aria-roledescription", "chart");
-  chart.setAttribute("aria-label", `${chart.getAttribute("aria-label")} Arrow keys walk over its points, Enter tells where one comes from.`);
+  chart.setAttribute("aria-label", `${chart.getAttribute("aria-label")} Arrow keys walk over its points, Enter shows the source of one.`);
   chart.on("plotly_relayout", (change) => { if (!linking) keepZoom(section, chart, change); });
   chart.on("plotly_doubleclick", () => resetZoom(section, chart));
   chart.on("plotly_click", ({ points: [point] }) => pointCard(section, chart, point.data, point.pointNumber));

@@ -26,7 +26,7 @@ const levelName = (level, text, side, anchor) => ({
 });
 
 function layout(axis, data) {
-  // Below the lowest line there is room for the words that say what it is.
+  // Below the lowest line there is room for its label.
   const high = axis.high + 0.1, low = axis.floor ? data.floor - 0.1 * (high - data.floor) : axis.low - 0.1;
   const shapes = [], annotations = [];
   if (axis.floor) {
@@ -35,7 +35,7 @@ function layout(axis, data) {
   }
   if (axis.resolvable) {
     shapes.push(levelLine(axis.resolvable, "dashdot"));
-    annotations.push(levelName(axis.resolvable, "resolvable floor", "right", "bottom"));
+    annotations.push(levelName(axis.resolvable, "floor", "right", "bottom"));
   }
   return {
     autosize: true, margin: { l: 58, r: 12, t: 12, b: 40 }, showlegend: false, hovermode: "closest",

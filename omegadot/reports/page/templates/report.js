@@ -4,7 +4,7 @@ function parts(section, chart, loaded, scenario) {
   if (kind === "equation") return [equationTraces(loaded, scenario), equationLayout(scenario, loaded.data)];
   if (kind) return [sweepTraces(loaded, scenario, kind), sweepLayout(scenario, loaded.data, kind)];
   const place = Number(chart.dataset.place), bounds = boundTraces(loaded, scenario, place);
-  return [[...bounds, ...courseTraces(loaded, scenario, place)], courseLayout(scenario, place, loaded.data, bounds)];
+  return [[...bounds, ...deviationTraces(loaded, scenario, place)], deviationLayout(scenario, place, loaded.data, bounds)];
 }
 
 async function draw(section) {
@@ -23,7 +23,7 @@ async function draw(section) {
   } catch (error) {
     console.error(error);
     element("no-charts").hidden = false;
-    element("no-charts").textContent = `The charts cannot be drawn in this browser (${error.message}); every number stands in the tables.`;
+    element("no-charts").textContent = `The charts cannot be drawn in this browser (${error.message}); every number is in the tables.`;
   }
 }
 
@@ -66,7 +66,7 @@ if (sections.length) {
   element("lines").open = !narrow.matches;
   const controls = document.querySelector(".controls");
   new ResizeObserver(() => root.style.setProperty("--covered", `${controls.offsetHeight}px`)).observe(controls);
-  // Printing waits for nobody: what it needs is unpacked as soon as there is time.
+  // Printing does not wait: what it needs is unpacked as soon as the page is idle.
   const print = (on) => { printing = on; root.classList.toggle("printing", on); };
   addEventListener("beforeprint", () => { print(true); sections.forEach((s) => { s.dirty = true; draw(s); }); });
   addEventListener("afterprint", () => { print(false); redraw(); });

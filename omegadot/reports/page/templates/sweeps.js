@@ -24,8 +24,8 @@ function guideTraces(sweeps) {
     textposition: "top left", line: { color: colour("--soft"), width: 1, dash: "dot" },
   }));
   const rounding = sweeps.rounding.length ? [{
-    ...grey(), mode: "lines+text", name: "rounding", x: sweeps.rounding.map((p) => p[0]), y: sweeps.rounding.map((p) => p[1]),
-    text: sweeps.rounding.map((_, i) => (i ? "" : "rounding, at most")), textposition: "top right",
+    ...grey(), mode: "lines+text", name: "round-off bound", x: sweeps.rounding.map((p) => p[0]), y: sweeps.rounding.map((p) => p[1]),
+    text: sweeps.rounding.map((_, i) => (i ? "" : "round-off bound")), textposition: "top right",
     line: { color: colour("--soft"), width: 1, dash: "dash" },
   }] : [];
   return [...guides, ...rounding];

@@ -1,8 +1,12 @@
-// Every table sorts by any column, filters by a word, copies as CSV; those in a closed part of the
-// page are made so when it is opened.
+// Every table sorts by any column, filters by a text, copies as CSV; those in a closed part of the
+// page are prepared when it is opened.
 const leading = /^[-−]?\d+(\.\d+)?(e[-+]?\d+)?(?![\w.])/;
 
-// The lowest head cell of each column, and the words of all head cells above it.
+// A cell as text, without its links to the glossary.
+const isTerm = (node) => node.classList?.contains("term") ?? false;
+const textOf = (cell) => [...cell.childNodes].filter((n) => !isTerm(n)).map((n) => n.textContent).join("").replace(/\s+/g, " ").trim();
+
+// The lowest head cell of each column, and the texts of all head cells above it.
 function columnsOf(table) {
   const grid = [...table.tHead.rows].map(() => []);
   [...table.tHead.rows].forEach((row, y) => {
@@ -12,15 +16,14 @@ function columnsOf(table) {
       for (let dy = 0; dy < cell.rowSpan; dy++) for (let dx = 0; dx < cell.colSpan; dx++) grid[y + dy][x + dx] = cell;
     }
   });
-  return grid.at(-1).map((cell, x) => ({ cell, words: [...new Set(grid.map((row) => row[x]))].map((c) => c.textContent.trim()) }));
+  return grid.at(-1).map((cell, x) => ({ cell, heads: [...new Set(grid.map((row) => row[x]))].map(textOf) }));
 }
 
-const wordsOf = (cell) => [...cell.childNodes].map((n) => n.textContent).join("").replace(/\s+/g, " ").trim();
 
 // The number that is read in a cell: of the matrix that which is shown.
 function sizeOf(cell) {
   const shown = [...cell.querySelectorAll(".n")].find((n) => n.offsetWidth > 0);
-  const text = shown ? shown.textContent : wordsOf(cell);
+  const text = shown ? shown.textContent : textOf(cell);
   if (text === "not finite") return Infinity;
   const found = leading.exec(text);
   return found ? Number(found[0].replace("−", "-")) : null;
@@ -31,7 +34,7 @@ function sortBy(table, column, place) {
   for (const cell of table.tHead.querySelectorAll("[aria-sort]")) cell.removeAttribute("aria-sort");
   column.cell.setAttribute("aria-sort", down ? "descending" : "ascending");
   const rows = [...table.tBodies[0].rows].map((row) => {
-    const cell = row.cells[place], text = cell ? wordsOf(cell) : "";
+    const cell = row.cells[place], text = cell ? textOf(cell) : "";
     return { row, text: text === "–" ? "" : text, size: cell ? sizeOf(cell) : null, rank: Number(cell?.dataset.rank ?? 0) };
   });
   const numeric = rows.every(({ text, size }) => !text || size !== null);
@@ -48,24 +51,24 @@ function csvCell(text) {
 }
 
 function csvOf(table, columns) {
-  const heads = columns.map(({ words }) => words.join(": "));
+  const titles = columns.map(({ heads }) => heads.join(": "));
   const rows = [...table.tBodies[0].rows].filter((row) => !row.classList.contains("out"));
-  return [heads, ...rows.map((row) => [...row.cells].map(wordsOf))].map((line) => line.map(csvCell).join(",")).join("\r\n") + "\r\n";
+  return [titles, ...rows.map((row) => [...row.cells].map(textOf))].map((line) => line.map(csvCell).join(",")).join("\r\n") + "\r\n";
 }
 
 function toolbar(table, columns) {
-  const name = table.caption?.textContent ?? table.closest("[aria-label]")?.getAttribute("aria-label") ?? "table";
-  const filter = made("input", { type: "search", placeholder: "filter rows" }), count = made("span", { className: "said" });
+  const name = (table.caption && textOf(table.caption)) ?? table.closest("[aria-label]")?.getAttribute("aria-label") ?? "table";
+  const filter = made("input", { type: "search", placeholder: "filter rows" }), count = made("span", { className: "feedback" });
   filter.setAttribute("aria-label", `Filter the rows of: ${name}`);
   count.setAttribute("role", "status");
   filter.addEventListener("input", () => {
     const wanted = filter.value.toLowerCase().split(/\s+/).filter(Boolean), rows = [...table.tBodies[0].rows];
-    for (const row of rows) row.classList.toggle("out", !wanted.every((word) => row.textContent.toLowerCase().includes(word)));
+    for (const row of rows) row.classList.toggle("out", !wanted.every((text) => row.textContent.toLowerCase().includes(text)));
     count.textContent = wanted.length ? `${rows.filter((row) => !row.classList.contains("out")).length} of ${rows.length} rows` : "";
   });
-  const [copy, said] = copyButton("Copy as CSV", () => csvOf(table, columns));
+  const [copy, feedback] = copyButton("Copy as CSV", () => csvOf(table, columns));
   copy.setAttribute("aria-label", `Copy as CSV: ${name}`);
-  return made("div", { className: "tools" }, filter, count, copy, said);
+  return made("div", { className: "tools" }, filter, count, copy, feedback);
 }
 
 function enhance(table) {
@@ -73,15 +76,16 @@ function enhance(table) {
   table.dataset.ready = "yes";
   const columns = columnsOf(table);
   columns.forEach((column, place) => {
-    const button = made("button", { type: "button", className: "sort" }, ...column.cell.childNodes);
+    const links = [...column.cell.childNodes].filter(isTerm);
+    const button = made("button", { type: "button", className: "sort" }, ...[...column.cell.childNodes].filter((n) => !isTerm(n)));
     button.addEventListener("click", () => sortBy(table, column, place));
-    column.cell.append(button);
+    column.cell.replaceChildren(button, ...links.flatMap((a) => [" ", a]));
   });
   for (const row of table.tBodies[0].querySelectorAll("tr[data-source]")) {
     const heads = [...row.cells].filter((c) => c.scope === "row"), cell = row.querySelector(".origin") ?? heads[1] ?? heads[0];
-    const way = made("button", { type: "button", className: "way", title: "Where this row comes from" }, ...cell.childNodes);
-    way.setAttribute("aria-haspopup", "dialog");
-    cell.append(way);
+    const source = made("button", { type: "button", className: "source", title: "Where this row comes from" }, ...cell.childNodes);
+    source.setAttribute("aria-haspopup", "dialog");
+    cell.append(source);
   }
   (table.closest(".scroll") ?? table).before(toolbar(table, columns));
 }

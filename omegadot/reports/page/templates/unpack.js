@@ -1,4 +1,4 @@
-// What travels packed inside the page: base64, gzip, and for the courses 16-bit differences.
+// What travels packed inside the page: base64, gzip, and for the errors 16-bit differences.
 const root = document.documentElement;
 root.classList.add("js");
 const element = (id) => document.getElementById(id);

@@ -1,4 +1,4 @@
-"""Who is a copy of whom: the sentences about engines that step one scheme, and count once."""
+"""Integrators whose trajectories are identical: their agreement is not independent evidence."""
 
 from __future__ import annotations
 
@@ -10,15 +10,14 @@ from typing import Any
 
 from omegadot.reports.text.numbers import listed, plain, times
 
-_WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 _SCENARIOS_NAMED = 3
 
 
 @dataclass(frozen=True)
-class Copies:
-    """Members that turn alike, to rounding, on most scenarios.
+class Cluster:
+    """Members whose trajectories are identical, to rounding, on most scenarios.
 
-    members: as ``engine:integrator``.  scheme: None where the reference knows none like it.
+    members: as ``engine:integrator``.  scheme: None where no scheme of the reference equals them.
     together and apart: the scenarios on which all of them agree, and on which some do not.
     """
 
@@ -54,11 +53,11 @@ def _agree(one: Mapping[float, int], other: Mapping[float, int]) -> bool | None:
     return all(one[step] == other[step] for step in shared) if shared else None
 
 
-def copies_of(run: Mapping[str, Any]) -> list[Copies]:
-    """The groups of two or more, by the clusters of ``run.json``: those most in number first.
+def clusters_over_scenarios(run: Mapping[str, Any]) -> list[Cluster]:
+    """Clusters of two or more over all scenarios, from those of ``run.json``; the largest first.
 
-    In a group each two members are together on more than half of the scenarios that both ran:
-    simple motions do not tell schemes apart, and a special load may part what is else the same.
+    Each two members agree on more than half of the scenarios that both ran: simple motions do not
+    distinguish schemes, and a special load may separate schemes that are otherwise equal.
     """
     clusters = run.get("clusters") or []
     homes = _homes(clusters)
@@ -76,8 +75,8 @@ def copies_of(run: Mapping[str, Any]) -> list[Copies]:
             groups.append([member])
         else:
             home_group.append(member)
-    found = [_copies(group, agreed, clusters) for group in groups if len(group) > 1]
-    return sorted(found, key=lambda copies: (-copies.engines, -len(copies.members)))
+    found = [_cluster(group, agreed, clusters) for group in groups if len(group) > 1]
+    return sorted(found, key=lambda own: (-own.engines, -len(own.members)))
 
 
 def _mostly(agreed: Mapping[frozenset[str], dict[str, bool]], one: str, other: str) -> bool:
@@ -85,11 +84,11 @@ def _mostly(agreed: Mapping[frozenset[str], dict[str, bool]], one: str, other: s
     return sum(seen) > 0.5 * len(seen) if seen else False
 
 
-def _copies(
+def _cluster(
     group: Sequence[str],
     agreed: Mapping[frozenset[str], dict[str, bool]],
     clusters: Iterable[Mapping[str, Any]],
-) -> Copies:
+) -> Cluster:
     pairs = [agreed[frozenset(pair)] for pair in combinations(group, 2)]
     scenarios = list(dict.fromkeys(scenario for pair in pairs for scenario in pair))
     apart = tuple(s for s in scenarios if not all(pair.get(s, True) for pair in pairs))
@@ -100,38 +99,43 @@ def _copies(
         if cluster["scenario"] in together and set(group) & set(cluster["members"])
     )
     scheme = names.most_common(1)[0][0] if names else None
-    return Copies(tuple(group), scheme, together, apart)
+    return Cluster(tuple(group), scheme, together, apart)
 
 
-def sentence(copies: Copies) -> str:
-    """Who is one scheme, how many votes they have, and where they part."""
-    count = len(copies.members)
-    term = _WORDS[count] if count < len(_WORDS) else str(count)
-    scheme = f", {copies.scheme}" if copies.scheme else " that the reference does not know"
-    who = listed([label(member) for member in copies.members])
-    return f"{who} are one scheme{scheme}: {term} copies, one vote."
+def sentence(cluster: Cluster) -> str:
+    """Which members are identical, and what follows."""
+    members = listed([label(member) for member in cluster.members])
+    count = "both" if len(cluster.members) == 2 else "all"
+    scheme = f"{count} step {cluster.scheme}" if cluster.scheme else "no scheme of the reference"
+    return (
+        f"{members} produce identical trajectories ({scheme}), so their agreement is not "
+        "independent evidence."
+    )
 
 
-def where(copies: Copies) -> str:
+def extent(cluster: Cluster) -> str:
     """On how many scenarios that holds, and the first ones on which it does not."""
-    total = len(copies.together) + len(copies.apart)
-    if not copies.apart:
-        return f"On all of {times(total, 'scenario')}."
-    named = list(copies.apart[:_SCENARIOS_NAMED])
-    more = len(copies.apart) - len(named)
+    total = len(cluster.together) + len(cluster.apart)
+    if not cluster.apart:
+        return f"On all {total} scenarios." if total > 1 else "On 1 scenario."
+    named = list(cluster.apart[:_SCENARIOS_NAMED])
+    more = len(cluster.apart) - len(named)
     shown = listed([*named, f"{more} more"] if more else named)
-    return f"On {len(copies.together)} of {times(total, 'scenario')}; they part on {shown}."
+    return (
+        f"On {len(cluster.together)} of {times(total, 'scenario')}; "
+        f"the trajectories differ on {shown}."
+    )
 
 
-def votes(run: Mapping[str, Any], scenario: str) -> str:
-    """One scenario's copies at its finest step, and how many different courses are left."""
+def on_scenario(run: Mapping[str, Any], scenario: str) -> str:
+    """One scenario's clusters at its finest step, and how many different trajectories there are."""
     own = [c for c in run.get("clusters") or [] if c["scenario"] == scenario]
     if not own:
         return ""
     step = min(cluster["timestep"] for cluster in own)
     finest = [cluster["members"] for cluster in own if cluster["timestep"] == step]
     equal = [" = ".join(map(label, members)) for members in finest if len(members) > 1]
-    total = sum(map(len, finest))
-    deviations = times(len(finest), "different course")
-    message = f"{times(total, 'run')} at step {plain(step)} s make {deviations}"
+    runs = times(sum(map(len, finest)), "run")
+    different = "1 trajectory" if len(finest) == 1 else f"{len(finest)} different trajectories"
+    message = f"{runs} at step {plain(step)} s produce {different}"
     return f"{message}: {'; '.join(equal)}." if equal else f"{message}."

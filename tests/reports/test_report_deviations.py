@@ -1,4 +1,4 @@
-"""The courses against errors that are known by hand."""
+"""The errors along a run against errors that are known by hand."""
 
 from dataclasses import replace
 
@@ -40,7 +40,7 @@ def test_errors_are_those_that_were_put_in(record):
     assert chart.unmatched == 0
 
 
-def test_every_run_has_a_course_and_the_truth_has_none(record):
+def test_every_run_has_a_series_and_the_truth_has_none(record):
     charts = chart_deviations(record)
     assert list(charts) == ["sphere", "spun-again"]
     found = {(c.engine, c.integrator, c.timestep) for c in charts["sphere"].deviations}
@@ -63,7 +63,7 @@ def test_thinning_keeps_the_envelope_the_start_and_the_end():
     assert found.end["omega_dot"] == pytest.approx(4e-6, rel=1e-9)
 
 
-def test_a_short_course_is_not_thinned(record):
+def test_a_short_run_is_not_thinned(record):
     _, found = deviation(record)
     assert len(found.time) == 41
 
@@ -143,7 +143,7 @@ def test_a_body_at_rest_is_measured_absolutely(record):
     np.testing.assert_allclose(found.values["angular_momentum"], 0.4 * 0.5, rtol=1e-12)
 
 
-def test_scenarios_without_a_system_or_truth_are_told_apart(record):
+def test_scenarios_without_a_system_or_truth_are_distinguished(record):
     gone = record.trajectories.filter(pl.col("engine") != "exact")
     chart, _ = deviation(replace(record, trajectories=gone))
     assert chart.unmatched == len(gone.filter(pl.col("scenario") == "sphere"))
@@ -152,5 +152,5 @@ def test_scenarios_without_a_system_or_truth_are_told_apart(record):
     assert chart_deviations(bare)["sphere"].units == {}
 
 
-def test_no_trajectories_no_courses(record):
+def test_no_trajectories_no_deviations(record):
     assert chart_deviations(replace(record, trajectories=record.trajectories.clear())) == {}

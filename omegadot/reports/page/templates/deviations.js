@@ -1,19 +1,19 @@
-// The error along the run: one line a run, and how far rounding may take it.
+// The error along the run: one line a run, and its round-off bound.
 const step = element("step");
 // The rank shown of a scenario: a scenario with fewer steps shows its coarsest.
 const rankIn = (scenario) => Math.min(Number(step?.value ?? 0), scenario.steps.length - 1);
-const coursesShown = (scenario) => scenario.courses
+const deviationsShown = (scenario) => scenario.deviations
   .filter((c) => c[1] === rankIn(scenario) && !hidden.has(c[0])).sort((a, b) => a[0] - b[0]);
 
-function courseTraces({ data, codes }, scenario, place) {
+function deviationTraces({ data, codes }, scenario, place) {
   const axis = scenario.charts[place];
-  return coursesShown(scenario).map(([line, , clock, start, count, , source]) => {
+  return deviationsShown(scenario).map(([line, , clock, start, count, , source]) => {
     const look = data.lines[line], from = start + place * count, own = ownColour(look.colour);
-    const course = codes.subarray(from, from + count);
+    const ownCodes = codes.subarray(from, from + count);
     return {
       type: "scatter", mode: count > 1 ? "lines" : "markers", name: look.name, meta: { line, source },
-      x: data.times[clock], y: Array.from(course, (code) => value(code, data)),
-      text: Array.from(course, (code) => code === 0
+      x: data.times[clock], y: Array.from(ownCodes, (code) => value(code, data)),
+      text: Array.from(ownCodes, (code) => code === 0
         ? `at or below 1e${data.floor}` : value(code, data)?.toExponential(2) + unitText(axis.unit)),
       hovertemplate: "%{fullData.name}<br>%{x} s: %{text}<extra></extra>",
       line: { color: own, width: look.width, dash: dashOf(look) },
@@ -23,9 +23,9 @@ function courseTraces({ data, codes }, scenario, place) {
 }
 
 // The bounds of the runs shown, from the smallest to the largest: a staircase, each stair up to the
-// part of the run that it holds for.
+// fraction of the run that it holds for.
 function boundTraces({ data }, scenario, place) {
-  const known = coursesShown(scenario).filter((c) => c[5][place].length);
+  const known = deviationsShown(scenario).filter((c) => c[5][place].length);
   if (!known.length) return [];
   const end = Math.max(...known.map((c) => data.times[c[2]].at(-1)));
   const bounds = known.map((c) => c[5][place]);
@@ -40,17 +40,17 @@ function boundTraces({ data }, scenario, place) {
     type: "scatter", mode: "lines", hoverinfo: "skip", x, line: { color: colour("--soft"), width: 1, dash: "dash" },
   };
   const low = stairs(Math.min), high = stairs(Math.max);
-  const lines = [{ ...common, name: "rounding bound", y: high }];
+  const lines = [{ ...common, name: "round-off bound", y: high }];
   if (low.some((level, k) => level < 0.98 * high[k])) {
-    lines.unshift({ ...common, name: "rounding bound, smallest", y: low });
+    lines.unshift({ ...common, name: "round-off bound, smallest", y: low });
     Object.assign(lines[1], { fill: "tonexty", fillcolor: colour("--veil") });
   }
   return lines;
 }
 
-function courseLayout(scenario, place, data, bounds) {
+function deviationLayout(scenario, place, data, bounds) {
   const found = layout(scenario.charts[place], data);
-  found.xaxis.range = [0, Math.max(...scenario.courses.map((c) => data.times[c[2]].at(-1)))];
-  if (bounds.length) found.annotations.push(levelName(bounds.at(-1).y[0], "rounding bound", "left", "bottom"));
+  found.xaxis.range = [0, Math.max(...scenario.deviations.map((c) => data.times[c[2]].at(-1)))];
+  if (bounds.length) found.annotations.push(levelName(bounds.at(-1).y[0], "round-off bound", "left", "bottom"));
   return found;
 }

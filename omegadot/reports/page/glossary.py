@@ -1,0 +1,216 @@
+"""The terms of the report, defined once: for the page's own glossary and for docs/glossary.md."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from dataclasses import dataclass
+
+from markupsafe import Markup, escape
+
+INTRODUCTION = (
+    "The report's headings link to these terms. `h` is the time step, `n` the number of steps, "
+    "`eps` is 2^-52."
+)
+
+
+@dataclass(frozen=True)
+class Term:
+    """name: as headings use it.  text: two sentences.  formula: or unit, of the quantity.
+
+    also: other forms by which a heading refers to it.
+    """
+
+    name: str
+    text: str
+    formula: str
+    also: tuple[str, ...] = ()
+
+    @property
+    def anchor(self) -> str:
+        """Its address, in the document and behind ``term-`` in the page."""
+        return self.name.lower().replace(" ", "-")
+
+
+TERMS = (
+    Term(
+        "cluster",
+        "Runs of one scenario and step whose omega and attitude are the same within the "
+        "round-off bound, whatever scheme they declare. Their agreement is not independent "
+        "evidence that they are right.",
+        "|difference| ≤ round-off bound, in omega and in attitude",
+        ("clusters", "identical trajectories"),
+    ),
+    Term(
+        "companion",
+        "The run of the reference with the scheme that an engine declares, from the same start "
+        "and with the same steps. What is left between the engine and its companion is not "
+        "explained by the scheme.",
+        "same units as the state",
+    ),
+    Term(
+        "consistent",
+        "An error is consistent where it shrinks with the step at the declared order, and the "
+        "difference from the companion does too. It is then a discretisation error and passes.",
+        "|observed order − declared order| ≤ 0.15",
+    ),
+    Term(
+        "declared exception",
+        "A failure that is known and listed in a file, with its reason and a link. It is counted "
+        "apart from passes and failures.",
+        "verdict `declared`",
+        ("declared exceptions",),
+    ),
+    Term(
+        "defect",
+        "What a single step from an exact state does wrong. Its order is one more than that of "
+        "the error that accumulates over a run.",
+        "|x₁ − x(h)| ∝ h^(p+1), for a scheme of order p",
+        ("defects",),
+    ),
+    Term(
+        "exact solution",
+        "The motion that every run is compared with: a closed form where one is known, otherwise a "
+        "Taylor series of the same equations with extra digits. It never comes from another "
+        "engine.",
+        "closed-form or series",
+        ("exact solutions",),
+    ),
+    Term(
+        "explained",
+        "An error is explained where the engine and its companion reach the same states within "
+        "the round-off bound. The error is then the truncation error of the declared scheme, and "
+        "passes.",
+        "|engine − companion| ≤ round-off bound",
+        ("source of error",),
+    ),
+    Term(
+        "floor",
+        "How far a perfect answer in double precision may be from the exact solution, because the "
+        "inputs are rounded and the motion magnifies that. An error below the floor is not judged.",
+        "same unit as the error: rad, rad/s, m, or relative",
+    ),
+    Term(
+        "gate",
+        "One of the six questions that an engine is judged by: model, equation, scheme, "
+        "invariants, trajectory and cost. Each bound follows from physics and floating point; "
+        "cost is measured and not judged.",
+        "value ≤ bound",
+        ("gates",),
+    ),
+    Term(
+        "growth",
+        "The largest factor by which the motion magnifies a small deviation before time t. It is "
+        "about 1 for simple motions and very large near a separatrix.",
+        "growth(t) = max over s ≤ t of |M(t) M(s)⁻¹|, with M the tangent of the motion",
+    ),
+    Term(
+        "invariants",
+        "Energy, angular momentum and linear momentum. Where a load acts they change, and their "
+        "exact values over time are what a run must follow; the difference is the drift.",
+        "relative to the largest value of the exact motion",
+        ("drift",),
+    ),
+    Term(
+        "order",
+        "The power of the step with which the error of a scheme shrinks. The observed order is "
+        "the slope of log error over log step between the finest steps.",
+        "error ∝ h^p",
+        ("orders", "convergence"),
+    ),
+    Term(
+        "outcome",
+        "How a run ended: ok, unsupported, not-installed, diverged, raised, crashed, timeout or "
+        "interrupted. Every outcome except ok has its reason and is never counted as a pass.",
+        "one per run",
+        ("what ran",),
+    ),
+    Term(
+        "Pareto front",
+        "The runs that no other run beats in both cost and error. A user who wants a given "
+        "accuracy at the lowest cost picks one of them.",
+        "s of wall time per simulated second, against rad",
+    ),
+    Term(
+        "residual",
+        "The difference between the engine's omega-dot and that of the Newton–Euler equations at "
+        "one identical state. No time stepping is involved, so a sound engine stays within a few "
+        "roundings.",
+        "J |ω̇ − ω̇_ref| / S ≤ 64 eps J / λ; S: sizes of the terms of equation (8), J and λ: "
+        "largest and smallest inertia",
+    ),
+    Term(
+        "round-off bound",
+        "How far rounding alone can take a run away from what its scheme gives in exact "
+        "arithmetic. It counts the roundings of each step and multiplies them by the growth.",
+        "16 eps (n + 1) (1 + h A / rate) growth(t), with A the largest |ω̇|; rad in attitude, "
+        "relative to the rate in omega",
+    ),
+    Term(
+        "scheme",
+        "The formula by which an integrator computes the next state from the present one. The "
+        "reference has each scheme in plain code, and the scheme gate compares an engine with it "
+        "step by step.",
+        "for example ω ← ω + h ω̇, then q ← q exp(h ω)",
+        ("schemes",),
+    ),
+    Term(
+        "setup",
+        "How an engine is configured for a run. In physics, defaults that disturb the motion "
+        "(sleeping, contacts, implicit damping) are switched off; as-shipped leaves all defaults.",
+        "physics or as-shipped",
+        ("settings", "switched off"),
+    ),
+    Term(
+        "verdict",
+        "The result of a gate: pass, fail, declared (a declared exception) or info (measured and "
+        "not judged). The verdict of a scenario is the worst one of its runs.",
+        "one per gate and run",
+        ("verdicts",),
+    ),
+)
+
+
+def terms_in(heading: str) -> list[Term]:
+    """The terms that a heading uses, as whole words, in the order of the heading."""
+    found = []
+    for term in TERMS:
+        names = "|".join(re.escape(name) for name in (term.name, *term.also))
+        place = re.search(rf"(?<![\w-])(?:{names})(?![\w-])", heading, re.IGNORECASE)
+        if place:
+            found.append((place.start(), term))
+    return [term for _, term in sorted(found, key=lambda pair: pair[0])]
+
+
+def linked(heading: str) -> Markup:
+    """A heading of the page, followed by a link to the glossary for each term in it."""
+    links = [
+        Markup('<a class="term" href="#term-{0}" aria-label="Glossary: {1}">?</a>').format(
+            term.anchor, term.name
+        )
+        for term in terms_in(heading)
+    ]
+    return Markup(" ").join([escape(heading), *links])
+
+
+def glossary_markdown() -> str:
+    """docs/glossary.md: the same terms, texts and anchors as in the page."""
+    head = (
+        "# Glossary\n\n"
+        "<!-- Made by a command. Do not edit; run it again:\n"
+        "python -m omegadot.reports.page.glossary > docs/glossary.md -->\n\n"
+        f"{_wrapped(INTRODUCTION)}\n"
+    )
+    entries = [
+        f"\n## {term.name}\n\n{_wrapped(term.text)}\n\n{_wrapped(f'*{term.formula}*')}\n"
+        for term in TERMS
+    ]
+    return head + "".join(entries)
+
+
+def _wrapped(text: str) -> str:
+    return textwrap.fill(text, 100, break_long_words=False, break_on_hyphens=False)
+
+
+if __name__ == "__main__":
+    print(glossary_markdown(), end="")
