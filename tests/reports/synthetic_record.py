@@ -139,7 +139,7 @@ def engine_entry(name, integrators):
 
 
 def clusters(scenario, timestep, engines):
-    """One cluster a scheme, the reference having no vote."""
+    """One cluster a scheme, without the reference."""
     groups = {}
     for engine, integrators in engines.items():
         for integrator in integrators if engine != "reference" else ():

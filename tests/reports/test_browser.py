@@ -51,7 +51,7 @@ def test_charts_are_drawn_and_nothing_is_complained_of(page, path):
     assert page.messages == []
     assert page.evaluate("document.querySelectorAll('.chart svg.main-svg').length") >= CHARTS
     assert page.evaluate("document.getElementById('no-charts').hidden")
-    # Five lines a chart; beside them two guides and rounding's for convergence, the Pareto front
+    # Five lines a chart; also two guides and the round-off bound for convergence, the Pareto front
     # for cost, and the bounds in two of the four charts: equal for all runs, so one line.
     lines = 2 * (4 * 5 + 5 + 3 + 5 + 1 + 2)
     assert (
@@ -130,7 +130,7 @@ def test_convergence_is_drawn_over_the_step_with_its_slopes(page):
     (low, high), (start, end) = drawn["order 4"]["x"], drawn["order 4"]["y"]
     assert (low, high) == (0.005, 0.02)
     assert end / start == pytest.approx(4.0**4, rel=1e-3)
-    assert drawn["rounding"]["y"] == [1e-13] * 3
+    assert drawn["round-off bound"]["y"] == [1e-13] * 3
     layout = "document.querySelector('[data-kind=convergence]').layout"
     assert page.evaluate(f"{layout}.xaxis.type + {layout}.yaxis.type") == "loglog"
     assert page.evaluate(f"{layout}.xaxis.ticktext") == ["0.005", "0.01", "0.02"]
@@ -153,7 +153,7 @@ def test_sweeps_keep_colour_and_dash_and_leave_with_their_engine(page):
     left = {line["name"] for line in page.evaluate(f"{SWEEP}('convergence')")}
     assert left == {
         *("reference semi-implicit-euler", "reference lie-rk4", "dart semi-implicit"),
-        *("order 1", "order 4", "rounding"),
+        *("order 1", "order 4", "round-off bound"),
     }
 
 
@@ -180,7 +180,7 @@ def test_the_dark_has_colours_of_its_own(browser, path):
 
 @pytest.mark.parametrize("width", [360, 768, 1280])
 def test_no_width_scrolls_sideways(browser, path, width):
-    browser.open(path, width=width, height=9000)
+    browser.open(path, width=width, height=12000)
     browser.wait(DRAWN)
     root = "document.documentElement"
     assert browser.evaluate(f"{root}.scrollWidth - {root}.clientWidth") == 0

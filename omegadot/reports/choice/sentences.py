@@ -105,7 +105,7 @@ def missed_text(missed: Row) -> str:
     limit = measure_text(missed["limit"], missed["unit"])
     found = measure_text(missed["found"], missed["unit"])
     wanted = "at least" if missed["requirement"] == "real-time-factor" else "at most"
-    return f"{name} {found}, required {wanted} {limit} ({figure(missed['factor'])} times off)"
+    return f"{name} {found}, required {wanted} {limit} (off by {figure(missed['factor'])}x)"
 
 
 def variant_lines(case: Row) -> Iterator[str]:
@@ -157,10 +157,9 @@ def notes(choice: Row) -> Iterator[str]:
 GUARANTEE = (
     "The listed step is the largest verified one: it and all smaller steps tried met every limit "
     "at every sample, and the next larger one tried failed. The margin is the limit over the "
-    "error. Steps are known to 5 %, so candidates share a rank where their costs differ by less, "
-    "or differ by more in fewer than three of four timing rounds. A candidate is Pareto-optimal "
-    "where no run tried is better in cost, error and memory at once. The real-time factor counts "
-    "stepping alone: median and quartiles."
+    "error. Steps are known to 5 %. Candidates share a rank unless one costs over 5 % more in three "
+    "of four timing rounds. A candidate is Pareto-optimal where no run tried is better in cost, "
+    "error and memory at once. The real-time factor counts stepping alone: median and quartiles."
 )
 
 

@@ -172,7 +172,7 @@ TERMS = (
 
 
 def terms_in(heading: str) -> list[Term]:
-    """The terms that a heading uses, as whole words, in the order of the heading."""
+    """The terms that a heading uses, in their order there, not as parts of longer terms."""
     found = []
     for term in TERMS:
         names = "|".join(re.escape(name) for name in (term.name, *term.also))
