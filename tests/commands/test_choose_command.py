@@ -189,10 +189,10 @@ def test_nothing_qualifies(tmp_path: Path) -> None:
     arguments = ["quick.toml", "--engine", "mujoco:Euler", "--budget", "0.02"]
     result = omegadot("choose", *arguments, "--attitude", "1e-9", folder=tmp_path)
     assert result.code == 1, result.err
-    assert "nothing qualifies; nearest comes mujoco" in result.out
+    assert "nothing qualifies. The nearest is mujoco" in result.out
     result = omegadot("choose", *arguments, "--attitude", "1e-15", folder=tmp_path)
     assert result.code == 1, result.err
-    assert "cannot be verified in doubles" in result.out
+    assert "double precision cannot verify the requested attitude error" in result.out
 
 
 def test_a_crash_is_told_from_a_miss(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""``omegadot versions`` finds what changed between releases, and states what it cannot decide."""
+"""``omegadot versions`` finds what changed between releases, and says what it cannot tell."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ def test_a_bisection_in_which_nothing_runs_says_so(tmp_path: Path) -> None:
         tmp_path, *arguments(tmp_path, *FAULTY[:2]), "--bisect", "order", "--out", "out"
     )
     assert result.code == 3, result.err
-    assert "none could be measured" in result.out
-    assert "Looked at: 1.5 and 1.6." in result.out
+    assert "none of which ran" in result.out
+    assert "Releases run: 1.5 and 1.6." in result.out
     assert "Traceback" not in result.err
     assert (tmp_path / "out" / "versions.html").exists()
 
@@ -194,7 +194,7 @@ def test_bisect_of_what_stays_says_so(tmp_path: Path, capsys: pytest.CaptureFixt
     assert compare_versions(requested, "text", tmp_path / "out") == 1
     message = capsys.readouterr().out
     assert "the ends do not differ" in message
-    assert "Looked at: 1.0 and 1.4." in message
+    assert "Releases run: 1.0 and 1.4." in message
     assert "the ends do not differ" in (tmp_path / "out" / "versions.html").read_text()
 
 
@@ -246,7 +246,7 @@ def test_a_wrong_word_ends_the_command_with_2(tmp_path: Path) -> None:
 
 
 def test_mujoco_4_steps_runge_kutta_anew(tmp_path: Path) -> None:
-    """Two real releases: found without being requested, and nothing sound is accused."""
+    """Two real releases: found without being asked for, and nothing sound is accused."""
     python = os.environ.get(OLD_MUJOCO)
     if python is None:
         pytest.skip(f"{OLD_MUJOCO} names no interpreter that has MuJoCo 3.17.0, NumPy and SciPy")

@@ -1,4 +1,4 @@
-"""Copies of one scheme are one vote: found by what they did, not by what they declare."""
+"""Identical trajectories are found by what the runs did, not by what they declare."""
 
 import json
 from pathlib import Path
@@ -109,5 +109,5 @@ def test_a_run_records_its_clusters(tmp_path: Path) -> None:
     assert finest["members"] == [
         *("mujoco:Euler", "pinocchio:aba+semi-implicit-euler", "dart:semi-implicit")
     ]
-    assert "are one scheme, semi-implicit-euler: three copies, one vote." in result.out
+    assert "produce identical trajectories (all step semi-implicit-euler)" in result.out
     assert np.unique([c["timestep"] for c in run["clusters"]]).tolist() == [0.005, 0.01, 0.02]

@@ -157,9 +157,10 @@ def notes(choice: Row) -> Iterator[str]:
 GUARANTEE = (
     "The listed step is the largest verified one: it and all smaller steps tried met every limit "
     "at every sample, and the next larger one tried failed. The margin is the limit over the "
-    "error. Steps are known to 5 %. Candidates share a rank unless one costs over 5 % more in three "
-    "of four timing rounds. A candidate is Pareto-optimal where no run tried is better in cost, "
-    "error and memory at once. The real-time factor counts stepping alone: median and quartiles."
+    "error. Steps are known to 5 %. Candidates share a rank unless one costs over 5 % more in "
+    "three of four timing rounds. A candidate is Pareto-optimal where no run tried is better in "
+    "cost, error and memory at once. The real-time factor counts stepping alone: median and "
+    "quartiles."
 )
 
 

@@ -92,7 +92,7 @@ def _spread(ranges: list[Range], end: Callable[[Range], Figure]) -> Detailed:
     usual = Counter(figure.integrator for figure in figures).most_common(1)[0][0]
     middle = short(median(size(figure) for figure in figures))
     run = ", ".join(filter(None, (largest.integrator, knob(largest.timestep, largest.accuracy))))
-    details = f"mostly {usual}; largest {short(largest.value)}: {run} on {largest.scenario}"
+    details = f"mostly {usual}; largest {short(largest.value)} with {run} on {largest.scenario}"
     return f"{middle} rad", details
 
 

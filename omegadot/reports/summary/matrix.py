@@ -116,7 +116,7 @@ def named(figure: Figure | None) -> tuple[str, str]:
     if figure is None:
         return "–", ""
     unit = "" if figure.unit == "1" else f" {figure.unit}"
-    path = "along the path" if figure.metric == "residual_on_path" else ""
+    path = "along the trajectory" if figure.metric == "residual_on_path" else ""
     run = (path, figure.integrator, knob(figure.timestep, figure.accuracy))
     return short(figure.value) + unit, ", ".join(filter(None, run))
 
