@@ -24,9 +24,9 @@ _SIGNS = {"pass": "every gate holds", "fail": "a gate fails", "declared": "decla
 _WITH_NUMBERS = ("pass", "fail", "declared", "not-judged")
 # The heading of each number, and what it stands for.
 _NUMBERS = (
-    ("resid", "resid: largest omega-dot residual at identical states, relative"),
-    ("mom.", "mom.: angular-momentum drift, relative"),
-    ("att.", "att.: attitude error in rad"),
+    ("resid", "resid: omega-dot residual, relative."),
+    ("mom.", "mom.: angular-momentum drift, relative."),
+    ("att.", "att.: attitude error in rad."),
 )
 
 
@@ -123,10 +123,12 @@ def _terse(cell: Cell) -> list[str]:
 def _legend(summary: Summary, shown: int, console: Console) -> str:
     present = {cell.status: _mark(cell, console) for cell in summary.cells.values()}
     message = [f"{present[status]} {text}" for status, text in _SIGNS.items() if status in present]
-    message += [text for _, text in _NUMBERS[:shown]]
+    sentences = ["; ".join(message) + "."] if message else []
+    sentences += [text for _, text in _NUMBERS[:shown]]
     if shown > 1:
-        message[-1] += " (mom. and att. of the worst integrator at its finest step)"
-    return "; ".join(message) + "." if message else ""
+        names = " and ".join(name for name, _ in _NUMBERS[1:shown])
+        sentences.append(f"{names}: of the worst integrator at its smallest step.")
+    return " ".join(sentences)
 
 
 def _extremes(summary: Summary) -> list[str]:
