@@ -91,8 +91,9 @@ def _spread(ranges: list[Range], end: Callable[[Range], Figure]) -> Detailed:
     largest = max(figures, key=size)
     usual = Counter(figure.integrator for figure in figures).most_common(1)[0][0]
     middle = short(median(size(figure) for figure in figures))
-    run = ", ".join(filter(None, (largest.integrator, knob(largest.timestep, largest.accuracy))))
-    details = f"mostly {usual}; largest {short(largest.value)} with {run} on {largest.scenario}"
+    settings = (largest.integrator, knob(largest.timestep, largest.accuracy), largest.scenario)
+    run = ", ".join(filter(None, settings))
+    details = f"usually {usual}; largest {short(largest.value)} rad ({run})"
     return f"{middle} rad", details
 
 
@@ -125,4 +126,5 @@ def _cost(own: pl.DataFrame) -> Detailed:
 
 
 def _micro(seconds: float) -> str:
-    return f"{1e6 * seconds:.3g}"
+    micro = 1e6 * seconds
+    return f"{micro:.3g}" if micro < 999.5 else f"{micro:,.0f}"
