@@ -17,7 +17,7 @@ from omegadot.reports.page.glossary import INTRODUCTION, TERMS
 from omegadot.reports.page.matrix_cards import cards
 from omegadot.reports.page.sections import drawings, measured_in, sections_of
 from omegadot.reports.page.templating import asset, environment, script
-from omegadot.reports.page.view_3d.view import see_part
+from omegadot.reports.page.view_3d.view import view_section
 from omegadot.reports.page.why import order_table, scheme_table
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
@@ -89,8 +89,8 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         points=POINTS,
         glossary=TERMS,
         glossary_introduction=INTRODUCTION,
-        css=asset("report.css") + asset("see.css") + (asset("choice.css") if choice else ""),
-        see=see_part(record, charts, lines, anchors),
+        css=asset("report.css") + asset("view.css") + (asset("choice.css") if choice else ""),
+        view=view_section(record, charts, lines, anchors),
         js=script(),
         plotly=library.result() if charts else "",
         payload=pack_json(description),

@@ -1,1 +1,1 @@
-"""The tumbling bodies on the page."""
+"""The 3-D view: the bodies of a run, tumbling."""

@@ -1,4 +1,4 @@
-"""The stored attitudes of every run beside the exact ones: what the tumbling bodies show."""
+"""The stored attitudes of every run next to the exact ones: what the 3-D view shows."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ import polars as pl
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array
 
-# A run with more samples is thinned to so many; every number told is of all its samples.
+# A run with more samples is thinned to so many; every number reported is of all its samples.
 FRAMES = 300
-# An attitude farther than this from the exact one, rad, has parted from it.
-PARTED = math.radians(1.0)
+# A run diverges where its attitude is farther than this from the exact one, rad.
+DIVERGED = math.radians(1.0)
 _RUN = ("engine", "setup", "integrator", "timestep", "accuracy")
 _STATE = ("qw", "qx", "qy", "qz", "wx", "wy", "wz")
 _EXACT = pl.col("engine") == "exact"
@@ -24,12 +24,12 @@ _PREFERRED_TRUTH = ("closed-form", "series")
 
 
 @dataclass(frozen=True)
-class Flight:
+class RunAttitudes:
     """One run. frames: (n,) its samples' places in the exact solution's times.
 
     error: (n, 3) rad, the rotation from the exact attitude to its own, body axes; spin: (n, 3)
-    rad/s, its omega less the exact one.  parts: s, its first sample farther than PARTED from the
-    exact one, None where there is none.  largest: rad.  end: s, its last sample.
+    rad/s, its omega less the exact one.  diverges: s, its first sample farther than DIVERGED from
+    the exact one, None where there is none.  largest: rad.  end: s, its last sample.
     """
 
     engine: str
@@ -40,23 +40,23 @@ class Flight:
     frames: Array
     error: Array
     spin: Array
-    parts: float | None
+    diverges: float | None
     largest: float
     end: float
 
 
 @dataclass(frozen=True)
-class Flights:
+class Attitudes:
     """A scenario. time: (n,) s; orientation: (n, 4); angular_velocity: (n, 3), both exact.
 
-    truth: how the exact solution was had.
+    truth: which exact solution it is, `closed-form` or `series`.
     """
 
     truth: str
     time: Array
     orientation: Array
     angular_velocity: Array
-    runs: tuple[Flight, ...]
+    runs: tuple[RunAttitudes, ...]
 
     @property
     def coarse(self) -> bool:
@@ -68,8 +68,8 @@ class Flights:
         return bool(np.any(turned > 0.5 * np.pi))
 
 
-def flights_of(trajectories: pl.DataFrame) -> dict[str, Flights]:
-    """Every scenario that has an exact solution and a run beside it, by name."""
+def attitudes_of(trajectories: pl.DataFrame) -> dict[str, Attitudes]:
+    """Every scenario that has an exact solution and a run to compare with it, by name."""
     found = {}
     columns = trajectories.select("scenario", *_RUN, "time", *_STATE)
     for (name,), rows in columns.partition_by("scenario", as_dict=True).items():
@@ -91,11 +91,11 @@ def _trajectory(rows: pl.DataFrame) -> tuple[Array, Array, Array]:
     return table[:, 0], table[:, 1:5], table[:, 5:]
 
 
-def _runs(rows: pl.DataFrame, time: Array, q: Array, w: Array) -> Iterator[Flight]:
+def _runs(rows: pl.DataFrame, time: Array, q: Array, w: Array) -> Iterator[RunAttitudes]:
     rows = rows.sort(*_RUN, "time")
     places = np.minimum(np.searchsorted(time, rows.get_column("time").to_numpy()), len(time) - 1)
-    beside = time[places] == rows.get_column("time").to_numpy()
-    rows, frames = rows.filter(beside), places[beside]
+    matched = time[places] == rows.get_column("time").to_numpy()
+    rows, frames = rows.filter(matched), places[matched]
     if rows.is_empty():
         return
     table = rows.select("time", *_STATE).to_numpy()
@@ -114,14 +114,14 @@ def _runs(rows: pl.DataFrame, time: Array, q: Array, w: Array) -> Iterator[Fligh
         if stop - start < 2:
             continue
         angle = np.sqrt(np.sum(error[start:stop] ** 2, axis=-1))
-        over = np.flatnonzero(angle > PARTED)
+        over = np.flatnonzero(angle > DIVERGED)
         own = start + _places(stop - start)
-        yield Flight(
+        yield RunAttitudes(
             **dict(zip(_RUN, key, strict=True)),
             frames=frames[own],
             error=error[own],
             spin=spin[own],
-            parts=float(table[start + over[0], 0]) if len(over) else None,
+            diverges=float(table[start + over[0], 0]) if len(over) else None,
             largest=float(angle.max()),
             end=float(table[stop - 1, 0]),
         )
@@ -133,10 +133,12 @@ def _places(count: int) -> Array:
     return np.unique(np.linspace(0, count - 1, min(count, FRAMES)).round().astype(int))
 
 
-def _thinned(truth: str, time: Array, q: Array, w: Array, runs: tuple[Flight, ...]) -> Flights:
-    """The exact frames that a run stands beside, and some of its own: no other is kept."""
+def _thinned(
+    truth: str, time: Array, q: Array, w: Array, runs: tuple[RunAttitudes, ...]
+) -> Attitudes:
+    """The exact frames at which a run has a sample, and some more: no other is kept."""
     kept = np.unique(np.concatenate([_places(len(time)), *(run.frames for run in runs)]))
     place = np.zeros(len(time), dtype=int)
     place[kept] = np.arange(len(kept))
     moved = tuple(replace(run, frames=place[run.frames]) for run in runs)
-    return Flights(truth, time[kept], q[kept], w[kept], moved)
+    return Attitudes(truth, time[kept], q[kept], w[kept], moved)

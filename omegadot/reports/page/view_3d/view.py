@@ -1,4 +1,4 @@
-"""What the page's tumbling bodies are drawn from: shapes as JSON, attitudes as 16-bit codes.
+"""What the page's 3-D view is drawn from: shapes as JSON, attitudes as 16-bit codes.
 
 An engine's attitude travels as the rotation from the exact attitude to it, which is zero to the
 code's step wherever the engine is right: so the runs of a whole record take a few score kB.
@@ -18,17 +18,20 @@ from omegadot.reports.charts.divergence import system_from
 from omegadot.reports.charts.packing import pack_codes, pack_json
 from omegadot.reports.charts.payload import Line, rank_of
 from omegadot.reports.page.templating import script
-from omegadot.reports.page.view_3d.attitudes import PARTED, Flight, Flights, flights_of
+from omegadot.reports.page.view_3d.attitudes import DIVERGED, Attitudes, RunAttitudes, attitudes_of
 from omegadot.reports.page.view_3d.bodies import look_of
-from omegadot.reports.page.view_3d.shapes import shape
+from omegadot.reports.page.view_3d.three_js import packed_three
 from omegadot.reports.record.record import Record
 from omegadot.reports.text.numbers import knob
 
 # A unit, half a turn, and this many times the scenario's greatest omega each have code 32767.
 _LARGEST = 32767
 _SPINS = 8.0
-# One idea a file; what comes first is spoken of by what comes after.
-_SCRIPTS = ("unpack", "see_turns", "see_draw", "see_polhode", "see_stage", "see_clock", "see")
+# One idea a file; what comes first is used by what comes after.
+_SCRIPTS = (
+    *("unpack", "view_trajectory", "view_shapes", "view_scene", "view_polhode"),
+    *("view_canvas", "view_stage", "view_errors", "view_clock", "view"),
+)
 
 
 class Codes:
@@ -50,38 +53,39 @@ class Codes:
         return codes
 
 
-def see_part(
+def view_section(
     record: Record, charts: Mapping[str, Chart], lines: list[Line], anchors: Mapping[str, str]
 ) -> dict[str, Any]:
-    """What the template of "See it" takes: the scenarios' names, the packed data, the script."""
-    description, codes = see_payload(record, charts, lines)
+    """What the template of the 3-D view takes: the scenarios' names, packed data, the script."""
+    description, codes = view_payload(record, charts, lines)
     for scenario in description["scenarios"]:
         scenario["anchor"] = anchors[scenario["name"]]
     return {
         "scenarios": description["scenarios"],
-        "parted": description["parted"],
+        "diverged": description["diverged"],
+        "three": packed_three() if description["scenarios"] else "",
         "data": pack_json(description),
         "codes": pack_codes(codes),
         "js": script(_SCRIPTS),
     }
 
 
-def see_payload(
+def view_payload(
     record: Record, charts: Mapping[str, Chart], lines: list[Line]
 ) -> tuple[dict[str, Any], Array]:
     """The script's description of every body and run, and all their codes in a row.
 
     Each scenario's codes begin with its exact solution, w x y z of the attitude and then omega,
     one row of as many codes as it has times each. A run is ``[line, rank, knob, frames, start,
-    count, parts, largest, end]``: six rows of `count` codes from `start`, the rotation from the
+    count, diverges, largest, end]``: six rows of `count` codes from `start`, the rotation from the
     exact attitude and omega less the exact one, at the exact times numbered in ``frames``.
     """
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
-    flights = flights_of(record.trajectories)
+    attitudes = attitudes_of(record.trajectories)
     scenarios: list[dict[str, Any]] = []
     codes = Codes()
     for entry in record.run["scenarios"]:
-        own, chart = flights.get(entry["name"]), charts.get(entry["name"])
+        own, chart = attitudes.get(entry["name"]), charts.get(entry["name"])
         if own is None or chart is None or not entry.get("system"):
             continue
         look = look_of(
@@ -97,7 +101,7 @@ def see_payload(
             "coarse": own.coarse,
             "truth": own.truth,
             "pivot": entry["system"].get("pivot") is not None,
-            **shape(look),
+            **look.payload(),
         }
         codes.add(normalize(own.orientation), 1.0)
         codes.add(own.angular_velocity, fastest)
@@ -107,7 +111,7 @@ def see_payload(
         "lines": [
             {"name": line.name, "engine": line.engine, "colour": line.colour} for line in lines
         ],
-        "parted": float(np.rad2deg(PARTED)),
+        "diverged": float(np.rad2deg(DIVERGED)),
         "spins": _SPINS,
         "scenarios": scenarios,
     }
@@ -115,7 +119,7 @@ def see_payload(
 
 
 def _runs(
-    own: Flights,
+    own: Attitudes,
     chart: Chart,
     places: Mapping[tuple[str, str, str], int],
     codes: Codes,
@@ -142,6 +146,6 @@ def _runs(
     return {"frames": frames, "runs": sorted(runs, key=lambda entry: entry[:2])}
 
 
-def _reported(run: Flight) -> tuple[float | None, float, float]:
-    """When it parts, s, how far it gets, degrees, and when its samples end, s."""
-    return run.parts, float(f"{np.rad2deg(run.largest):.3g}"), run.end
+def _reported(run: RunAttitudes) -> tuple[float | None, float, float]:
+    """When it diverges, s, its largest error, degrees, and when its samples end, s."""
+    return run.diverges, float(f"{np.rad2deg(run.largest):.3g}"), run.end

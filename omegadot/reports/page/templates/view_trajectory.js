@@ -38,29 +38,29 @@ function columns(codes, start, count, width, largest) {
   return Array.from({ length: count }, (_, i) => row(i));
 }
 
-// Courses of attitude and omega: `time`, `q` and `w` by sample.
-function exactCourse({ codes, data }, scenario) {
+// Trajectories of attitude and omega: `time`, `q` and `w` by sample.
+function exactTrajectory({ codes, data }, scenario) {
   const count = scenario.times.length, q = columns(codes, scenario.start, count, 4, 1);
   const w = columns(codes, scenario.start + 4 * count, count, 3, scenario.fastest);
-  return { name: `exact, ${scenario.truth}`, knob: "", line: -1, time: scenario.times, q: q.map(normal), w, end: scenario.times.at(-1), parts: null, largest: 0 };
+  return { name: `exact, ${scenario.truth}`, knob: "", line: -1, time: scenario.times, q: q.map(normal), w, end: scenario.times.at(-1), diverges: null, largest: 0 };
 }
 const normal = (q) => q.map((part) => part / Math.hypot(...q));
-function runCourse({ codes, data }, scenario, exact, entry) {
-  const [line, rank, knob, clock, start, count, parts, largest, end] = entry;
+function runTrajectory({ codes, data }, scenario, exact, entry) {
+  const [line, rank, knob, clock, start, count, diverges, largest, end] = entry;
   const frames = scenario.frames[clock];
   const error = columns(codes, start, count, 3, Math.PI);
   const spin = columns(codes, start + 3 * count, count, 3, data.spins * scenario.fastest);
   return {
-    name: data.lines[line].name, knob, line, rank, parts, largest, end,
+    name: data.lines[line].name, knob, line, rank, diverges, largest, end,
     time: frames.map((f) => scenario.times[f]),
     q: frames.map((f, i) => product(exact.q[f], turnBy(error[i]))),
     w: frames.map((f, i) => plus(exact.w[f], spin[i])),
     error: error.map((e) => (Math.hypot(...e) * 180) / Math.PI),
   };
 }
-// A course at a time; after its last sample it stands still.
-function poseAt(course, time) {
-  const { time: t, q, w } = course;
+// A trajectory at a time; after its last sample it stands still.
+function poseAt(trajectory, time) {
+  const { time: t, q, w } = trajectory;
   if (time >= t.at(-1)) return { q: q.at(-1), w: w.at(-1), ended: time > t.at(-1) };
   let low = 0, high = t.length - 1;
   while (high - low > 1) {

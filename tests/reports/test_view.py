@@ -1,9 +1,11 @@
-"""The attitudes that travel to the page: right to their codes, and the time at which runs part."""
+"""The attitudes that travel to the page are right to their codes; runs diverge when they do."""
 
 import base64
 import gzip
+import io
 import json
 import math
+import zipfile
 from dataclasses import replace
 
 import numpy as np
@@ -20,8 +22,10 @@ from omegadot.reports import draw_page
 from omegadot.reports.charts.deviations import chart_deviations
 from omegadot.reports.charts.packing import pack_codes
 from omegadot.reports.charts.payload import lines_of
-from omegadot.reports.page.view_3d.attitudes import FRAMES, PARTED, flights_of
-from omegadot.reports.page.view_3d.view import see_payload
+from omegadot.reports.page.view_3d import view
+from omegadot.reports.page.view_3d.attitudes import DIVERGED, FRAMES, attitudes_of
+from omegadot.reports.page.view_3d.three_js import library_of, packed_three
+from omegadot.reports.page.view_3d.view import view_payload
 
 HALF = 0.5 / 32767
 
@@ -29,7 +33,7 @@ HALF = 0.5 / 32767
 def payload_of(record):
     charts = {name: chart for name, chart in chart_deviations(record).items() if chart.units}
     lines = lines_of(charts.values(), record.run["engines"])
-    return *see_payload(record, charts, lines), lines
+    return *view_payload(record, charts, lines), lines
 
 
 def column(record, engine, integrator, timestep, names):
@@ -83,10 +87,10 @@ def test_the_attitudes_that_travel_are_the_stored_ones(record):
         assert np.abs(2.0 + table[:, 5] * spins - stored[:, 5]).max() <= 1.01 * HALF * spins
 
 
-def test_a_run_parts_at_its_first_stored_sample_beyond_a_degree(record):
+def test_a_run_diverges_at_its_first_stored_sample_beyond_a_degree(record):
     found = {
         (run.engine, run.integrator, run.timestep): run
-        for run in flights_of(record.trajectories)["spun-again"].runs
+        for run in attitudes_of(record.trajectories)["spun-again"].runs
     }
     assert len(found) == 15
     for (engine, integrator, step), run in found.items():
@@ -97,18 +101,18 @@ def test_a_run_parts_at_its_first_stored_sample_beyond_a_degree(record):
         angle = 2 * np.arccos(
             np.minimum(1.0, np.abs(np.sum(stored * beside, axis=1) - stored[:, 0] ** 2))
         )
-        far = stored[angle > PARTED, 0]
-        assert run.parts == (far[0] if len(far) else None)
+        far = stored[angle > DIVERGED, 0]
+        assert run.diverges == (far[0] if len(far) else None)
         # arccos near one is good to the root of rounding.
         assert run.largest == pytest.approx(angle.max(), abs=1e-7)
     # Late by 2 * 0.3 * 0.02 t, and sampled every 0.1 s.
-    assert found["dart", "semi-implicit", 0.02].parts == pytest.approx(1.5)
-    assert found["mujoco", "RK4", 0.02].parts is None
+    assert found["dart", "semi-implicit", 0.02].diverges == pytest.approx(1.5)
+    assert found["mujoco", "RK4", 0.02].diverges is None
 
 
 def test_a_long_run_is_thinned_and_its_numbers_are_of_all_samples():
     record = build(engines={"dart": {"semi-implicit": 1}}, steps=(0.002,), samples=1000)
-    thinned = flights_of(record.trajectories)["spun-again"]
+    thinned = attitudes_of(record.trajectories)["spun-again"]
     (run,) = thinned.runs
     assert len(run.frames) == FRAMES
     assert len(thinned.time) == FRAMES
@@ -119,8 +123,8 @@ def test_a_long_run_is_thinned_and_its_numbers_are_of_all_samples():
     odd = column(jolted, "dart", "semi-implicit", 0.002, ["qw"])
     assert 0.02 in odd[:, 0]
     assert 0.02 not in thinned.time
-    (run,) = flights_of(jolted.trajectories)["spun-again"].runs
-    assert run.parts == 0.02
+    (run,) = attitudes_of(jolted.trajectories)["spun-again"].runs
+    assert run.diverges == 0.02
 
 
 def test_a_run_that_blew_up_ends_where_it_did(record):
@@ -128,14 +132,14 @@ def test_a_run_that_blew_up_ends_where_it_did(record):
     for time in (2.0, 3.0):
         where = {"engine": "dart", "scenario": "spun-again", "time": time}
         broken = with_rows(broken, {"qx": float("nan")}, **where)
-    runs = flights_of(broken.trajectories)["spun-again"].runs
+    runs = attitudes_of(broken.trajectories)["spun-again"].runs
     ends = {run.engine: run.end for run in runs if run.timestep == 0.02}
     assert ends == {"reference": 4.0, "mujoco": 4.0, "dart": pytest.approx(1.9)}
 
 
 def test_samples_without_an_exact_one_are_not_shown(record):
     moved = with_rows(record, {"time": pl.col("time") + 1e-4}, engine="dart", time=2.0)
-    runs = flights_of(moved.trajectories)["sphere"].runs
+    runs = attitudes_of(moved.trajectories)["sphere"].runs
     counts = {run.engine: len(run.frames) for run in runs if run.timestep == 0.02}
     assert counts["dart"] == counts["mujoco"] - 1
 
@@ -143,17 +147,17 @@ def test_samples_without_an_exact_one_are_not_shown(record):
 def test_the_closed_form_is_preferred_to_the_series(record):
     exact = record.trajectories.filter(pl.col("engine") == "exact")
     series = exact.with_columns(integrator=pl.lit("series"), qw=-pl.col("qz"), qz=pl.col("qw"))
-    both = flights_of(pl.concat([series, record.trajectories]))
+    both = attitudes_of(pl.concat([series, record.trajectories]))
     assert both["sphere"].truth == "closed-form"
     assert max(run.largest for run in both["sphere"].runs) < 0.1
     alone = pl.concat([series, record.trajectories.filter(pl.col("engine") != "exact")])
-    assert flights_of(alone)["sphere"].truth == "series"
+    assert attitudes_of(alone)["sphere"].truth == "series"
 
 
 def test_a_body_that_turns_far_between_samples_is_said_to(record):
-    assert not flights_of(record.trajectories)["sphere"].coarse
+    assert not attitudes_of(record.trajectories)["sphere"].coarse
     fast = with_rows(record, {"wz": pl.lit(20.0)}, engine="exact")
-    assert flights_of(fast.trajectories)["sphere"].coarse
+    assert attitudes_of(fast.trajectories)["sphere"].coarse
 
 
 def test_scenarios_without_truth_or_system_are_left_out(record):
@@ -162,13 +166,48 @@ def test_scenarios_without_truth_or_system_are_left_out(record):
     description, _, _ = payload_of(record)
     assert [scenario["name"] for scenario in description["scenarios"]] == ["spun-again"]
     lone = record.trajectories.filter(pl.col("engine") != "exact")
-    assert flights_of(lone) == {}
+    assert attitudes_of(lone) == {}
 
 
 def test_a_page_without_attitudes_has_no_such_part(record):
     page = draw_page(replace(record, trajectories=record.trajectories.clear()))
-    assert 'id="see"' not in page
-    assert 'href="#see"' not in page
+    assert 'id="view"' not in page
+    assert 'href="#view"' not in page
+
+
+def viewer_of(page):
+    kept = io.BytesIO()
+    with zipfile.ZipFile(kept, "w") as archive:
+        archive.writestr("viewer.html.template", page)
+    return kept.getvalue()
+
+
+def test_the_library_is_the_first_script_of_trimeshs_viewer_alone():
+    build = 'CapsuleGeometry;Object.defineProperty(t,"__esModule",{value:!0})}));'
+    packed = library_of(viewer_of(f"<html><script>{build}\nloader();</script><script>x"))
+    assert gzip.decompress(base64.b64decode(packed)).decode() == build
+    library = gzip.decompress(base64.b64decode(packed_three())).decode()
+    assert "WebGLRenderer" in library
+    assert "GLTFLoader(" not in library
+    assert len(packed_three()) < 250_000
+
+
+@pytest.mark.parametrize(
+    "archive",
+    [
+        b"no archive",
+        viewer_of("<script>modern();</script>"),
+        viewer_of('<script>old;Object.defineProperty(t,"__esModule",{value:!0})}));</script>'),
+    ],
+    ids=["broken", "of another kind", "too old"],
+)
+def test_where_trimesh_ships_no_such_library_the_page_does_without(record, monkeypatch, archive):
+    assert library_of(archive) == ""
+    monkeypatch.setattr(view, "packed_three", lambda: library_of(archive))
+    page = draw_page(record)
+    assert "The 3-D view is left out: the installed trimesh ships no three.js" in page
+    assert 'id="view-data"' not in page
+    assert 'href="#view"' in page
 
 
 def test_the_page_names_every_scenario_and_escapes_it(record):
@@ -177,10 +216,10 @@ def test_the_page_names_every_scenario_and_escapes_it(record):
     rows = record.trajectories
     again = rows.filter(pl.col("scenario") == "sphere").with_columns(scenario=pl.lit(hostile))
     page = draw_page(replace(record, trajectories=pl.concat([rows, again])))
-    select = page.split('<select id="see-scenario">')[1].split("</select>")[0]
+    select = page.split('<select id="view-scenario">')[1].split("</select>")[0]
     assert "&lt;/script&gt;&lt;b onclick=x&gt;</option>" in select
     assert "<b" not in select
-    data = page.split('id="see-data">')[1].split("</script>")[0]
+    data = page.split('id="view-data">')[1].split("</script>")[0]
     names = json.loads(gzip.decompress(base64.b64decode(data)))["scenarios"]
     assert [scenario["name"] for scenario in names] == [hostile, "sphere", "spun-again"]
 

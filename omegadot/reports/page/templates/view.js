@@ -1,0 +1,148 @@
+// The controls of the 3-D view.
+// Of each engine one integrator to begin with: the first's least exact, the second's most exact...
+function firstRuns(scenario) {
+  const { lines } = loaded.data, engines = new Map();
+  for (const [line, rank, , , , , , largest] of scenario.runs) {
+    if (!engines.has(lines[line].engine)) engines.set(lines[line].engine, []);
+    engines.get(lines[line].engine).push({ line, rank, largest });
+  }
+  const own = [...engines.keys()], others = own.filter((name) => name !== "reference");
+  return (others.length ? others : own).slice(0, 3).map((name, k) => {
+    const coarsest = Math.max(...engines.get(name).map((run) => run.rank));
+    const runs = engines.get(name).filter((run) => run.rank === coarsest);
+    return runs.sort((a, b) => (k % 2 ? 1 : -1) * (a.largest - b.largest) || a.line - b.line)[0].line;
+  });
+}
+
+function choose() {
+  const number = Number(element("view-scenario").value), scenario = loaded.data.scenarios[number];
+  const fresh = scenario !== show.scenario;
+  if (fresh) {
+    scenario.geometry ??= geometryOf(scenario.body);
+    exact = exactTrajectory(loaded, scenario);
+    // It opens at the end, where the runs are farthest apart; playing begins at the start.
+    Object.assign(show, { scenario, time: exact.end, playing: false });
+    element("view-play").textContent = "Play";
+    element("view-time").max = exact.end;
+    element("view-time").step = exact.end / 1000;
+    scenario.tipOverReach ??= times(scenario.tip, 1 / scenario.geometry.reach);
+    offer(scenario);
+  }
+  const rank = Number(element("view-step").value || 0);
+  const picked = [...document.querySelectorAll(".view-engine")].map((select) => Number(select.value)).filter((line) => line >= 0);
+  const trajectories = [...new Set(picked)].map((line) => {
+    const own = scenario.runs.filter((entry) => entry[0] === line), most = Math.max(...own.map((entry) => entry[1]));
+    return runTrajectory(loaded, scenario, exact, own.find((entry) => entry[1] === Math.min(rank, most)) ?? own[0]);
+  });
+  clearScenes(show);
+  show.shown = [exact, ...trajectories].map((trajectory) => ({ trajectory, ...listed(trajectory) }));
+  element("view-runs").replaceChildren(...show.shown.map((one) => one.item));
+  element("view-description").textContent = `${scenario.title}: ${scenario.description}, ${scenario.pivot ? "held at its pivot" : "its centre of mass kept in the middle"}; the world's z axis is up.`
+    + (scenario.coarse ? " It turns by more than a right angle between stored samples: what is shown between them is a guess." : "");
+  element("view-charts").href = `#${scenario.anchor}`;
+  tabulate(scenario);
+  settle();
+  announce(fresh ? `${scenario.title}.` : "");
+}
+
+function listed(trajectory) {
+  const swatch = made("i", { ariaHidden: "true" }), number = made("span");
+  const item = made("li", {}, swatch, made("b", { textContent: fullName(trajectory) }), " ", number);
+  const content = { textContent: trajectory.line < 0 ? "" : divergenceOf(trajectory) };
+  const there = () => { if (show.playing) play(false); goTo(trajectory.diverges); announce(`${trajectory.name} ${divergenceOf(trajectory)}.`); };
+  item.append(" ", trajectory.diverges === null ? made("span", content) : made("button", { ...content, type: "button", onclick: there }));
+  return { item, swatch, number };
+}
+
+function offer(scenario) {
+  const { lines } = loaded.data, there = [...new Set(scenario.runs.map((entry) => entry[0]))], first = firstRuns(scenario);
+  document.querySelectorAll(".view-engine").forEach((select, k) => {
+    const kept = select.options.length && (there.includes(Number(select.value)) || select.value === "-1") ? Number(select.value) : first[k] ?? -1;
+    const option = (text, value) => new Option(text, value, false, value === kept);
+    select.replaceChildren(option("none", -1), ...there.map((line) => option(lines[line].name, line)));
+  });
+}
+
+function tabulate(scenario) {
+  const rows = scenario.runs.map(([line, , knob, , , , diverges, largest, end]) => {
+    const cells = [knob, diverges === null ? "does not" : seconds(diverges), exactly(largest), seconds(end)];
+    const head = made("th", { scope: "row", textContent: loaded.data.lines[line].name });
+    return made("tr", {}, head, ...cells.map((text) => made("td", { textContent: text })));
+  });
+  element("view-table").tBodies[0].replaceChildren(...rows);
+}
+
+function settle() {
+  const checked = (id) => element(id).checked;
+  show.options = { overlaid: checked("view-overlaid"), polhode: checked("view-polhode"), trace: checked("view-trace"), vectors: vectorsOf(show.scenario) };
+  render();
+}
+
+async function begin() {
+  const [library, data, codes] = await Promise.all([
+    unpack("three-data").then((r) => r.text()),
+    unpack("view-data").then((r) => r.json()),
+    unpack("view-codes").then((r) => r.arrayBuffer()),
+  ]);
+  document.head.append(made("script", { textContent: library }));
+  startWebgl();
+  noteWebgl();
+  loaded = { data, codes: new Int16Array(undifference(new Uint8Array(codes)).buffer) };
+  choose();
+  measure();
+  connect();
+  box.dataset.ready = "1";
+}
+
+function connect() {
+  const page = element("step"), own = element("view-step");
+  element("view-scenario").addEventListener("change", choose);
+  document.querySelectorAll(".view-engine").forEach((select) => select.addEventListener("change", choose));
+  // One step for the whole page: a change here is a change there.
+  own.addEventListener("change", () => {
+    if (page && page.value !== own.value) { page.value = own.value; page.dispatchEvent(new Event("change", { bubbles: true })); } else choose();
+  });
+  page?.addEventListener("change", () => { own.value = page.value; choose(); });
+  document.querySelectorAll(".view-option").forEach((input) => input.addEventListener("change", settle));
+  element("view-play").addEventListener("click", () => play(!show.playing));
+  element("view-time").addEventListener("input", (event) => { if (show.playing) play(false); goTo(Number(event.target.value)); });
+  element("view-time").addEventListener("change", () => announce(""));
+  for (const [id, angle] of [["view-turn", "azimuth"], ["view-tilt", "tilt"]]) {
+    element(id).addEventListener("input", (event) => { show[angle] = Number(event.target.value); render(); });
+  }
+  night.addEventListener("change", measure);
+  new ResizeObserver(measure).observe(box);
+  drag(element("view-stage"));
+}
+
+function drag(stage) {
+  let from = null;
+  stage.addEventListener("pointerdown", (event) => { from = [event.clientX, event.clientY, show.azimuth, show.tilt]; stage.setPointerCapture(event.pointerId); });
+  stage.addEventListener("pointerup", () => { from = null; });
+  stage.addEventListener("pointercancel", () => { from = null; });
+  stage.addEventListener("pointermove", (event) => {
+    if (!from) return;
+    const turned = from[2] - (event.clientX - from[0]) * 0.5;
+    show.azimuth = ((((turned + 180) % 360) + 360) % 360) - 180;
+    show.tilt = Math.max(-85, Math.min(85, from[3] + (event.clientY - from[1]) * 0.5));
+    element("view-turn").value = show.azimuth;
+    element("view-tilt").value = show.tilt;
+    render();
+  });
+}
+
+if (box) {
+  box.hidden = false;
+  let begun = false;
+  const beginOnce = () => {
+    if (begun) return;
+    begun = true;
+    begin().catch((error) => { console.error(error); element("view-description").textContent = `The bodies cannot be drawn in this browser (${error.message}).`; });
+  };
+  new IntersectionObserver((entries) => {
+    show.visible = entries.at(-1).isIntersecting;
+    if (show.visible) beginOnce();
+    run();
+  }, { rootMargin: "100px 0px" }).observe(box);
+  addEventListener("load", () => (window.requestIdleCallback ?? setTimeout)(beginOnce)); // for print
+}
