@@ -48,6 +48,7 @@ class Solid:
 
 def solid_of(part: Part, middle: Array, point_radius: float) -> Solid:
     """A part, seen from the picture's `middle`; a point is drawn as a ball of `point_radius`, m."""
+    size: tuple[float, ...]
     match part:
         case Box():
             shape, size = "box", part.size
