@@ -12,7 +12,7 @@ from omegadot.reports.page.view_3d.solids import Solid, solid_of
 from omegadot.scenarios.parts import SHAPES
 from omegadot.scenarios.solids import volume
 
-SIDES, SIZE, REACH, EYE = 48, 240, 1.2, 6.0
+SIDES, SIZE, REACH, EYE = 48, 240, 1.3, 6.0
 EPS32 = float(np.finfo(np.float32).eps)
 STILL = np.array([1.0, 0.0, 0.0, 0.0])
 PLACED = {"position": (0.1, -0.2, 0.3), "orientation": (0.8, 0.2, 0.4, 0.4), "density": 2.0}

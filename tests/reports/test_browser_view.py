@@ -233,6 +233,20 @@ def test_every_option_changes_the_picture(page):
     assert page.messages == []
 
 
+def test_dragging_turns_and_tilts_the_view_as_its_sliders_do(page):
+    x, y = page.evaluate(
+        "(() => { const b = document.getElementById('view-stage').getBoundingClientRect();"
+        " return [b.x + 200, b.y + 150]; })()"
+    )
+    before = page.evaluate(PICTURE)
+    for kind, dx, dy in (("Pressed", 0, 0), ("Moved", 60, 20), ("Released", 60, 20)):
+        page.call("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x + dx, y=y + dy,
+                  button="left", buttons=int(kind != "Released"), clickCount=1)  # fmt: skip
+    sliders = "['turn', 'tilt'].map((n) => Number(document.getElementById(`view-${n}`).value))"
+    assert page.evaluate(sliders) == [35 - 30, 22 + 10]
+    assert page.evaluate(PICTURE) != before
+
+
 def test_the_step_is_that_of_the_whole_page(page):
     choose(page, "view-step", "2")
     assert page.evaluate("document.getElementById('step').value") == "2"

@@ -243,7 +243,7 @@ def test_paper_gets_every_chart_and_the_bodies(browser, path):
     browser.messages.clear()
     browser.open(path, width=1000, height=200)
     browser.wait(
-        "typeof Plotly !== 'undefined' && document.getElementById('see-box').dataset.ready"
+        "typeof Plotly !== 'undefined' && document.getElementById('view-box').dataset.ready"
     )
     assert browser.evaluate("document.querySelectorAll('.chart:empty').length") > 0
     browser.evaluate("dispatchEvent(new Event('beforeprint'))")

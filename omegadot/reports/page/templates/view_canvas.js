@@ -1,6 +1,6 @@
 // From a scene to a canvas: by WebGL, or where there is none, triangle by triangle.
 const EYE = 6;
-const REACH = 1.2;
+const REACH = 1.3;
 
 // The camera of a cell. `place` is its projection, for what is written over the picture.
 function cameraOf(azimuth, height, cell) {

@@ -27,13 +27,13 @@ function divergenceOf(trajectory) {
   return `stays within ${loaded.data.diverged}° of the exact solution (largest error ${exactly(trajectory.largest)})`;
 }
 
-// H = R I omega and omega, world axes, each over the exact one's greatest.
+// H = R I omega and omega, world axes, each over the exact one's greatest: long enough to leave the body.
 function vectorsOf(scenario) {
   const momentum = (w) => across(scenario.inertia, w), most = (list) => Math.max(...list.map((v) => Math.hypot(...v))) || 1;
   const [h, spin] = [most(exact.w.map(momentum)), most(exact.w)];
   return (q, w) => [
-    ...(element("view-momentum").checked ? [[times(rotate(q, momentum(w)), 0.95 / h), "H", false]] : []),
-    ...(element("view-omega").checked ? [[times(rotate(q, w), 0.8 / spin), "ω", true]] : []),
+    ...(element("view-momentum").checked ? [[times(rotate(q, momentum(w)), 1.1 / h), "H", false]] : []),
+    ...(element("view-omega").checked ? [[times(rotate(q, w), 0.95 / spin), "ω", true]] : []),
   ];
 }
 

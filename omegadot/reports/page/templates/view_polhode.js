@@ -6,8 +6,8 @@ const pierced = (axes, w) => times(w, 1 / (Math.hypot(...onUnitBall(axes, w)) ||
 function polhodeOf(scenario, shown, theme) {
   const { scene, sun } = litScene(), axes = axesOf(scenario.ellipsoid), [a, b, c] = axes;
   const ball = new THREE.SphereGeometry(1, 2 * detail.sides, detail.sides).applyMatrix4(new THREE.Matrix4().makeBasis(vector(a), vector(b), vector(dot(cross(a, b), c) < 0 ? times(c, -1) : c)));
-  scene.add(new THREE.Mesh(ball, surface({ color: new THREE.Color(theme.shade).lerp(new THREE.Color(theme.soft), 0.25), shininess: 10 })));
-  for (const [one, two] of [[a, b], [b, c], [c, a]]) scene.add(seenThrough(tube(ring((x, y) => plus(times(one, x), times(two, y))), 0.005, true), theme.rule));
+  scene.add(new THREE.Mesh(ball, surface({ color: theme.rule, shininess: 10 })));
+  for (const [one, two] of [[a, b], [b, c], [c, a]]) scene.add(seenThrough(tube(ring((x, y) => plus(times(one, x), times(two, y))), 0.005, true), theme.soft));
   const runs = shown.map(({ trajectory, colour }, k) => {
     // The exact curve is the broadest and lies lowest, so that one that agrees with it is seen too.
     const exactOne = trajectory.line < 0, lift = 1 + 0.005 * k, line = tube(trajectory.w.map((w) => times(pierced(axes, w), lift)), 0.015 - 0.002 * k);

@@ -21,13 +21,13 @@ function reshape(group, geometry) {
   for (const mesh of group.children) mesh.geometry = geometry;
 }
 
-// An arrow from the origin; a dashed one is told apart without its colour.
+// An arrow from the origin. A dashed one needs no colour to be distinguished.
 const HEAD = 0.13;
 function arrow(colour, dashed) {
   const group = new THREE.Group(), shaft = new THREE.Group(), pieces = dashed ? 7 : 1, length = (dashed ? 0.6 : 1) / pieces;
   const rod = new THREE.CylinderGeometry(0.014, 0.014, length, 12).rotateX(quarter);
   for (let k = 0; k < pieces; k++) {
-    const piece = seenThrough(rod, colour);
+    const piece = seenThrough(rod, colour, 0.45);
     piece.position.z = k / pieces + length / 2;
     shaft.add(piece);
   }

@@ -80,13 +80,13 @@ function jobOf(one, outer, show, theme) {
 // Beyond an arrow's head and to one side of it, in the canvas.
 function besideHead(camera, end, side) {
   const [[x, y], [u, v]] = [camera.place([0, 0, 0]), camera.place(end)], length = Math.hypot(u - x, v - y) || 1;
-  const [dx, dy] = [(9 * (u - x)) / length, (9 * (v - y)) / length];
-  return [u + dx + side * dy, v + dy - side * dx];
+  const [dx, dy] = [(u - x) / length, (v - y) / length];
+  return [u + 2 * dx + 13 * side * dy, v + 2 * dy - 13 * side * dx];
 }
 function polhodeJob(outer, show, theme) {
   const cell = inner(outer), camera = cameraOf(show.azimuth, show.tilt, cell), scene = (show.polhode ??= polhodeOf(show.scenario, show.shown, theme));
   scene.set(show.time);
-  return { cell, camera, scene, labels: scene.ends(camera).map(([end, label]) => [camera.place(end), label, theme.soft]) };
+  return { cell, camera, scene, labels: scene.ends(camera).map(([end, label]) => [camera.place(end), label, theme.ink]) };
 }
 
 function caption(context, cell, together, show, theme) {
