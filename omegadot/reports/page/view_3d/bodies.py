@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
-from scipy.spatial.transform import Rotation
 
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.system import Array, System
 from omegadot.reports.page.view_3d.solids import Solid, solid_of
+from omegadot.scenarios.links.turns import quaternion_of
 from omegadot.scenarios.parts import Part
 from omegadot.scenarios.solids import mass
 
@@ -22,7 +22,6 @@ _THINNEST = 0.02
 # Moments this close, relative to the largest, are drawn as equal.
 _ALIKE = 1e-5
 _PARTS = TypeAdapter(tuple[Part, ...])
-_UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 @dataclass(frozen=True)
@@ -97,7 +96,7 @@ def _of_inertia(system: System) -> tuple[tuple[Solid, ...], str]:
     axes = axes[:, order]
     if np.linalg.det(axes) < 0:
         axes = axes * [-1.0, 1.0, 1.0]
-    turned = Rotation.from_matrix(axes).as_quat()[[3, 0, 1, 2]]
+    turned = np.array(quaternion_of(axes))
     centre = lever(system)
     solid = Solid(shape, size, centre, turned)
     description = f"drawn as the homogeneous {name} of its mass and inertia"
