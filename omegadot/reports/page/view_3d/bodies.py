@@ -10,9 +10,9 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from omegadot.reference_impl.inertia import lever, moving_inertia
+from omegadot.reference_impl.schemes.short_turns_euler import quaternion_read
 from omegadot.reference_impl.system import Array, System
 from omegadot.reports.page.view_3d.solids import Solid, solid_of
-from omegadot.scenarios.links.turns import quaternion_of
 from omegadot.scenarios.parts import Part
 from omegadot.scenarios.solids import mass
 
@@ -96,7 +96,7 @@ def _of_inertia(system: System) -> tuple[tuple[Solid, ...], str]:
     axes = axes[:, order]
     if np.linalg.det(axes) < 0:
         axes = axes * [-1.0, 1.0, 1.0]
-    turned = np.array(quaternion_of(axes))
+    turned = quaternion_read(axes)
     centre = lever(system)
     solid = Solid(shape, size, centre, turned)
     description = f"drawn as the homogeneous {name} of its mass and inertia"
