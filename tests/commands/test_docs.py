@@ -81,7 +81,7 @@ def test_the_versions_of_python_are_the_same_everywhere() -> None:
     assert project["requires-python"] == f">=3.{minors[0]},<3.{minors[-1] + 1}"
     readme = " ".join((ROOT / "README.md").read_text().split())
     *others, last = (f"3.{minor}" for minor in minors)
-    assert f"On a machine with Python {', '.join(others)} or {last}" in readme
+    assert f"with Python {', '.join(others)} or {last}" in readme
     assert f"with CPython {', '.join(others)} and {last}" in readme
 
 
