@@ -1,7 +1,8 @@
-"""Option types that several commands share."""
+"""What the commands' arguments share: option types, and how a command was started."""
 
 from __future__ import annotations
 
+import sys
 from enum import StrEnum
 
 
@@ -25,3 +26,13 @@ class Setup(StrEnum):
 
     physics = "physics"
     as_shipped = "as-shipped"
+
+
+def command_line() -> list[str]:
+    """The command as it was typed, for what is stored of it."""
+    return ["omegadot", *sys.argv[1:]]
+
+
+def on_a_terminal() -> bool:
+    """Whether a person sees standard error: how far a command is goes nowhere else."""
+    return sys.stderr.isatty()

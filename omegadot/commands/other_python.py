@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import omegadot
 from omegadot.harness.usage import UsageError, nearest
@@ -25,20 +25,25 @@ def worker_command(python: str) -> list[str]:
     return [python, "-c", _SERVE.format(init=omegadot.__file__)]
 
 
-def interpreters(arguments: Sequence[str], engines: Sequence[str]) -> dict[str, str]:
+def interpreters(arguments: Sequence[str]) -> dict[str, str]:
     """The interpreters of ``NAME=PATH`` arguments, by engine. Raises UsageError."""
     found: dict[str, str] = {}
     for argument in arguments:
         name, separator, path = argument.partition("=")
         if not separator or not path:
             raise UsageError(f"--python {argument}: give NAME=PATH, an engine and its interpreter.")
-        if name not in engines:
-            raise UsageError(
-                f"--python {argument}: {name!r} is not among the engines; {nearest(name, engines)}."
-            )
-        if shutil.which(path) is None:
-            raise UsageError(
-                f"--python {argument}: {path} is no program; give a Python interpreter."
-            )
         found[name] = path
     return found
+
+
+def checked_interpreters(pythons: Mapping[str, str], engines: Sequence[str]) -> Mapping[str, str]:
+    """The interpreters, each of one of the engines and a program. Raises UsageError."""
+    for name, path in pythons.items():
+        where = f"--python {name}={path}"
+        if name not in engines:
+            raise UsageError(
+                f"{where}: {name!r} is not among the engines; {nearest(name, engines)}."
+            )
+        if shutil.which(path) is None:
+            raise UsageError(f"{where}: {path} is no program; give a Python interpreter.")
+    return pythons

@@ -1,23 +1,36 @@
-"""Wrong usage, reported in one sentence, and what is made of the arguments."""
+"""What is made of a command's arguments, typed or passed by a script: engines and cases."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import TypeVar
 
 from omegadot.adapters.protocol import Description
 from omegadot.adapters.registry import registered
 from omegadot.gates.case import Case, sweep_of
+from omegadot.harness.engine_target import EngineLike, is_target, target_of
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
-from omegadot.scenarios import Scenario, builtin_names, find_scenario
+from omegadot.scenarios import Scenario, ScenarioLike, builtin_names, scenario
+
+T = TypeVar("T")
 
 
-def adapters_named(extra: Sequence[str]) -> dict[str, str]:
+def several(given: T | Sequence[T]) -> list[T]:
+    """One argument, or a sequence of them, as a list; a text, a table or a class is one."""
+    if isinstance(given, str | PathLike | Mapping | type) or not isinstance(given, Sequence):
+        return [given]
+    return list(given)
+
+
+def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:
     """Targets by engine name: the class's, in lower case, without Adapter. Raises UsageError."""
     found = {}
-    for target in extra:
+    for adapter in extra:
+        target = target_of(adapter)
         _, separator, name = target.rpartition(":")
         if not separator or not name:
             raise UsageError(
@@ -27,18 +40,23 @@ def adapters_named(extra: Sequence[str]) -> dict[str, str]:
     return found
 
 
-def engine_choices(wanted: Sequence[str], extra: Sequence[str] = ()) -> list[EngineChoice]:
-    """The engines of ``NAME[:INTEGRATOR]`` arguments; every one registered when there is none.
+def engine_choices(
+    wanted: Sequence[EngineLike], extra: Sequence[EngineLike] = ()
+) -> list[EngineChoice]:
+    """The engines given, by ``NAME[:INTEGRATOR]`` or by class; every one registered without any.
 
-    The same name may come several times with different integrators. Raises UsageError.
+    extra: engines of one's own, by class.  The same name may come several times with different
+    integrators. Raises UsageError.
     """
-    added = adapters_named(extra)
+    added = adapters_named([*extra, *(engine for engine in wanted if is_target(engine))])
     known = {**registered(), **added}
     if not wanted:
         chosen = added or known
         return [EngineChoice(name, target) for name, target in {**known, **chosen}.items()]
     picked: dict[str, list[str]] = {}
     for term in wanted:
+        if not isinstance(term, str) or is_target(term):
+            continue
         name, _, integrator = term.partition(":")
         if name not in known:
             raise UsageError(
@@ -63,21 +81,27 @@ def check_integrators(choice: EngineChoice, description: Description) -> None:
             )
 
 
-def scenarios_of(terms: Sequence[str]) -> list[Scenario]:
-    """The scenarios named, each a built-in's name or a path; all built-ins when there is none.
+def scenarios_of(terms: Sequence[ScenarioLike]) -> list[Scenario]:
+    """The scenarios given, each by name, path, tables or as one; all built-ins without any.
 
     Raises ScenarioError, and UsageError where two of them have the same name.
     """
-    found = [find_scenario(term) for term in terms or builtin_names()]
-    seen: dict[str, str] = {}
-    for term, scenario in zip(terms or builtin_names(), found, strict=True):
-        if scenario.name in seen:
+    seen: dict[str, Scenario] = {}
+    origin: dict[str, ScenarioLike] = {}
+    for term in terms or builtin_names():
+        found = scenario(term)
+        if found.name in seen:
             raise UsageError(
-                f"{term}: its name {scenario.name!r} is that of {seen[scenario.name]} too; "
-                "give every scenario of a run a name of its own."
+                f"{_origin(term)}: its name {found.name!r} is that of "
+                f"{_origin(origin[found.name])} too; give every scenario of a run a name of its "
+                "own."
             )
-        seen[scenario.name] = term
-    return found
+        seen[found.name], origin[found.name] = found, term
+    return list(seen.values())
+
+
+def _origin(term: ScenarioLike) -> str:
+    return str(term) if isinstance(term, str | PathLike) else "a scenario built in code"
 
 
 def case_of(scenario: Scenario, timesteps: Sequence[float]) -> Case:

@@ -1,5 +1,6 @@
 """What is run: scenario files, their model and the built-in cases."""
 
+from omegadot.scenarios.build import ScenarioLike, scenario
 from omegadot.scenarios.errors import ScenarioError
 from omegadot.scenarios.loader import (
     builtin_names,
@@ -13,9 +14,11 @@ from omegadot.scenarios.model import Scenario
 __all__ = [
     "Scenario",
     "ScenarioError",
+    "ScenarioLike",
     "builtin_names",
     "find_scenario",
     "load_builtin",
     "load_scenario",
+    "scenario",
     "scenario_of",
 ]

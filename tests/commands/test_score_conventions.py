@@ -14,7 +14,8 @@ from omegadot.commands.score.beside import exact_trajectory
 from omegadot.commands.score.convention import axes_of
 from omegadot.commands.score.judged import Making, judge_trace
 from omegadot.commands.score.read_table import read_table
-from omegadot.commands.score.score import Arguments, case_named, reading_of
+from omegadot.commands.score.score import case_given
+from omegadot.commands.score.settings import Declaration, reading_of
 
 TUMBLE = """
 schema = 1
@@ -109,7 +110,7 @@ def thrown(tmp_path_factory):
     """The scenario's file and the exact motion at the samples."""
     path = tmp_path_factory.mktemp("thrown") / "thrown.toml"
     path.write_text(TUMBLE)
-    case = case_named(str(path))
+    case = case_given(str(path))
     return path, case, exact_trajectory(case.system, case.initial)(TIMES)
 
 
@@ -166,10 +167,10 @@ def acceleration(case, exact):
 @given(how=CONVENTIONS)
 @settings(max_examples=40, derandomize=True, deadline=None)
 def test_every_convention_is_read_to_the_floor(thrown, tmp_path_factory, how):
-    scenario, case, exact = thrown
+    _, case, exact = thrown
     path = tmp_path_factory.getbasetemp() / "written.csv"
     write(path, how, case, exact)
-    arguments = Arguments(path, str(scenario), how.columns(), None, how.options())
+    arguments = Declaration(how.columns(), None, how.options())
     reading = reading_of(arguments, read_table(path))
     found = judge_trace(case, reading, Making())
     for channel, error in found.measured.error.items():
@@ -193,11 +194,11 @@ RIGHT = Written(
 
 @pytest.mark.parametrize("part", WRONG)
 def test_a_wrong_declaration_is_not_at_the_floor(thrown, tmp_path, part):
-    scenario, case, exact = thrown
+    _, case, exact = thrown
     path = tmp_path / "written.csv"
     write(path, RIGHT, case, exact)
     wrong = Written(**{**vars(RIGHT), part: WRONG[part]})
-    arguments = Arguments(path, str(scenario), wrong.columns(), None, wrong.options())
+    arguments = Declaration(wrong.columns(), None, wrong.options())
     found = judge_trace(case, reading_of(arguments, read_table(path)), Making())
     assert any(np.max(e) > 1e-3 for e in found.measured.error.values())
 

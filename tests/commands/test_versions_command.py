@@ -6,7 +6,6 @@ import json
 import os
 import re
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,8 @@ from chromium import Chromium
 from command_line import QUICK, Result, omegadot, quick_scenario
 from versioned_engine import ALL, TARGET, arguments
 
-from omegadot.commands.versions.versions import Arguments, compare_versions
+from omegadot.commands.versions.print_versions import exit_code, print_versions
+from omegadot.commands.versions.versions import versions as compare_versions
 from omegadot.harness.usage import UsageError
 from omegadot.reports.versions.sheet import sheet_of
 from omegadot.reports.versions.text import markdown_of, print_sheet
@@ -155,19 +155,26 @@ def test_what_is_not_as_declared_is_named(seen: tuple[Path, Any]) -> None:
     assert ("1.8", faults["1.8"][0]) in sheet_of(seen[1]).wrong
 
 
-def looked(folder: Path, *versions: str, **more: Any) -> Arguments:
-    """The words of a command over releases of the engine, without their timings."""
-    requested = {"integrators": ["step"], "speed": False, **more}
-    scenario = str(quick_scenario(folder))
-    return Arguments(
-        "versioned",
-        arguments(folder, *versions),
-        [scenario],
-        adapter=TARGET,
-        installer=None,
-        cache=folder,
-        **requested,
-    )
+def looked(folder: Path, *versions: str, **more: Any) -> dict[str, Any]:
+    """The arguments over releases of the engine, without their timings."""
+    return {
+        "engine": "versioned",
+        "releases": arguments(folder, *versions),
+        "scenarios": quick_scenario(folder),
+        "integrators": "step",
+        "adapter": TARGET,
+        "offline": True,
+        "cache": folder,
+        "speed": False,
+        **more,
+    }
+
+
+def printed(form: str, **requested: Any) -> int:
+    """Compare, print, and give the exit code, as the command does."""
+    found = compare_versions(**requested)
+    print_versions(found, form)
+    return exit_code(found)
 
 
 @pytest.mark.parametrize(
@@ -183,7 +190,7 @@ def test_bisect_names_the_releases(
     metric: str,
     expected: list[tuple[str, str]],
 ) -> None:
-    assert compare_versions(looked(tmp_path, *ALL, bisect=metric), "json", None) == 0
+    assert printed("json", **looked(tmp_path, *ALL, bisect=metric)) == 0
     found = json.loads(capsys.readouterr().out)["bisect"]["found"]
     assert [(step["from"], step["to"]) for step in found] == expected
     assert all(step["changes"] for step in found)
@@ -191,7 +198,7 @@ def test_bisect_names_the_releases(
 
 def test_bisect_of_what_stays_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     requested = looked(tmp_path, *ALL, bisect="default timestep")
-    assert compare_versions(requested, "text", tmp_path / "out") == 1
+    assert printed("text", **requested, out=tmp_path / "out") == 1
     message = capsys.readouterr().out
     assert "the ends do not differ" in message
     assert "Releases run: 1.0 and 1.4." in message
@@ -201,10 +208,10 @@ def test_bisect_of_what_stays_says_so(tmp_path: Path, capsys: pytest.CaptureFixt
 def test_with_one_version_there_is_nothing_to_compare(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert compare_versions(looked(tmp_path, "1.0", "1.5", speed=True), "json", None) == 3
+    assert printed("json", **looked(tmp_path, "1.0", "1.5", speed=True)) == 3
     pace = json.loads(capsys.readouterr().out)["versions"][0]["seconds_per_step"]["step"]
     assert 0.0 < pace["least"] <= pace["median"] <= pace["most"]
-    assert compare_versions(looked(tmp_path, "1.0", "1.5", bisect="frame"), "text", None) == 3
+    assert printed("text", **looked(tmp_path, "1.0", "1.5", bisect="frame")) == 3
     assert "fewer than two versions" in capsys.readouterr().out
 
 
@@ -212,8 +219,8 @@ def test_an_interpreter_with_another_version_is_not_taken(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     requested = looked(tmp_path, "1.0", bisect="frame")
-    wrong = requested.releases[0].replace("1.0=", "1.3=")
-    assert compare_versions(replace(requested, releases=["9.9", wrong]), "json", None) == 3
+    wrong = requested["releases"][0].replace("1.0=", "1.3=")
+    assert printed("json", **{**requested, "releases": ["9.9", wrong]}) == 3
     record = json.loads(capsys.readouterr().out)
     reasons = {v["version"]: v["reason"] for v in record["versions"]}
     assert reasons["1.3"] == "the interpreter given for it has 1.0"
@@ -225,15 +232,15 @@ def test_an_interpreter_with_another_version_is_not_taken(
         ({"bisect": "order attitude stap"}, "no metric has the word 'stap'; write step"),
         ({"integrators": ["stap"]}, "write step"),
         ({"timestep": -1.0}, "not a positive number"),
-        ({"engine": "mujoko", "adapter": ""}, "write mujoco"),
-        ({"engine": "mujoco", "adapter": "", "package": "own"}, "give --adapter too"),
+        ({"engine": "mujoko", "adapter": None}, "write mujoco"),
+        ({"engine": "mujoco", "adapter": None, "package": "own"}, "give --adapter too"),
         ({"releases": ["1.0"]}, "at least two versions"),
         ({"releases": ["3.0..4.0"]}, "no release for this Python"),
     ],
 )
 def test_wrong_usage_is_one_sentence(tmp_path: Path, more: dict[str, Any], message: str) -> None:
     with pytest.raises(UsageError) as caught:
-        compare_versions(replace(looked(tmp_path, "1.0", "1.2"), **more), "text", None)
+        compare_versions(**looked(tmp_path, "1.0", "1.2", **more))
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
 

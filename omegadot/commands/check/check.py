@@ -1,105 +1,132 @@
-"""``omegadot check``: one engine through every check, as a table or as JSON."""
+"""``omegadot.check``: one engine through every check."""
 
 from __future__ import annotations
 
-import json
-import sys
-from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
-
-import typer
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
 
 from omegadot.adapters.registry import registered
-from omegadot.commands.check.print_checks import print_checks
+from omegadot.commands.check.generate import Subject
 from omegadot.commands.check.result import Check, Result
-from omegadot.commands.check.select import Arguments, Selection, select, target_of
+from omegadot.commands.check.select import Arguments, Selection, select
 from omegadot.commands.check.store import store
 from omegadot.commands.check.suite import Suite
-from omegadot.commands.check.tally import Tally, coverage
-from omegadot.harness.arguments import adapters_named
+from omegadot.commands.check.tally import Tally
+from omegadot.commands.progress import Count, Reporting, reporting
+from omegadot.harness.arguments import adapters_named, several
+from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, nearest
+from omegadot.scenarios import ScenarioLike
 
-Results = dict[Check, Result]
+NOT_HELD = ("fail", "error")
 
 
-def arguments_of(adapter: str, integrators: Sequence[str], names: Arguments) -> Arguments:
-    """The arguments of the command line, with ADAPTER taken for a name or for a class.
+@dataclass(frozen=True)
+class CheckResult:
+    """What came of one engine's checks.
+
+    by_check: every check with its result.  subjects: the engine, its version and integrators; none
+    where it did not start.  only_skipped: a sentence where every check was skipped, which is no
+    pass.  baselines: the files that were written.
+    """
+
+    by_check: Mapping[Check, Result]
+    subjects: tuple[Subject, ...]
+    only_skipped: tuple[str, ...] = ()
+    baselines: tuple[Path, ...] = ()
+
+    @cached_property
+    def results(self) -> dict[str, Result]:
+        """The results by check id, such as ``mujoco-RK4-t-handle-0.01-scheme``."""
+        return {check.id: result for check, result in self.by_check.items()}
+
+    @property
+    def failures(self) -> dict[str, Result]:
+        """The checks that fail, and those that the engine did not answer."""
+        return {i: result for i, result in self.results.items() if result.verdict in NOT_HELD}
+
+    @property
+    def answered(self) -> bool:
+        """Whether the engine started and answered every check."""
+        return all(result.verdict != "error" for result in self.by_check.values())
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check holds and at least one was made."""
+        return not self.failures and not self.only_skipped
+
+
+def check(
+    engine: EngineLike,
+    *,
+    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
+    integrators: str | Sequence[str] = (),
+    exceptions: Sequence[str | Path] = (),
+    baseline: str | Path | None = None,
+    update_baseline: bool = False,
+    timeout: float = 60.0,
+    progress: Reporting = False,
+) -> CheckResult:
+    """Put one engine, built in or your own, through every check.
+
+    engine: a name, ``FILE.py:Class``, ``module:Class`` or an adapter's class.  scenarios: built-in
+    names, paths, scenarios or their tables; all built-in ones without any.  integrators: all
+    without any.  exceptions: files of declared exceptions.  baseline: a folder of figures to
+    compare with, or to store them in.  timeout: s, for one request to the engine.
+    Raises UsageError, ScenarioError and NoTruthError.
+    """
+    names = Arguments(
+        scenarios=several(scenarios),
+        exceptions=exceptions,
+        baseline=baseline,
+        update=update_baseline,
+        timeout=timeout,
+    )
+    selection = select(arguments_of(engine, several(integrators), names))
+    with reporting(progress) as report:
+        suite = Suite(selection)
+        count = Count(report, "checking", len(suite.checks))
+        results = {}
+        try:
+            for one in suite.checks:
+                results[one] = suite.result_of(one)
+                count.advance()
+        finally:
+            suite.finish()
+    return _result_of(suite, selection, results)
+
+
+def _result_of(suite: Suite, selection: Selection, results: dict[Check, Result]) -> CheckResult:
+    tally, written = Tally(), []
+    for one, result in results.items():
+        tally.add(one.engine, result.verdict, result.message)
+    if selection.update and selection.baseline is not None:
+        written = store(selection.baseline, suite.registry.subjects, suite.figures)
+    skipped = tally.only_skipped(choice.name for choice in selection.choices)
+    return CheckResult(results, suite.registry.subjects, tuple(skipped), tuple(written))
+
+
+def arguments_of(engine: EngineLike, integrators: Sequence[str], names: Arguments) -> Arguments:
+    """The arguments for one engine, which is taken for a name or for a class.
 
     Raises UsageError.
     """
     known = registered()
-    if adapter in known:
-        name, adapters = adapter, []
-    elif adapter.endswith(".py") or ":" in adapter:
-        left, _, right = adapter.partition(":")
+    adapters: list[str] = []
+    if isinstance(engine, str) and engine in known:
+        name = engine
+    elif not isinstance(engine, str) or engine.endswith(".py") or ":" in engine:
+        left, _, right = engine.partition(":") if isinstance(engine, str) else ("", "", "")
         if left in known:
-            raise UsageError(f"{adapter}: give the integrator apart, as --integrator {right}.")
-        adapters = [target_of(adapter)]
+            raise UsageError(f"{engine}: give the integrator apart, as --integrator {right}.")
+        adapters = [target_of(engine)]
         name = next(iter(adapters_named(adapters)))
     else:
         raise UsageError(
-            f"{adapter}: there is no engine {adapter!r}; {nearest(adapter, known)}, or give "
+            f"{engine}: there is no engine {engine!r}; {nearest(engine, known)}, or give "
             "FILE.py:Class or module:Class."
         )
     engines = [f"{name}:{integrator}" for integrator in integrators] or [name]
     return replace(names, engines=engines, adapters=adapters, required=[name])
-
-
-def _run(suite: Suite) -> Results:
-    """Every check's result, with a bar on a terminal."""
-    if not sys.stderr.isatty():
-        return {check: suite.result_of(check) for check in suite.checks}
-    from rich.console import Console
-    from rich.progress import track
-
-    console = Console(stderr=True)
-    shown = track(suite.checks, "checking", console=console, transient=True)
-    return {check: suite.result_of(check) for check in shown}
-
-
-def exit_code(results: Results, tally: Tally, selection: Selection) -> int:
-    """0 every check holds, 1 one fails or all were skipped, 3 an engine did not answer."""
-    verdicts = {result.verdict for result in results.values()}
-    if "error" in verdicts:
-        return 3
-    named = [choice.name for choice in selection.choices]
-    return 1 if "fail" in verdicts or tally.only_skipped(named) else 0
-
-
-def _json(suite: Suite, results: Results, skipped: list[str], code: int) -> dict[str, Any]:
-    counts = dict.fromkeys(("pass", "fail", "declared", "skip", "error"), 0)
-    for result in results.values():
-        counts[result.verdict] += 1
-    return {
-        "schema": 1,
-        "exit_code": code,
-        "engines": [vars(subject) for subject in suite.registry.subjects],
-        "verdicts": counts,
-        "only_skipped": skipped,
-        "checks": [{"id": c.id, **vars(c), **vars(r)} for c, r in results.items()],
-    }
-
-
-def check_engine(adapter: str, integrators: Sequence[str], names: Arguments, as_json: bool) -> int:
-    """Put one engine through every check, print what came of it, and give the exit code."""
-    selection = select(arguments_of(adapter, integrators, names))
-    suite = Suite(selection)
-    try:
-        results = _run(suite)
-    finally:
-        suite.finish()
-    tally = Tally()
-    for check, result in results.items():
-        tally.add(check.engine, result.verdict, result.message)
-    skipped = tally.only_skipped(choice.name for choice in selection.choices)
-    code = exit_code(results, tally, selection)
-    written = []
-    if selection.update and selection.baseline is not None:
-        written = store(selection.baseline, suite.registry.subjects, suite.figures)
-    if as_json:
-        typer.echo(json.dumps(_json(suite, results, skipped, code), indent=2))
-    else:
-        lines = coverage(suite.registry.subjects, suite.checks)
-        print_checks(lines, results, skipped + [f"Baseline written: {path}" for path in written])
-    return code

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import Format
+from omegadot.commands.options import Format, on_a_terminal
 
 
 def check(
@@ -49,15 +49,21 @@ def check(
     Exit codes: 0 every check holds, 1 one fails or all were skipped, 2 wrong usage or input, 3 the
     engine crashed, timed out or could not be started.
     """
-    from omegadot.commands.check.check import check_engine
-    from omegadot.commands.check.select import Arguments
+    from omegadot.commands.check.check import check as check_engine
+    from omegadot.commands.check.print_checks import exit_code, print_checks, print_json
 
-    arguments = Arguments(
+    found = check_engine(
+        adapter,
         scenarios=scenario or [],
+        integrators=integrator or [],
         exceptions=exceptions or [],
         baseline=baseline,
-        update=update_baseline,
+        update_baseline=update_baseline,
         timeout=timeout,
+        progress=on_a_terminal(),
     )
-    as_json = output is Format.json
-    raise typer.Exit(check_engine(adapter, integrator or [], arguments, as_json))
+    if output is Format.json:
+        print_json(found)
+    else:
+        print_checks(found)
+    raise typer.Exit(exit_code(found))

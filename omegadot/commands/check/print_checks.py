@@ -1,16 +1,19 @@
-"""The checks as a table, scenario by gate, and below it what failed and why."""
+"""The checks as a table, scenario by gate, and below it what failed and why; and as JSON."""
 
 from __future__ import annotations
 
+import json
 import sys
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from omegadot.commands.check.check import CheckResult
 from omegadot.commands.check.result import Check, Result, Verdict
+from omegadot.commands.check.tally import coverage
 from omegadot.reports.text.numbers import times
 
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
@@ -58,13 +61,34 @@ def _counts(results: Mapping[Check, Result]) -> str:
     return f"{times(len(results), 'check')}: {parts}." if parts else "There is nothing to check."
 
 
-def print_checks(
-    heads: Iterable[str], results: Mapping[Check, Result], closing: Sequence[str]
-) -> None:
+def exit_code(found: CheckResult) -> int:
+    """0 every check holds, 1 one fails or all were skipped, 3 the engine did not answer."""
+    if not found.answered:
+        return 3
+    return 0 if found.passed else 1
+
+
+def print_json(found: CheckResult) -> None:
+    """Every check and its result, for machines."""
+    counts = dict.fromkeys(("pass", "fail", "declared", "skip", "error"), 0)
+    for result in found.by_check.values():
+        counts[result.verdict] += 1
+    printed = {
+        "schema": 1,
+        "exit_code": exit_code(found),
+        "engines": [vars(subject) for subject in found.subjects],
+        "verdicts": counts,
+        "only_skipped": found.only_skipped,
+        "checks": [{"id": c.id, **vars(c), **vars(r)} for c, r in found.by_check.items()],
+    }
+    print(json.dumps(printed, indent=2))
+
+
+def print_checks(found: CheckResult) -> None:
     """Print the table, then every error, failure and declared exception, then why some are left."""
-    width = None if sys.stdout.isatty() else WIDTH_WHEN_PIPED
+    width, results = None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, found.by_check
     console = Console(width=width, highlight=False, soft_wrap=True)
-    for line in heads:
+    for line in coverage(found.subjects, list(results)):
         console.print(Text(line, "bold"))
     if any(check.scenario for check in results):
         console.print(_table(results))
@@ -75,6 +99,6 @@ def print_checks(
             console.print(Text(f"    {message}"))
     for reason, checks in _grouped(results, "skip").items():
         console.print(Text(f"skip  {times(len(checks), 'check')}: {reason}", "dim"))
-    for line in closing:
+    for line in (*found.only_skipped, *(f"Baseline written: {path}" for path in found.baselines)):
         console.print(Text(line))
     console.print(Text(_counts(results), "bold"))

@@ -1,8 +1,7 @@
-"""What is checked: engines, scenarios, exceptions and a baseline, from the arguments."""
+"""What is to be checked: engines, scenarios, exceptions and a baseline, from the arguments."""
 
 from __future__ import annotations
 
-import ast
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -12,20 +11,22 @@ from omegadot.adapters.registry import registered
 from omegadot.commands.check.exceptions import DeclaredException, exceptions_of
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import adapters_named, case_of, engine_choices, scenarios_of
+from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError
+from omegadot.scenarios import ScenarioLike
 
 
 @dataclass(frozen=True)
 class Arguments:
-    """The selection as it was typed."""
+    """What a user gives, as it was typed or passed."""
 
     engines: Sequence[str] = ()
-    adapters: Sequence[str] = ()
+    adapters: Sequence[EngineLike] = ()
     required: Sequence[str] = ()
-    scenarios: Sequence[str] = ()
-    exceptions: Sequence[str] = ()
-    baseline: str | None = None
+    scenarios: Sequence[ScenarioLike] = ()
+    exceptions: Sequence[str | Path] = ()
+    baseline: str | Path | None = None
     update: bool = False
     timeout: float = 60.0
 
@@ -45,27 +46,6 @@ class Selection:
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
 
 
-def _class_of(path: Path) -> str:
-    """The adapter in a file: the only class that is called ...Adapter, or the only one."""
-    try:
-        body = ast.parse(path.read_text(encoding="utf-8")).body
-    except OSError:
-        raise UsageError(f"{path}: no such adapter file; check the path.") from None
-    except (SyntaxError, ValueError):
-        raise UsageError(f"{path}: not a Python file; give FILE.py:Class.") from None
-    names = [node.name for node in body if isinstance(node, ast.ClassDef)]
-    named = [name for name in names if name.endswith("Adapter")] or names
-    if len(named) != 1:
-        found = ", ".join(named) or "no class"
-        raise UsageError(f"{path}: which class is the adapter? It has {found}; give FILE.py:Class.")
-    return named[0]
-
-
-def target_of(argument: str) -> str:
-    """``FILE.py:Class`` or ``module:Class``; a file alone is given its adapter's class."""
-    return f"{argument}:{_class_of(Path(argument))}" if argument.endswith(".py") else argument
-
-
 def select(terms: Arguments) -> Selection:
     """Make ready what was requested. Raises UsageError and ScenarioError.
 
@@ -74,14 +54,14 @@ def select(terms: Arguments) -> Selection:
     """
     if terms.update and terms.baseline is None:
         raise UsageError("--update-baseline: give the folder of the baselines with --baseline DIR.")
-    adapters = [target_of(argument) for argument in terms.adapters]
-    known = {**registered(), **adapters_named(adapters)}
+    adapters = adapters_named(terms.adapters)
+    known = {**registered(), **adapters}
     unknown = tuple(name for name in terms.required if name not in known)
     wanted = list(terms.engines)
-    for name in (*adapters_named(adapters), *terms.required):
+    for name in (*adapters, *terms.required):
         if name in known and name not in {argument.partition(":")[0] for argument in wanted}:
             wanted.append(name)
-    choices = [] if unknown and not wanted else engine_choices(wanted, adapters)
+    choices = [] if unknown and not wanted else engine_choices(wanted, terms.adapters)
     return Selection(
         choices=choices,
         cases=[case_of(scenario, ()) for scenario in scenarios_of(terms.scenarios)],

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import Format
+from omegadot.commands.options import Format, command_line, on_a_terminal
 
 
 def choose(
@@ -134,34 +134,44 @@ def choose(
     Exit codes: 0 something qualifies, 1 nothing does, 2 wrong usage or input, 3 an engine crashed,
     timed out or could not be started.
     """
-    from omegadot.commands.choose.choose import Arguments, choose_and_print
+    from omegadot.commands.choose.choose import choose as choose_engine
+    from omegadot.commands.choose.choose import exit_code
+    from omegadot.reports.choice.text import print_choice
+    from omegadot.reports.record.run_json import dump_json
+    from omegadot.reports.text.numbers import listed
 
-    requested = {
-        "attitude": attitude,
-        "omega": omega,
-        "energy-drift": energy_drift,
-        "momentum-drift": momentum_drift,
-        "linear-momentum-drift": linear_momentum_drift,
-        "flip-time": flip_time,
-        "real-time-factor": real_time_factor,
-        "precision": precision,
-        "feature": feature,
-        "licence": licence,
-        "python": python,
-        "duration": duration,
-    }
-    arguments = Arguments(
-        scenarios=[*(scenarios or []), *(scenario or [])],
+    found = choose_engine(
+        [*(scenarios or []), *(scenario or [])],
+        engine or [],
         body=body,
         allow_impossible_inertia=allow_impossible_inertia,
         angular_velocity=angular_velocity,
         orientation=orientation,
+        duration=duration,
         requirements=requirements,
-        requested=requested,
-        engines=engine or [],
+        attitude=attitude,
+        omega=omega,
+        energy_drift=energy_drift,
+        momentum_drift=momentum_drift,
+        linear_momentum_drift=linear_momentum_drift,
+        flip_time=flip_time,
+        real_time_factor=real_time_factor,
+        precision=precision,
+        features=feature or [],
+        licences=licence or [],
+        python=python,
         adapters=adapter or [],
         budget=budget,
         timeout=timeout,
         jobs=jobs,
+        out=out,
+        command=command_line(),
+        progress=on_a_terminal(),
     )
-    raise typer.Exit(choose_and_print(arguments, out, as_json=output is Format.json))
+    if output is Format.json:
+        typer.echo(dump_json(found.document), nl=False)
+    else:
+        print_choice(found.document)
+        if found.written:
+            typer.echo(f"Written to {listed([str(path) for path in found.written])}.")
+    raise typer.Exit(exit_code(found))

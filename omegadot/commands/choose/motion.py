@@ -10,7 +10,7 @@ from omegadot.adapters.mujoco.body_file import bodies_of_mjcf
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
-from omegadot.scenarios import Scenario, scenario_of
+from omegadot.scenarios import Scenario, ScenarioLike, scenario_of
 from omegadot.scenarios.links import body_of_argument
 from omegadot.scenarios.tensor import ALLOWED
 
@@ -19,16 +19,16 @@ STEPS_TO_BEGIN = (500, 1000, 2000)  # a horizon, where no scenario states which 
 
 @dataclass(frozen=True)
 class Motion:
-    """The arguments of the command line that state what moves and how.
+    """The arguments that give what moves and how.
 
     body: ``FILE#LINK`` or a TOML file.  duration: s, over the scenarios' own.
     allow_impossible_inertia: go on with a body that breaks the triangle inequality.
     """
 
-    scenarios: Sequence[str] = ()
+    scenarios: Sequence[ScenarioLike] = ()
     body: str | None = None
-    angular_velocity: tuple[float, float, float] | None = None
-    orientation: tuple[float, float, float, float] | None = None
+    angular_velocity: Sequence[float] | None = None
+    orientation: Sequence[float] | None = None
     duration: float | None = None
     allow_impossible_inertia: bool = False
 

@@ -23,8 +23,15 @@ def compare(
 
     Exit codes: 0 nothing got worse, 1 something did, 2 wrong usage or input.
     """
-    from omegadot.commands.compare.compare import compare_folders
+    from omegadot.commands.compare.compare import compare as compare_runs
+    from omegadot.reports.record.run_json import dump_json
+    from omegadot.reports.two_runs.text import as_json, as_markdown, as_text
 
-    message, code = compare_folders(first, second, output.value)
-    typer.echo(message)
-    raise typer.Exit(code)
+    comparison = compare_runs(first, second)
+    if output is PageFormat.json:
+        typer.echo(dump_json(as_json(comparison)), nl=False)
+    elif output is PageFormat.markdown:
+        typer.echo(as_markdown(comparison).rstrip("\n"))
+    else:
+        typer.echo(as_text(comparison))
+    raise typer.Exit(1 if comparison.regressed else 0)

@@ -1,24 +1,29 @@
-"""``omegadot compare``: two records held against each other."""
+"""``omegadot.compare``: what changed from one run to another."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
-from omegadot.reports.record.record import read_record
-from omegadot.reports.record.run_json import dump_json
-from omegadot.reports.two_runs import compare_records
-from omegadot.reports.two_runs.text import as_json, as_markdown, as_text
+from omegadot.reports.record.record import Record, read_record
+from omegadot.reports.two_runs import Comparison, compare_records
+
+RunLike = str | os.PathLike[str] | Record
+"""The folder of a run, or its record."""
 
 
-def compare_folders(was: Path, now: Path, form: str) -> tuple[str, int]:
-    """What changed from one record to the other, and the exit code. Raises RecordError."""
-    comparison = compare_records(
-        read_record(was), read_record(now), (was.as_posix(), now.as_posix())
-    )
-    if form == "json":
-        message = dump_json(as_json(comparison)).rstrip("\n")
-    elif form == "markdown":
-        message = as_markdown(comparison).rstrip("\n")
-    else:
-        message = as_text(comparison)
-    return message, 1 if comparison.regressed else 0
+def compare(was: RunLike, now: RunLike) -> Comparison:
+    """What got better, worse, appeared and vanished from one run to another.
+
+    was, now: folders, or records. Raises RecordError.
+    """
+    records = _record(was), _record(now)
+    return compare_records(*records, (_label(was, "A"), _label(now, "B")))
+
+
+def _record(run: RunLike) -> Record:
+    return run if isinstance(run, Record) else read_record(Path(run))
+
+
+def _label(run: RunLike, otherwise: str) -> str:
+    return otherwise if isinstance(run, Record) else Path(run).as_posix()

@@ -17,6 +17,11 @@ def engines(
     ] = None,
 ) -> None:
     """List the engines: installed or not, versions, integrators, conventions, what is off."""
-    from omegadot.commands.engines.engines import print_engines
+    from omegadot.commands.engines.engines import engines as installed_engines
+    from omegadot.commands.engines.print_engines import print_json, print_text
 
-    print_engines(adapter or [], as_json=output is Format.json)
+    entries = installed_engines(adapter or [])
+    if output is Format.json:
+        print_json(entries)
+    else:
+        print_text(entries)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import PageFormat
+from omegadot.commands.options import PageFormat, on_a_terminal
 
 
 def faults(
@@ -29,6 +29,9 @@ def faults(
     Exit codes: 0 every fault is caught on every body and no sound engine is accused, 1
     otherwise, 2 wrong usage.
     """
-    from omegadot.commands.faults.faults import print_faults
+    from omegadot.commands.faults.faults import faults as find_faults
+    from omegadot.commands.faults.print_faults import print_faults
 
-    raise typer.Exit(print_faults(engine or [], bodies, seed, output.value))
+    found = find_faults(engine or [], bodies=bodies, seed=seed, progress=on_a_terminal())
+    print_faults(found, output.value)
+    raise typer.Exit(0 if found.passed else 1)

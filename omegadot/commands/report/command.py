@@ -28,6 +28,6 @@ def report(
     ] = False,
 ) -> None:
     """Draw the report of a stored run again, or of two runs side by side."""
-    from omegadot.commands.report.report import report_of
+    from omegadot.commands.report.print_report import printed
 
-    typer.echo(report_of(runs, out, figures, markdown))
+    typer.echo(printed(runs, out, figures, markdown))

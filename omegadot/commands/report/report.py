@@ -1,42 +1,35 @@
-"""``omegadot report``: a stored run drawn again, as a page, as figures, or as text; or two."""
+"""``omegadot.report``: a stored run drawn again, or two side by side."""
 
 from __future__ import annotations
 
 import gc
+import os
 from pathlib import Path
 
-from omegadot.harness.usage import UsageError
+from omegadot.commands.compare.compare import compare
 from omegadot.reports.charts.chart_library import packed_library
 from omegadot.reports.record.whole_file import write_whole
 
 TWO_RUNS = Path("two-runs.html")
+PathLike = str | os.PathLike[str]
 
 
-def report_of(folders: list[Path], out: Path | None, figures: Path | None, markdown: bool) -> str:
-    """What is to be printed: what was written, or words. Raises RecordError, UsageError."""
-    if len(folders) > 2:
-        raise UsageError(f"{len(folders)} runs are given; give one, or two to hold side by side.")
-    if markdown and (out is not None or figures is not None):
-        raise UsageError("--markdown prints and writes no file; leave out --out and --figures.")
-    if len(folders) == 2:
-        return _of_two(folders[0], folders[1], out, figures, markdown)
-    if not markdown and figures is None:
-        return str(redraw(folders[0], out))
-    from omegadot.reports.record.record import read_record
+def report(run: PathLike, other: PathLike | None = None, *, out: PathLike | None = None) -> Path:
+    """Draw the page of a stored run again, or of two runs side by side; where it was written.
 
-    if markdown:
-        from omegadot.reports.text.markdown import markdown_of
+    out: the page's file; else ``report.html`` in the run's folder, or, of two runs,
+    ``two-runs.html`` in the current one. Raises RecordError.
+    """
+    file = None if out is None else Path(out)
+    if other is None:
+        return redraw(Path(run), file)
+    from omegadot.reports.two_runs.page import draw_two_runs
 
-        return markdown_of(read_record(folders[0])).rstrip("\n")
-    from omegadot.reports.charts.static import write_figures
-
-    assert figures is not None
-    written = [redraw(folders[0], out)] if out is not None else []
-    return "\n".join(map(str, [*written, *write_figures(read_record(folders[0]), figures)]))
+    return write_whole(file or TWO_RUNS, draw_two_runs(compare(run, other)))
 
 
 def redraw(folder: Path, out: Path | None = None) -> Path:
-    """Draw the page again, into the run's folder or where `out` states. Raises RecordError.
+    """Draw the page again, into the run's folder or into the file `out`. Raises RecordError.
 
     A choice of engine that was written into the run's folder is a section of it.
     """
@@ -54,18 +47,3 @@ def redraw(folder: Path, out: Path | None = None) -> Path:
     finally:
         if collecting:
             gc.enable()
-
-
-def _of_two(was: Path, now: Path, out: Path | None, figures: Path | None, markdown: bool) -> str:
-    from omegadot.reports.record.record import read_record
-    from omegadot.reports.two_runs import compare_records
-    from omegadot.reports.two_runs.page import draw_two_runs
-    from omegadot.reports.two_runs.text import as_markdown
-
-    if figures is not None:
-        raise UsageError("--figures draws one run; give one run alone.")
-    records = read_record(was), read_record(now)
-    comparison = compare_records(*records, (was.as_posix(), now.as_posix()))
-    if markdown:
-        return as_markdown(comparison).rstrip("\n")
-    return str(write_whole(out or TWO_RUNS, draw_two_runs(comparison)))

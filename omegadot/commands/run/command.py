@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import Format, Setup
+from omegadot.commands.options import Format, Setup, command_line, on_a_terminal
 
 
 def run(
@@ -74,29 +73,35 @@ def run(
     Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
     timed out or could not be started.
     """
-    import os
-
-    from omegadot.commands.check.exceptions import exceptions_of
-    from omegadot.commands.run.print_run import print_json, print_text
-    from omegadot.commands.run.run import run_and_write
-    from omegadot.harness.arguments import case_of, engine_choices, scenarios_of
-    from omegadot.harness.outcome import RunRequest
-    from omegadot.reports.record.record import check_folder
+    from omegadot.commands.run.print_run import exit_code, print_json, print_text
+    from omegadot.commands.run.run import RunInterrupted
+    from omegadot.commands.run.run import run as run_scenarios
 
     if memory is not None and not _memory_is_limited():
         typer.echo("omegadot: --memory is ignored: this system keeps no such limit.", err=True)
-    choices = engine_choices(engine or [], adapter or [])
-    cases = [case_of(scenario, timestep or []) for scenario in scenarios_of(scenarios or [])]
-    known = exceptions_of(choices, exceptions or [])
-    check_folder(out)
-    jobs = jobs or os.cpu_count() or 1
-    request = RunRequest(cases, choices, setup.value, seed, timeout, jobs, memory)
-    record, code = run_and_write(request, out, ["omegadot", *sys.argv[1:]], known)
+    try:
+        result = run_scenarios(
+            scenarios or [],
+            engine or [],
+            timesteps=timestep or [],
+            out=out,
+            setup=setup.value,
+            adapters=adapter or [],
+            exceptions=exceptions or [],
+            timeout=timeout,
+            jobs=jobs,
+            memory=memory,
+            seed=seed,
+            command=command_line(),
+            progress=on_a_terminal(),
+        )
+    except RunInterrupted as interrupted:
+        result = interrupted.result
     if output is Format.json:
-        print_json(record, out, code)
+        print_json(result)
     else:
-        print_text(record, out)
-    raise typer.Exit(code)
+        print_text(result)
+    raise typer.Exit(exit_code(result))
 
 
 def _memory_is_limited() -> bool:

@@ -1,42 +1,56 @@
-"""What ``omegadot run`` prints when it is done."""
+"""What ``omegadot run`` prints when it is done, and how it exits."""
 
 from __future__ import annotations
 
 from collections import Counter
-from pathlib import Path
 from typing import Any
 
 import typer
 
-from omegadot.reports.record.record import PAGE, Record
+from omegadot.commands.run.run import RunResult
+from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
-from omegadot.reports.summary.headline import headline
-from omegadot.reports.summary.summary import summarise
 from omegadot.reports.text.terminal import print_summary
 
+INTERRUPTED = 130  # as shells count: 128 + SIGINT
 
-def print_text(record: Record, out: Path) -> None:
+
+def exit_code(result: RunResult) -> int:
+    """0 every gate holds, 1 a gate fails or a declared exception does not hold any more, 3 an
+    engine failed to answer or to start.
+
+    An engine that is not installed counts only where it was given by name.
+    """
+    if not result.complete:
+        return INTERRUPTED
+    if not result.answered:
+        return 3
+    return 0 if result.passed else 1
+
+
+def print_text(result: RunResult) -> None:
     """A table that is read in ten seconds, and where the page is."""
-    print_summary(record)
-    for exception in record.run.get("stale_exceptions", []):
-        typer.echo(f"Declared exception: {exception['problem']}")
-    typer.echo(f"Report: {out / PAGE}")
+    print_summary(result.record)
+    for problem in result.stale_exceptions:
+        typer.echo(f"Declared exception: {problem}")
+    if result.folder is not None:
+        typer.echo(f"Report: {result.folder / PAGE}")
 
 
-def print_json(record: Record, out: Path, code: int) -> None:
+def print_json(result: RunResult) -> None:
     """The verdicts of every task, for machines."""
-    tasks: list[dict[str, Any]] = record.run["tasks"]
-    verdicts = Counter(v for task in tasks for v in task["gates"].values())
-    result = {
-        "schema": record.run["schema"],
-        "exit_code": code,
-        "complete": record.run["complete"],
-        "folder": str(out),
-        "report": str(out / PAGE),
-        "headline": headline(summarise(record)),
+    run, folder = result.record.run, result.folder
+    tasks: list[dict[str, Any]] = run["tasks"]
+    printed = {
+        "schema": run["schema"],
+        "exit_code": exit_code(result),
+        "complete": result.complete,
+        "folder": str(folder),
+        "report": str(folder / PAGE) if folder else None,
+        "headline": result.record.headline,
         "outcomes": Counter(task["outcome"] for task in tasks),
-        "verdicts": verdicts,
-        "stale_exceptions": record.run.get("stale_exceptions", []),
+        "verdicts": Counter(v for task in tasks for v in task["gates"].values()),
+        "stale_exceptions": run.get("stale_exceptions", []),
         "tasks": tasks,
     }
-    typer.echo(dump_json(result))
+    typer.echo(dump_json(printed))

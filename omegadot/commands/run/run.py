@@ -1,161 +1,155 @@
-"""``omegadot run``: from its arguments to a record and an exit code."""
+"""``omegadot.run``: scenarios on engines, judged, as a record."""
 
 from __future__ import annotations
 
-import datetime
-import sys
+import os
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from omegadot import __version__
-from omegadot.commands.check.exceptions import DeclaredException
+from omegadot.adapters.protocol import Setup
+from omegadot.commands.check.exceptions import exceptions_of
+from omegadot.commands.progress import Count, Progress, Reporter, Reporting, reporting
 from omegadot.commands.run.declare import with_declared
-from omegadot.diagnosis.causes import causes_of
-from omegadot.diagnosis.clusters import clusters_of_run
-from omegadot.gates.case import Case
-from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
+from omegadot.commands.run.record import record_of
+from omegadot.harness.arguments import case_of, engine_choices, scenarios_of, several
+from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import Outcome, RunRequest, tasks_of
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.runner import Runner
-from omegadot.reports.page.page import draw_page
-from omegadot.reports.record.record import Record, write_record
-from omegadot.reports.record.schema import SCHEMA
-from omegadot.workers.machine import describe_machine, package_versions
-
-BROKEN = ("crashed", "timeout", "raised")
-INTERRUPTED_EXIT = 130
+from omegadot.reports.record.record import check_folder
+from omegadot.reports.run_record import RunRecord, TaskResult
+from omegadot.scenarios import ScenarioLike
 
 
-@contextmanager
-def progress_bar(runner: Runner, cases: Sequence[Case]) -> Iterator[None]:
-    """A bar with an estimate on a terminal, nothing where standard error is piped."""
-    if not sys.stderr.isatty():
-        yield
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-    from rich.progress import TimeRemainingColumn as Remaining
+@dataclass(frozen=True, repr=False)
+class RunResult:
+    """A run. record: its tables and its page.  folder: where it was written, if anywhere.
 
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Remaining())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("starting the engines", total=None)
+    required: engines that were given by name; one of these that is missing counts against the run.
+    """
 
-        def planned() -> None:
-            total = sum(
-                tasks_of(engine, case) for engine in runner.engines.started for case in cases
-            )
-            bar.update(task, total=total, description="running")
+    record: RunRecord
+    folder: Path | None = None
+    required: frozenset[str] = frozenset()
 
-        runner.on_start = planned
-        runner.on_advance = lambda count: bar.advance(task, count)
-        yield
+    @property
+    def complete(self) -> bool:
+        """Whether it was not interrupted."""
+        return bool(self.record.run["complete"])
 
+    @property
+    def failures(self) -> tuple[TaskResult, ...]:
+        """The runs of which a gate fails, or that diverged."""
+        return tuple(task for task in self.record.tasks if task.failed)
 
-def record_of(outcome: Outcome, request: RunRequest, command: list[str], seconds: float) -> Record:
-    """The record of a finished or interrupted run."""
-    now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
-    run = {
-        "schema": SCHEMA,
-        "omegadot": __version__,
-        "created": now.isoformat(),
-        "command": command,
-        "seed": request.seed,
-        "seconds": round(seconds, 3),
-        "complete": not outcome.interrupted,
-        "machine": describe_machine(),
-        "versions": package_versions(),
-        "engines": _engines(outcome),
-        "scenarios": [_scenario(case) for case in request.cases],
-        "worker_deaths": [{"engine": name, "how": how} for name, how in outcome.deaths],
-        "clusters": [vars(cluster) for cluster in clusters_of_run(outcome.cases)],
-        "tasks": tasks_of_run(outcome, list(request.cases), request.setup, request.seed, causes_of),
-    }
-    return Record(
-        run,
-        metrics_of_run(outcome, request.setup),
-        trajectories_of_run(outcome, request.setup),
-    )
-
-
-def _engines(outcome: Outcome) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = []
-    for engine in outcome.engines:
-        fields = vars(engine.description)
-        integrators = [vars(integrator) for integrator in engine.description.integrators]
-        features = sorted(engine.description.features)
-        found.append(
-            {**fields, "installed": True, "reason": "", "integrators": integrators}
-            | {"features": features}
+    @property
+    def unanswered(self) -> tuple[TaskResult, ...]:
+        """The runs whose engine crashed, raised, timed out, or is missing though it was named."""
+        return tuple(
+            task
+            for task in self.record.tasks
+            if task.broken or (task.outcome == "not-installed" and task.engine in self.required)
         )
-    for choice, answer in outcome.missing:
-        found.append({"name": choice.name, "installed": False, "reason": answer.reason})
-    return found
+
+    @property
+    def answered(self) -> bool:
+        """Whether every engine answered: no run is without an answer, and no process died."""
+        return not (self.unanswered or self.record.run["worker_deaths"])
+
+    @property
+    def stale_exceptions(self) -> tuple[str, ...]:
+        """Why a declared exception does not hold any more, a sentence each."""
+        return tuple(entry["problem"] for entry in self.record.run.get("stale_exceptions", ()))
+
+    @property
+    def passed(self) -> bool:
+        """Whether the run is complete, every engine answered and every gate holds."""
+        held = not self.failures and not self.stale_exceptions
+        return self.complete and self.answered and held
+
+    def __repr__(self) -> str:
+        verdict = "passed" if self.passed else "not passed"
+        return f"<omegadot run, {verdict}: {self.record.headline}>"
+
+    def _repr_html_(self) -> str:
+        return self.record._repr_html_()
 
 
-def _scenario(case: Case) -> dict[str, Any]:
-    scenario, body, load = case.scenario, case.system.body, case.system.load
-    return {
-        "name": scenario.name,
-        "title": scenario.title,
-        "shows": scenario.shows,
-        "source": scenario.source,
-        "definition": scenario.to_dict(),
-        "system": {
-            "mass": float(body.mass),
-            "center_of_mass": body.center_of_mass.tolist(),
-            "inertia": body.inertia.tolist(),
-            "gravity": load.gravity.tolist(),
-            "pivot": None if load.pivot is None else load.pivot.tolist(),
-            "damping": float(load.damping),
-            "torque_body": load.torque_body.tolist(),
-            "torque_world": load.torque_world.tolist(),
-        },
-    }
+class RunInterrupted(KeyboardInterrupt):
+    """Ctrl-C during a run. result: what had come in until then, written where it was to be."""
+
+    def __init__(self, result: RunResult) -> None:
+        super().__init__("interrupted")
+        self.result = result
 
 
-def exit_code(run: dict[str, Any], choices: Sequence[EngineChoice]) -> int:
-    """0 every gate holds, 1 a gate fails or a declared exception does not hold any more, 3 an
-    engine failed to answer or to start.
+def run(
+    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
+    engines: EngineLike | Sequence[EngineLike] = (),
+    *,
+    timesteps: float | Sequence[float] = (),
+    out: str | os.PathLike[str] | None = None,
+    setup: Setup = "physics",
+    adapters: EngineLike | Sequence[EngineLike] = (),
+    exceptions: Sequence[str | os.PathLike[str]] = (),
+    timeout: float = 60.0,
+    jobs: int | None = None,
+    memory: float | None = None,
+    seed: int = 0,
+    command: Sequence[str] = (),
+    progress: Reporting = False,
+) -> RunResult:
+    """Run scenarios on engines, judge them, and give the record.
 
-    An engine that is not installed counts only where it was requested by name.
+    scenarios: built-in names, paths, scenarios or their tables; all built-in ones without any.
+    engines: ``NAME``, ``NAME:INTEGRATOR``, ``FILE.py:Class`` or an adapter's class; all that are
+    registered without any.  adapters: engines of your own in addition, by class.
+    timesteps: s, instead of the scenarios' own.  out: a folder to write record and page to.
+    exceptions: files of declared exceptions.  timeout: s, for one request to an engine.
+    jobs: requests at the same time; as many as cores without it.  memory: GiB that one engine may
+    hold.  seed: of the random states.  command: what the record names as the command.
+    Raises UsageError, ScenarioError, RecordError, NoTruthError, and RunInterrupted on Ctrl-C.
     """
-    required = {choice.name for choice in choices if choice.required}
-    tasks = run["tasks"]
-    if not run["complete"]:
-        return INTERRUPTED_EXIT
-    if run["worker_deaths"] or any(task["outcome"] in BROKEN for task in tasks):
-        return 3
-    if any(t["outcome"] == "not-installed" and t["engine"] in required for t in tasks):
-        return 3
-    failed = any("fail" in t["gates"].values() or _diverged(t) for t in tasks)
-    return 1 if failed or run.get("stale_exceptions") else 0
-
-
-def _diverged(task: dict[str, Any]) -> bool:
-    declared = task["gates"].get("trajectory") == "declared"
-    return task["outcome"] == "diverged" and not declared
-
-
-def run_and_write(
-    request: RunRequest,
-    out: Path,
-    command: list[str],
-    exceptions: Sequence[DeclaredException] = (),
-) -> tuple[Record, int]:
-    """Run, write the record with its page, and state how it went.
-
-    exceptions: known failures, of engines that are set up for physics.
-    """
+    choices = engine_choices(several(engines), several(adapters))
+    steps = several(timesteps)
+    cases = [case_of(scenario, steps) for scenario in scenarios_of(several(scenarios))]
+    known = exceptions_of(choices, map(Path, exceptions))
+    if out is not None:
+        check_folder(Path(out))
+    cores = jobs or os.cpu_count() or 1
+    request = RunRequest(cases, choices, setup, seed, timeout, cores, memory)
     started = time.perf_counter()
-    runner = Runner(request)
-    with progress_bar(runner, request.cases):
-        outcome = runner.execute()
-    known = exceptions if request.setup == "physics" else ()
-    outcome, stale = with_declared(outcome, known, request.cases)
+    with reporting(progress) as report:
+        outcome = execute(request, report)
+    outcome, stale = with_declared(outcome, known if setup == "physics" else (), cases)
     record = record_of(outcome, request, command, time.perf_counter() - started)
     record.run["stale_exceptions"] = stale
-    write_record(record, out, draw_page(record))
-    return record, exit_code(record.run, request.choices)
+    result = result_of(RunRecord.of(record), choices, out)
+    if outcome.interrupted:
+        raise RunInterrupted(result)
+    return result
+
+
+def execute(request: RunRequest, report: Reporter) -> Outcome:
+    """Run everything that is requested, and report how far it is."""
+    runner = Runner(request)
+    report(Progress("starting the engines"))
+
+    def planned() -> None:
+        started = runner.engines.started
+        total = sum(tasks_of(engine, case) for engine in started for case in request.cases)
+        count = Count(report, "running", total)
+        runner.on_advance = count.advance
+
+    runner.on_start = planned
+    return runner.execute()
+
+
+def result_of(
+    record: RunRecord, choices: Sequence[EngineChoice], out: str | os.PathLike[str] | None
+) -> RunResult:
+    """The result of a record, which is written where a folder is given. Raises RecordError."""
+    folder = None if out is None else record.save(out)
+    return RunResult(record, folder, frozenset(c.name for c in choices if c.required))

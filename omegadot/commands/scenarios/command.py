@@ -13,6 +13,11 @@ def scenarios(
     output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
 ) -> None:
     """List the built-in scenarios and what each shows."""
-    from omegadot.commands.scenarios.scenarios import print_scenarios
+    from omegadot.commands.scenarios.print_scenarios import print_json, print_text
+    from omegadot.scenarios import builtin_names, load_builtin
 
-    print_scenarios(as_json=output is Format.json)
+    found = [load_builtin(name) for name in builtin_names()]
+    if output is Format.json:
+        print_json(found)
+    else:
+        print_text(found)

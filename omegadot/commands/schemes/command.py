@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import PageFormat
+from omegadot.commands.options import PageFormat, on_a_terminal
 
 
 def schemes(
@@ -38,6 +38,15 @@ def schemes(
     Exit codes: 0 all is as declared, 1 something is not, 2 wrong usage, 3 an engine crashed,
     timed out or could not be started.
     """
-    from omegadot.commands.schemes.schemes import print_schemes
+    from omegadot.commands.other_python import interpreters
+    from omegadot.commands.schemes.print_schemes import exit_code, print_schemes
+    from omegadot.commands.schemes.schemes import schemes as study_schemes
 
-    raise typer.Exit(print_schemes(engine or [], adapter or [], python or [], output.value))
+    found = study_schemes(
+        engine or [],
+        adapters=adapter or [],
+        pythons=interpreters(python or []),
+        progress=on_a_terminal(),
+    )
+    print_schemes(found, output.value)
+    raise typer.Exit(exit_code(found))

@@ -1,58 +1,88 @@
-"""``omegadot schemes``: which scheme each integrator steps, and how its errors shrink."""
+"""``omegadot.schemes``: which scheme each integrator steps, and how its errors shrink."""
 
 from __future__ import annotations
 
-import json
-import sys
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from dataclasses import dataclass
 
-import typer
-
-from omegadot.commands.other_python import interpreters, worker_command
-from omegadot.commands.schemes.markdown import markdown_of
-from omegadot.commands.schemes.table import remarks_of, tables_of
+from omegadot.commands.other_python import checked_interpreters, worker_command
+from omegadot.commands.progress import Progress, Reporting, reporting
 from omegadot.diagnosis.scheme_study.record import Record, record_of
 from omegadot.diagnosis.scheme_study.study import EngineStudy, study_engine
-from omegadot.harness.arguments import engine_choices
+from omegadot.harness.arguments import engine_choices, several
+from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
 from omegadot.workers.harness_end.process import WorkerProcess
 
 TIMEOUT = 60.0  # s, for one request to an engine
 NOT_STEPPED = "exact"  # the truth that the others are held against
 ITSELF = "reference"  # it would be held against itself
-WIDTH_WHEN_PIPED = 240
 BROKEN = ("crashed", "timeout", "raised")
 
 
-def print_schemes(
-    engines: Sequence[str], adapters: Sequence[str], pythons: Sequence[str], form: str
-) -> int:
-    """Study the engines, print in `form` ("text", "json" or "markdown"), return the exit code.
+@dataclass(frozen=True)
+class SchemesResult:
+    """Integrators studied. record: engines, integrators, probes, orders and defects, as printed.
 
-    Without a choice of engines the exact solution and the reference are left out. Raises
-    UsageError.
+    required: engines that were given by name; one of these that is missing did not answer.
+    """
+
+    record: Record
+    required: frozenset[str] = frozenset()
+
+    @property
+    def departures(self) -> Mapping[str, list[str]]:
+        """Where an integrator is not as declared, by ``engine:integrator``."""
+        return {
+            f"{engine['name']}:{integrator['name']}": integrator["departures"]
+            for engine in self.record["engines"]
+            for integrator in engine["integrators"]
+            if integrator["departures"]
+        }
+
+    @property
+    def answered(self) -> bool:
+        """Whether every engine started, or need not, and answered."""
+        for engine in self.record["engines"]:
+            absent = engine["outcome"] == "not-installed"
+            if engine["outcome"] != "ok" and not (absent and engine["name"] not in self.required):
+                return False
+        integrators = [i for engine in self.record["engines"] for i in engine["integrators"]]
+        return not any(p["outcome"] in BROKEN for i in integrators for p in i["probes"].values())
+
+    @property
+    def passed(self) -> bool:
+        """Whether every engine answered and every integrator is as declared."""
+        return self.answered and not self.departures
+
+
+def schemes(
+    engines: EngineLike | Sequence[EngineLike] = (),
+    *,
+    adapters: EngineLike | Sequence[EngineLike] = (),
+    pythons: Mapping[str, str] | None = None,
+    progress: Reporting = False,
+) -> SchemesResult:
+    """Name the scheme of every integrator, from its steps alone, with its orders and defects.
+
+    engines, adapters: as of `run`; without engines the exact solution and the reference are left
+    out.  pythons: the interpreter that an engine runs under, by engine. Raises UsageError.
     """
     choices = [
         choice
-        for choice in engine_choices(engines, adapters)
+        for choice in engine_choices(several(engines), several(adapters))
         if choice.required or choice.name not in (NOT_STEPPED, ITSELF)
     ]
-    chosen = interpreters(pythons, [choice.name for choice in choices])
-    with _status():
-        record = record_of(study_all(choices, chosen))
-    if form == "json":
-        typer.echo(json.dumps(record, indent=2))
-    elif form == "markdown":
-        typer.echo(markdown_of(record), nl=False)
-    else:
-        _print_text(record)
-    return exit_code(record, choices)
+    interpreters = checked_interpreters(pythons or {}, [choice.name for choice in choices])
+    with reporting(progress) as report:
+        report(Progress("stepping the reference's schemes and the engines"))
+        record = record_of(study_all(choices, interpreters))
+    return SchemesResult(record, frozenset(c.name for c in choices if c.required))
 
 
-def study_all(choices: Sequence[EngineChoice], pythons: dict[str, str]) -> list[EngineStudy]:
+def study_all(choices: Sequence[EngineChoice], pythons: Mapping[str, str]) -> list[EngineStudy]:
     """Every engine at the same time, each with a worker; Ctrl-C ends them at once."""
     workers = []
     for choice in choices:
@@ -71,43 +101,3 @@ def study_all(choices: Sequence[EngineChoice], pythons: dict[str, str]) -> list[
             for worker in workers:
                 worker.stop()
             raise
-
-
-@contextmanager
-def _status() -> Iterator[None]:
-    """State that it is at work on a terminal, nothing where standard error is piped."""
-    if not sys.stderr.isatty():
-        yield
-        return
-    from rich.console import Console
-
-    with Console(stderr=True).status("stepping the reference's schemes next to the engines"):
-        yield
-
-
-def exit_code(record: Record, choices: Sequence[EngineChoice]) -> int:
-    """0 all is as declared, 1 something is not, 3 an engine failed to answer or to start."""
-    required = {choice.name for choice in choices if choice.required}
-    for engine in record["engines"]:
-        absent = engine["outcome"] == "not-installed"
-        if engine["outcome"] != "ok" and not (absent and engine["name"] not in required):
-            return 3
-    integrators = [i for engine in record["engines"] for i in engine["integrators"]]
-    if any(p["outcome"] in BROKEN for i in integrators for p in i["probes"].values()):
-        return 3
-    return 1 if any(integrator["departures"] for integrator in integrators) else 0
-
-
-def _print_text(record: Record) -> None:
-    from rich.console import Console
-    from rich.text import Text
-
-    from omegadot.reports.text.text_grid import text_grid
-
-    console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
-    tables = [table for table in tables_of(record) if table.rows]
-    for table in tables:
-        console.print(text_grid(table.title, table.heads, table.rows))
-        console.print()
-    for line in remarks_of(record):
-        console.print(Text(line, style="yellow"))

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from omegadot.commands.options import Format
+from omegadot.commands.options import Format, command_line, on_a_terminal
+
+if TYPE_CHECKING:
+    from omegadot.commands.score.result import ScoreResult
 
 
 def score(
@@ -122,46 +125,53 @@ def score(
     produced the trace, or (--detect) no single convention fits, 2 wrong usage or input, 3 an engine
     run with it crashed, timed out or could not be started.
     """
-    from omegadot.commands.score.score import Arguments, score
-
-    settings = {
-        "time-unit": time_unit,
-        "angle-unit": angle_unit,
-        "rate-unit": rate_unit,
-        "length-unit": length_unit,
-        "omega-frame": omega_frame,
-        "attitude-is": attitude_is,
-        "euler": euler,
-        "quaternion": quaternion,
-        "point": point,
-        "world-axes": world_axes,
-        "body-axes": body_axes,
-        "time-offset": time_offset,
-    }
-    required = {
-        "attitude": attitude,
-        "omega": omega,
-        "position": position,
-        "energy": energy,
-        "momentum": momentum,
-        "flip-time": flip_time,
-    }
-    arguments = Arguments(
-        trace,
-        scenario,
-        column or [],
-        map_file,
-        settings,
-        integrator_scheme,
-        timestep,
-        required,
-        name,
-        with_engine or [],
-        out,
-    )
-    as_json = output is Format.json
     if detect:
-        from omegadot.commands.score.detection.detect import detect_conventions
+        from omegadot.commands.score.detection.detect import detect as detect_conventions
+        from omegadot.commands.score.detection.print_detected import print_detected
 
-        raise typer.Exit(detect_conventions(arguments, as_json))
-    raise typer.Exit(score(arguments, as_json))
+        fits = detect_conventions(trace, scenario, columns=column or [], map_file=map_file)
+        raise typer.Exit(print_detected(fits, trace, scenario, as_json=output is Format.json))
+    from omegadot.commands.run.print_run import exit_code
+    from omegadot.commands.run.run import RunInterrupted
+    from omegadot.commands.score.print_score import print_json, print_text
+    from omegadot.commands.score.score import score as score_trace
+
+    try:
+        result = score_trace(
+            trace,
+            scenario,
+            columns=column or [],
+            map_file=map_file,
+            time_unit=time_unit,
+            angle_unit=angle_unit,
+            rate_unit=rate_unit,
+            length_unit=length_unit,
+            omega_frame=omega_frame,
+            attitude_is=attitude_is,
+            euler=euler,
+            quaternion=quaternion,
+            point=point,
+            world_axes=world_axes,
+            body_axes=body_axes,
+            time_offset=time_offset,
+            integrator_scheme=integrator_scheme,
+            timestep=timestep,
+            attitude=attitude,
+            omega=omega,
+            position=position,
+            energy=energy,
+            momentum=momentum,
+            flip_time=flip_time,
+            name=name,
+            engines=with_engine or [],
+            out=out,
+            command=command_line(),
+            progress=on_a_terminal(),
+        )
+    except RunInterrupted as interrupted:
+        result = cast("ScoreResult", interrupted.result)
+    if output is Format.json:
+        print_json(result)
+    else:
+        print_text(result)
+    raise typer.Exit(exit_code(result))

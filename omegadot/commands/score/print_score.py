@@ -2,37 +2,52 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
+import sys
 
 import numpy as np
+import typer
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from omegadot.commands.run.print_run import exit_code
 from omegadot.commands.score.judged import Judged
-from omegadot.commands.score.sentences import factor_of, sentences
+from omegadot.commands.score.result import ScoreResult
+from omegadot.commands.score.sentences import factor_of
 from omegadot.commands.score.shift import scatter
-from omegadot.gates.rows import Row
+from omegadot.reports.record.record import PAGE
+from omegadot.reports.record.run_json import dump_json
 
-UNITS = {"omega": "rad/s", "attitude": "rad", "position": "m"}
 STYLES = {"pass": "green", "fail": "bold red", "info": "default"}
 WIDTH_WHEN_PIPED = 200
 
 
-def print_score(found: Judged, rows: list[Row], name: str, console: Console) -> None:
-    """The table of channels, then what else must be reported."""
-    truth, table = found.truth, found.reading.table
-    first, last = found.trace.times[0], found.trace.times[-1]
+def print_text(result: ScoreResult) -> None:
+    """The table of channels, then what else must be reported, and where the page is."""
+    console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
+    found, times = result.found, result.found.trace.times
     console.print(
         Text(
-            f"{name} ({table.file}, {len(found.trace.times)} samples from {first:g} to {last:g} s) "
-            f"against the exact solution of {found.case.name} ({truth.source})"
+            f"{result.name} ({found.reading.table.file}, {len(times)} samples from {times[0]:g} to "
+            f"{times[-1]:g} s) against the exact solution of {found.case.name} "
+            f"({found.truth.source})"
         )
     )
     console.print(_table(found))
-    for sentence in sentences(found, rows):
+    for sentence in result.sentences:
         console.print(Text(sentence))
+    _print_others(result)
+    if result.folder is not None:
+        typer.echo(f"Report: {result.folder / PAGE}")
+
+
+def _print_others(result: ScoreResult) -> None:
+    others = [task for task in result.record.tasks if task.engine != result.name]
+    failed = [task for task in others if "fail" in task.gates.values() or task.broken]
+    if others:
+        engines = ", ".join(dict.fromkeys(task.engine for task in others))
+        ended = f"{len(failed)} of them failed" if failed else "none failed"
+        typer.echo(f"Run beside it: {engines}, {len(others)} runs, {ended}.")
 
 
 def _table(found: Judged) -> Table:
@@ -41,7 +56,7 @@ def _table(found: Judged) -> Table:
         table.add_column(head, no_wrap=True)
     for channel, error in found.measured.error.items():
         factor, unit = factor_of(found, channel)
-        rms = math.sqrt(float(np.mean(error**2)))
+        rms = float(np.sqrt(np.mean(error**2)))
         shown = (np.max(error), error[-1], rms, np.max(found.bound[channel]))
         judgement = found.judgement[channel]
         table.add_row(
@@ -54,24 +69,9 @@ def _table(found: Judged) -> Table:
     return table
 
 
-def machine_readable(found: Judged, rows: list[Row], name: str) -> dict[str, Any]:
+def print_json(result: ScoreResult) -> None:
     """What the text states, as numbers. SI units; omega in rad/s."""
-    rate, channels = found.truth.yardstick.rate, {}
-    for channel, error in found.measured.error.items():
-        factor, judgement = (rate if channel == "omega" else 1.0), found.judgement[channel]
-        channels[channel] = {
-            "max": factor * np.max(error),
-            "end": factor * error[-1],
-            "rms": factor * math.sqrt(float(np.mean(error**2))),
-            "start": factor * error[0],
-            "digits_open": factor * np.max(found.digits[channel]),
-            "bound": factor * np.max(found.bound[channel]),
-            "unit": UNITS.get(channel, "1"),
-            "verdict": judgement.verdict,
-            "kind": judgement.kind,
-            "note": judgement.note,
-        }
-    shift = found.shift
+    found, shift = result.found, result.shift
     late = shift and {
         "seconds": shift.seconds,
         "open": shift.open,
@@ -84,14 +84,20 @@ def machine_readable(found: Judged, rows: list[Row], name: str) -> dict[str, Any
         "explains": shift.explains,
         "note": shift.as_text if shift.seen else "neither late nor early",
     }
-    return {
+    printed = {
+        "schema": result.record.run["schema"],
+        "exit_code": exit_code(result),
+        "folder": str(result.folder),
+        "report": str(result.folder / PAGE) if result.folder else None,
         "scenario": found.case.name,
-        "trace": name,
+        "trace": result.name,
         "samples": len(found.trace.times),
         "truth": found.truth.source,
-        "channels": channels,
-        "not_given": found.measured.absent,
+        "channels": {channel: vars(score) for channel, score in result.channels.items()},
+        "not_given": result.not_given,
         "shift": late,
-        "requirements": [vars(row) for row in rows if row.metric == "requirement"],
-        "sentences": sentences(found, rows),
+        "requirements": [vars(row) for row in result.requirements],
+        "sentences": result.sentences,
+        "tasks": result.record.run["tasks"],
     }
+    typer.echo(dump_json(printed))

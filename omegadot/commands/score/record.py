@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-from omegadot.commands.run.run import progress_bar, record_of
+from omegadot.commands.progress import Reporter
+from omegadot.commands.run.record import record_of
+from omegadot.commands.run.run import execute
 from omegadot.commands.score.convention import Convention, axes_text
 from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.sentences import largest
@@ -19,7 +21,6 @@ from omegadot.commands.score.trace_tables import labels_of, metrics_of, trajecto
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.outcome import JudgedCase, Outcome, RunRequest
 from omegadot.harness.plan import EngineChoice
-from omegadot.harness.runner import Runner
 from omegadot.reports.record import schema
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.headline import headline
@@ -27,12 +28,17 @@ from omegadot.reports.summary.summary import summarise
 
 
 def scored_record(
-    found: Judged, rows: list[Row], name: str, choices: Sequence[EngineChoice], command: list[str]
+    found: Judged,
+    rows: list[Row],
+    name: str,
+    choices: Sequence[EngineChoice],
+    command: Sequence[str],
+    report: Reporter,
 ) -> Record:
     """The record of the trace and of the engines that are run beside it."""
     started = time.perf_counter()
     request = RunRequest([found.case], list(choices))
-    outcome = _next_to(request) if choices else _alone(found)
+    outcome = execute(request, report) if choices else _alone(found)
     base = record_of(outcome, request, command, time.perf_counter() - started)
     base.run["engines"].append(_engine(found, name))
     base.run["tasks"].append(_task(found, rows, name))
@@ -45,12 +51,6 @@ def scored_record(
     beside = [headline(summarise(record))] if choices else []
     record.run["headline"] = " ".join([sentence_of(found, rows, name), *beside])
     return record
-
-
-def _next_to(request: RunRequest) -> Outcome:
-    runner = Runner(request)
-    with progress_bar(runner, request.cases):
-        return runner.execute()
 
 
 def _alone(found: Judged) -> Outcome:

@@ -1,149 +1,122 @@
-"""``omegadot score``: a trace against the exact solution of a scenario."""
+"""``omegadot.score``: a trace against the exact solution of a scenario."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+import os
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-import typer
-from rich.console import Console
-
-from omegadot.commands.run.run import BROKEN, exit_code
-from omegadot.commands.score.columns import Columns, arguments_of, columns_of
-from omegadot.commands.score.convention import (
-    Convention,
-    axes_of,
-    check_convention,
-    check_sequence,
-)
-from omegadot.commands.score.judged import Judged, Making, Reading, judge_trace
-from omegadot.commands.score.map_file import read_map
-from omegadot.commands.score.print_score import WIDTH_WHEN_PIPED, machine_readable, print_score
+from omegadot.commands.progress import Reporting, reporting
+from omegadot.commands.run.run import RunInterrupted, result_of
+from omegadot.commands.score.judged import Making, judge_trace
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.record import scored_record
 from omegadot.commands.score.require import requirements_of
+from omegadot.commands.score.result import ScoreResult
 from omegadot.commands.score.rows import rows_of
-from omegadot.commands.score.table import Table
+from omegadot.commands.score.settings import Columns, Declaration, reading_of
 from omegadot.gates.case import Case
-from omegadot.harness.arguments import case_of, engine_choices, scenarios_of
+from omegadot.harness.arguments import case_of, engine_choices, scenarios_of, several
+from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError
-from omegadot.reports.page.page import draw_page
-from omegadot.reports.record.record import PAGE, Record, check_folder, write_record
-from omegadot.reports.record.run_json import dump_json
+from omegadot.reports.record.record import check_folder
+from omegadot.reports.run_record import RunRecord
+from omegadot.scenarios import ScenarioLike
 
 RESERVED = ("exact", "reference")
-DEFAULT_ORDER = "wxyz"
 
 
-@dataclass(frozen=True)
-class Arguments:
-    """What stands on the command line. settings: by option name; None where nothing is reported."""
+def score(
+    trace: str | os.PathLike[str],
+    scenario: ScenarioLike,
+    *,
+    columns: Columns = (),
+    map_file: str | os.PathLike[str] | None = None,
+    time_unit: str | None = None,
+    angle_unit: str | None = None,
+    rate_unit: str | None = None,
+    length_unit: str | None = None,
+    omega_frame: str | None = None,
+    attitude_is: str | None = None,
+    euler: str | None = None,
+    quaternion: str | None = None,
+    point: str | None = None,
+    world_axes: str | None = None,
+    body_axes: str | None = None,
+    time_offset: float | None = None,
+    integrator_scheme: str | None = None,
+    timestep: float | None = None,
+    attitude: str | None = None,
+    omega: str | None = None,
+    position: str | None = None,
+    energy: str | None = None,
+    momentum: str | None = None,
+    flip_time: str | None = None,
+    name: str = "trace",
+    engines: EngineLike | Sequence[EngineLike] = (),
+    out: str | os.PathLike[str] | None = None,
+    command: Sequence[str] = (),
+    progress: Reporting = False,
+) -> ScoreResult:
+    """Score a trajectory of any simulator, or a log, against a scenario's exact solution.
 
-    trace: Path
-    scenario: str
-    columns: Sequence[str] = ()
-    map_file: Path | None = None
-    settings: Mapping[str, Any] = field(default_factory=dict)
-    scheme: str | None = None
-    timestep: float | None = None
-    requirements: Mapping[str, str | None] = field(default_factory=dict)
-    name: str = "trace"
-    engines: Sequence[str] = ()
-    out: Path = Path("omegadot-score")
-
-
-def settings_of(terms: Arguments) -> tuple[list[tuple[str, list[str]]], dict[str, Any]]:
-    """Columns and settings, the command line's before the map's. Raises UsageError."""
-    own = arguments_of(terms.columns)
-    given = {key: value for key, value in terms.settings.items() if value is not None}
-    if terms.map_file is None:
-        return own, given
-    mapped = read_map(terms.map_file)
-    judgement = {role for role, _ in own}
-    kept = [(role, names) for role, names in mapped.columns if role not in judgement]
-    return own + kept, {**mapped.settings, **given}
-
-
-def convention_of(settings: Mapping[str, Any]) -> Convention:
-    """The convention that the settings declare. Raises UsageError."""
-    names = {
-        key.replace("-", "_"): value
-        for key, value in settings.items()
-        if key not in ("quaternion", "world-axes", "body-axes", "attitude-is")
+    trace: a CSV or Parquet file.  scenario: what it is a motion of.
+    columns, map_file, and the twelve settings from time_unit to time_offset: how it is to be read,
+    as of the command.  integrator_scheme, timestep (s): how it was stepped, where that is known.
+    attitude to flip_time: the largest errors allowed, each a text with its unit (``"0.1deg"``).
+    name: what the trace is called in the record.  engines: to be run in addition, by name.
+    out, command, progress: as of `run`.
+    Raises UsageError, TraceError (a UsageError), ScenarioError, RecordError, NoTruthError, and
+    RunInterrupted on Ctrl-C.
+    """
+    settings = {
+        "time-unit": time_unit,
+        "angle-unit": angle_unit,
+        "rate-unit": rate_unit,
+        "length-unit": length_unit,
+        "omega-frame": omega_frame,
+        "attitude-is": attitude_is,
+        "euler": euler,
+        "quaternion": quaternion,
+        "point": point,
+        "world-axes": world_axes,
+        "body-axes": body_axes,
+        "time-offset": time_offset,
     }
-    if "attitude-is" in settings:
-        names["attitude"] = settings["attitude-is"]
-    for key in ("world", "body"):
-        if f"{key}-axes" in settings:
-            names[key] = axes_of(settings[f"{key}-axes"], f"--{key}-axes")
-    return check_convention(Convention(**names))
+    required = {
+        "attitude": attitude,
+        "omega": omega,
+        "position": position,
+        "energy": energy,
+        "momentum": momentum,
+        "flip-time": flip_time,
+    }
+    case, choices = case_given(scenario), _choices(name, several(engines))
+    if out is not None:
+        check_folder(Path(out))
+    requirements = tuple(requirements_of(required))
+    declared = Declaration(columns, Path(map_file) if map_file else None, settings)
+    reading = reading_of(declared, read_table(Path(trace)))
+    found = judge_trace(case, reading, Making(integrator_scheme, timestep, requirements))
+    rows = rows_of(found)
+    with reporting(progress) as report:
+        record = scored_record(found, rows, name, choices, command, report)
+    held = result_of(RunRecord.of(record), choices, out)
+    result = ScoreResult(**vars(held), name=name, found=found, rows=tuple(rows))
+    if not result.complete:
+        raise RunInterrupted(result)
+    return result
 
 
-def reading_of(terms: Arguments, table: Table) -> Reading:
-    """The trace's columns and convention. Raises UsageError and TraceError."""
-    columns, settings = settings_of(terms)
-    how = convention_of(settings)
-    check_sequence(how.euler)
-    order = settings.get("quaternion", DEFAULT_ORDER)
-    found: Columns = columns_of(table, columns, order, how.euler)
-    return Reading(table, found, how)
-
-
-def case_named(scenario: str) -> Case:
+def case_given(scenario: ScenarioLike) -> Case:
     """The scenario to score by. Raises ScenarioError."""
     return case_of(scenarios_of([scenario])[0], [])
 
 
-def _choices(terms: Arguments) -> list[EngineChoice]:
-    choices = engine_choices(terms.engines) if terms.engines else []
+def _choices(name: str, engines: Sequence[EngineLike]) -> list[EngineChoice]:
+    choices = engine_choices(engines) if engines else []
     taken = (*RESERVED, *(choice.name for choice in choices))
-    if terms.name in taken or not terms.name.strip():
-        raise UsageError(f"--name {terms.name}: an engine is called so; give the trace another.")
+    if name in taken or not name.strip():
+        raise UsageError(f"--name {name}: an engine is called so; give the trace another.")
     return choices
-
-
-def score(terms: Arguments, as_json: bool) -> int:
-    """Score the trace, write its record, print what was found, and give the exit code."""
-    case, choices = case_named(terms.scenario), _choices(terms)
-    check_folder(terms.out)
-    requirements = tuple(requirements_of(terms.requirements))
-    reading = reading_of(terms, read_table(terms.trace))
-    found = judge_trace(case, reading, Making(terms.scheme, terms.timestep, requirements))
-    rows = rows_of(found)
-    record = scored_record(found, rows, terms.name, choices, ["omegadot", *sys.argv[1:]])
-    write_record(record, terms.out, draw_page(record))
-    code = exit_code(record.run, choices)
-    if as_json:
-        _print_json(found, record, terms, code)
-    else:
-        width = None if sys.stdout.isatty() else WIDTH_WHEN_PIPED
-        print_score(found, rows, terms.name, Console(width=width, highlight=False))
-        _print_others(record, terms.name)
-        typer.echo(f"Report: {terms.out / PAGE}")
-    return code
-
-
-def _print_others(record: Record, name: str) -> None:
-    others = [task for task in record.run["tasks"] if task["engine"] != name]
-    failed = [t for t in others if "fail" in t["gates"].values() or t["outcome"] in BROKEN]
-    if others:
-        engines = ", ".join(dict.fromkeys(task["engine"] for task in others))
-        ended = f"{len(failed)} of them failed" if failed else "none failed"
-        typer.echo(f"Run beside it: {engines}, {len(others)} runs, {ended}.")
-
-
-def _print_json(found: Judged, record: Record, terms: Arguments, code: int) -> None:
-    judgement = machine_readable(found, rows_of(found), terms.name)
-    result = {
-        "schema": record.run["schema"],
-        "exit_code": code,
-        "folder": str(terms.out),
-        "report": str(terms.out / PAGE),
-        **judgement,
-        "tasks": record.run["tasks"],
-    }
-    typer.echo(dump_json(result))

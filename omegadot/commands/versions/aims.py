@@ -14,7 +14,7 @@ from omegadot.gates.measured_run import CHANNELS
 from omegadot.harness.arguments import case_of
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reports.text.numbers import plain
-from omegadot.scenarios import Scenario, builtin_names, find_scenario, load_scenario
+from omegadot.scenarios import Scenario, ScenarioLike, builtin_names, load_scenario, scenario
 
 # On a free body, one with an offset, with damping, on a pivot and under a torque that turns with
 # it, integrators may step different schemes; a flip multiplies what they differ by.
@@ -37,25 +37,29 @@ class Aims:
         return [name for name in names if not self.integrators or name in self.integrators]
 
 
-def scenario_named(argument: str) -> Scenario:
-    """A built-in's name, a path, or the box that is kept here. Raises ScenarioError."""
-    return load_scenario(BOX_FILE) if argument == BOX else find_scenario(argument)
+def scenario_given(argument: ScenarioLike) -> Scenario:
+    """A scenario, or the box that is kept here. Raises ScenarioError."""
+    return load_scenario(BOX_FILE) if argument == BOX else scenario(argument)
 
 
-def case_for(argument: str, timestep: float | None) -> Case:
+def case_for(argument: ScenarioLike, timestep: float | None) -> Case:
     """A scenario at one step, its own middle one where none is given, with samples enough.
 
     Raises ScenarioError and UsageError.
     """
-    case = case_of(scenario_named(argument), () if timestep is None else (timestep,))
+    case = case_of(scenario_given(argument), () if timestep is None else (timestep,))
     sweep = case.sweeps[len(case.sweeps) // 2]
     thinned = Sweep(sweep.timestep, sweep.steps, max(1, sweep.steps // SAMPLES))
     return Case(case.scenario, case.system, case.initial, (thinned,))
 
 
-def aims_of(terms: Sequence[str], integrators: Sequence[str], timestep: float | None) -> Aims:
-    """What the command line requests. Raises ScenarioError and UsageError."""
-    cases = tuple(case_for(argument, timestep) for argument in dict.fromkeys(terms or DEFAULT))
+def aims_of(
+    terms: Sequence[ScenarioLike], integrators: Sequence[str], timestep: float | None
+) -> Aims:
+    """What the arguments request. Raises ScenarioError and UsageError."""
+    named = list(terms) or list(DEFAULT)
+    once = [term for place, term in enumerate(named) if term not in named[:place]]
+    cases = tuple(case_for(term, timestep) for term in once)
     return Aims(cases, tuple(dict.fromkeys(integrators)))
 
 

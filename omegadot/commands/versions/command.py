@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import PageFormat, Setup
+from omegadot.commands.options import PageFormat, Setup, on_a_terminal
 
 
 class With(StrEnum):
@@ -92,24 +92,27 @@ def versions(
     Exit codes: 0 done, whatever changed, 1 some version is not as its adapter declares, or the
     ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be measured.
     """
-    import os
+    from omegadot.commands.versions.print_versions import exit_code, print_versions
+    from omegadot.commands.versions.versions import versions as compare_versions
 
-    from omegadot.commands.versions.versions import Arguments, compare_versions
-
-    arguments = Arguments(
-        engine=engine,
-        releases=releases or [],
+    found = compare_versions(
+        engine,
+        releases or [],
         scenarios=scenario or [],
         integrators=integrator or [],
         timestep=timestep,
         bisect=bisect,
         cache=cache,
-        installer=None if offline else installer.value,
+        offline=offline,
+        installer=installer.value,
         setup=setup.value,
-        adapter=adapter or "",
-        package=package or "",
+        adapter=adapter,
+        package=package,
         speed=speed,
         timeout=timeout,
-        jobs=jobs or os.cpu_count() or 1,
+        jobs=jobs,
+        out=out,
+        progress=on_a_terminal(),
     )
-    raise typer.Exit(compare_versions(arguments, output.value, out))
+    print_versions(found, output.value)
+    raise typer.Exit(exit_code(found))

@@ -1,37 +1,38 @@
-"""``omegadot score --detect``: the conventions that fit, as text."""
+"""``omegadot.detect``: the conventions of a trace that fit a scenario."""
 
 from __future__ import annotations
 
-import math
+import os
 from collections.abc import Sequence
+from pathlib import Path
 
-import typer
-
-from omegadot.commands.score.detection.reading import Reading
-from omegadot.commands.score.detection.search import Detected, detect, time_column
+from omegadot.commands.score.detection.search import Detected, time_column
+from omegadot.commands.score.detection.search import detect as search
 from omegadot.commands.score.read_table import read_table
-from omegadot.commands.score.score import Arguments, case_named, settings_of
+from omegadot.commands.score.score import case_given
+from omegadot.commands.score.settings import Columns, Declaration, settings_of
 from omegadot.commands.score.table import Table, find_column
-from omegadot.reports.record.run_json import dump_json
-
-MOST_SHOWN = 8
+from omegadot.scenarios import ScenarioLike
 
 
-def detect_conventions(arguments: Arguments, as_json: bool) -> int:
-    """Print which conventions fit, and the options to pass.
+def detect(
+    trace: str | os.PathLike[str],
+    scenario: ScenarioLike,
+    *,
+    columns: Columns = (),
+    map_file: str | os.PathLike[str] | None = None,
+) -> Detected:
+    """Which conventions a trace can be read in so that it is the scenario's motion.
 
-    0 where one does, 1 where none or more than one do.
+    ``fitting`` holds one reading where the conventions are found; its ``arguments()`` are those to
+    score with, ``score(trace, scenario, **reading.arguments())``.
+    columns, map_file: as of `score`; of columns that are named, these alone are tried.
+    Raises UsageError, TraceError (a UsageError) and ScenarioError.
     """
-    case, table = case_named(arguments.scenario), read_table(arguments.trace)
-    column, names = _looked_at(table, settings_of(arguments)[0])
-    found = detect(case, table, column, names)
-    fitting = found.fitting
-    code = 0 if len(fitting) == 1 else 1
-    if as_json:
-        typer.echo(dump_json(_machine(found, fitting, code)))
-    else:
-        typer.echo("\n".join(_lines(arguments, found, fitting)))
-    return code
+    case, table = case_given(scenario), read_table(Path(trace))
+    declared = Declaration(columns, Path(map_file) if map_file else None)
+    column, names = _looked_at(table, settings_of(declared)[0])
+    return search(case, table, column, names)
 
 
 def _looked_at(
@@ -43,67 +44,3 @@ def _looked_at(
     others = {name for names in named.values() for name in names}
     tried = [name for name in table.names if name in others] if others else table.names
     return time_column(table, times[0] if times else None), tried
-
-
-def _machine(found: Detected, fitting: list[Reading], code: int) -> dict[str, object]:
-    nearest = found.others[0] if found.others else None
-    return {
-        "exit_code": code,
-        "ambiguous": len(fitting) > 1,
-        "fitting": [{"options": r.options(), "misfit": r.misfit} for r in fitting],
-        "runner_up": nearest and {"options": nearest.options(), "misfit": nearest.misfit},
-        "turn": found.turn,
-    }
-
-
-def _lines(arguments: Arguments, found: Detected, fitting: list[Reading]) -> list[str]:
-    if not fitting:
-        return [
-            f"No convention that was tried fits {arguments.trace} to {arguments.scenario}: "
-            "is it a motion of that scenario, from its start?"
-        ]
-    if len(fitting) > 1:
-        return _ambiguous(found, fitting)
-    best = fitting[0]
-    judgement = [
-        f"One convention fits, to {best.misfit:.1e} of the motion:",
-        _command(arguments, best),
-    ]
-    if found.others:
-        second = found.others[0]
-        times = second.misfit / best.misfit if best.misfit > 0.0 else math.inf
-        judgement.append(
-            f"The next best is {times:.0e} times as far off ({second.misfit:.1e}): "
-            f"{' '.join(_different(second, best))}"
-        )
-    return judgement + _lacking(best)
-
-
-def _ambiguous(found: Detected, fitting: list[Reading]) -> list[str]:
-    why = "This motion does not distinguish them"
-    if found.turn < 0.1:
-        why = f"The body turns by {found.turn:.1e} rad only, too little to distinguish them"
-    judgement = [f"Ambiguous: {len(fitting)} conventions fit alike. {why}; nothing is guessed."]
-    judgement += [f"  {' '.join(reading.options())}" for reading in fitting[:MOST_SHOWN]]
-    more = len(fitting) - MOST_SHOWN
-    return judgement + ([f"  and {more} more"] if more > 0 else [])
-
-
-def _command(arguments: Arguments, best: Reading) -> str:
-    options = " ".join(best.options())
-    return f"  omegadot score {arguments.trace} --scenario {arguments.scenario} {options}"
-
-
-def _different(second: Reading, best: Reading) -> list[str]:
-    own = [option for option in second.options() if option not in best.options()]
-    left = [option for option in best.options() if option not in second.options()]
-    return own or [f"without {' '.join(left)}"]
-
-
-def _lacking(best: Reading) -> list[str]:
-    judgement = []
-    if best.attitude is None:
-        judgement.append("No columns were found that fit as an attitude.")
-    if best.omega is None:
-        judgement.append("No columns were found that fit as an angular velocity.")
-    return judgement

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array
 
 PROBES = 8
+Term = tuple[str, str | float]
 
 
 @dataclass(frozen=True)
@@ -54,35 +56,52 @@ class Reading:
 
     def options(self) -> list[str]:
         """The options to pass to have the trace read so."""
-        judgement = [f"--column 't={self.clock.column}'"]
+        return [_option(key, value) for key, value in self._terms()]
+
+    def arguments(self) -> dict[str, Any]:
+        """The same as keyword arguments of `omegadot.score`."""
+        terms = self._terms()
+        settings = {k.replace("-", "_"): value for k, value in terms if k != "column"}
+        return {"columns": [value for k, value in terms if k == "column"], **settings}
+
+    def _terms(self) -> list[Term]:
+        found: list[Term] = [("column", f"t={self.clock.column}")]
         if self.clock.unit != "s":
-            judgement.append(f"--time-unit {self.clock.unit}")
+            found.append(("time-unit", self.clock.unit))
         if self.clock.offset:
-            judgement.append(f"--time-offset {self.clock.offset!r}")
+            found.append(("time-offset", self.clock.offset))
         world = body = SAME
         if self.omega is not None:
-            judgement.append(f"--column 'w={','.join(self.omega.columns)}'")
-            judgement += [f"--rate-unit {self.omega.unit}"] * (self.omega.unit != "rad/s")
-            judgement += ["--omega-frame world"] * (self.omega.frame == "world")
+            found.append(("column", f"w={','.join(self.omega.columns)}"))
+            found += [("rate-unit", self.omega.unit)] * (self.omega.unit != "rad/s")
+            found += [("omega-frame", "world")] * (self.omega.frame == "world")
             body = self.omega.axes if self.omega.frame == "body" else SAME
         if self.attitude is not None:
-            judgement += _attitude_options(self.attitude)
+            found += _attitude_terms(self.attitude)
             world, body = self.attitude.world, self.attitude.body
         for name, axes in (("world", world), ("body", body)):
-            judgement += [f"--{name}-axes={axes_text(AXES[axes])}"] * (axes != SAME)
-        return judgement
+            found += [(f"{name}-axes", axes_text(AXES[axes]))] * (axes != SAME)
+        return found
 
 
-def _attitude_options(found: Attitude) -> list[str]:
-    names, judgement = ",".join(found.columns), []
+def _option(key: str, value: str | float) -> str:
+    if key == "column":
+        return f"--column '{value}'"
+    if key.endswith("-axes"):  # it may begin with a minus
+        return f"--{key}={value}"
+    return f"--{key} {value}"
+
+
+def _attitude_terms(found: Attitude) -> list[Term]:
+    names, terms = ",".join(found.columns), list[Term]()
     if found.kind.startswith("quaternion"):
-        judgement = [f"--column 'q={names}'", f"--quaternion {found.kind.split()[1]}"]
+        terms = [("column", f"q={names}"), ("quaternion", found.kind.split()[1])]
     elif found.kind == "matrix":
-        judgement = [f"--column 'r={names}'"]
+        terms = [("column", f"r={names}")]
     else:
-        judgement = [f"--column 'e={names}'", f"--euler {found.kind}"]
-        judgement += [f"--angle-unit {found.unit}"] * (found.unit != "rad")
-    return judgement + [f"--attitude-is {found.direction}"] * (found.direction != "world-from-body")
+        terms = [("column", f"e={names}"), ("euler", found.kind)]
+        terms += [("angle-unit", found.unit)] * (found.unit != "rad")
+    return terms + [("attitude-is", found.direction)] * (found.direction != "world-from-body")
 
 
 def unlike(readings: Sequence[Reading]) -> list[Reading]:

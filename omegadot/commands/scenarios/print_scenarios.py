@@ -1,23 +1,24 @@
-"""``omegadot scenarios``: what is built in."""
+"""What ``omegadot scenarios`` prints: name, title, what it shows and the source of each."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 
 import typer
+from rich.console import Console
+from rich.markup import escape
 
-from omegadot.scenarios import builtin_names, load_builtin
+from omegadot.scenarios import Scenario
 
 
-def print_scenarios(as_json: bool) -> None:
-    """Name, title, what it shows and the source of every built-in scenario."""
-    found = [load_builtin(name) for name in builtin_names()]
-    if as_json:
-        typer.echo(json.dumps([scenario.to_dict() for scenario in found], indent=2))
-        return
-    from rich.console import Console
-    from rich.markup import escape
+def print_json(found: Sequence[Scenario]) -> None:
+    """Every scenario in full, for machines."""
+    typer.echo(json.dumps([scenario.to_dict() for scenario in found], indent=2))
 
+
+def print_text(found: Sequence[Scenario]) -> None:
+    """A paragraph a scenario."""
     console = Console(highlight=False)
     for scenario in found:
         run = scenario.run

@@ -1,0 +1,1 @@
+"""``omegadot.exact``: the exact solution at given times; for scripts, without a command."""

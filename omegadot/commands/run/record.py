@@ -1,0 +1,81 @@
+"""From a finished run to its record: who ran, on what, with what outcome."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Sequence
+from typing import Any
+
+from omegadot import __version__
+from omegadot.diagnosis.causes import causes_of
+from omegadot.diagnosis.clusters import clusters_of_run
+from omegadot.gates.case import Case
+from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
+from omegadot.harness.outcome import Outcome, RunRequest
+from omegadot.reports.record.record import Record
+from omegadot.reports.record.schema import SCHEMA
+from omegadot.workers.machine import describe_machine, package_versions
+
+
+def record_of(
+    outcome: Outcome, request: RunRequest, command: Sequence[str], seconds: float
+) -> Record:
+    """The record of a finished or interrupted run."""
+    now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
+    run = {
+        "schema": SCHEMA,
+        "omegadot": __version__,
+        "created": now.isoformat(),
+        "command": list(command),
+        "seed": request.seed,
+        "seconds": round(seconds, 3),
+        "complete": not outcome.interrupted,
+        "machine": describe_machine(),
+        "versions": package_versions(),
+        "engines": _engines(outcome),
+        "scenarios": [_scenario(case) for case in request.cases],
+        "worker_deaths": [{"engine": name, "how": how} for name, how in outcome.deaths],
+        "clusters": [vars(cluster) for cluster in clusters_of_run(outcome.cases)],
+        "tasks": tasks_of_run(outcome, list(request.cases), request.setup, request.seed, causes_of),
+    }
+    return Record(
+        run,
+        metrics_of_run(outcome, request.setup),
+        trajectories_of_run(outcome, request.setup),
+    )
+
+
+def _engines(outcome: Outcome) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = []
+    for engine in outcome.engines:
+        fields = vars(engine.description)
+        integrators = [vars(integrator) for integrator in engine.description.integrators]
+        features = sorted(engine.description.features)
+        found.append(
+            {**fields, "installed": True, "reason": "", "integrators": integrators}
+            | {"features": features}
+        )
+    for choice, answer in outcome.missing:
+        found.append({"name": choice.name, "installed": False, "reason": answer.reason})
+    return found
+
+
+def _scenario(case: Case) -> dict[str, Any]:
+    scenario, body, load = case.scenario, case.system.body, case.system.load
+    return {
+        "name": scenario.name,
+        "title": scenario.title,
+        "shows": scenario.shows,
+        "source": scenario.source,
+        "definition": scenario.to_dict(),
+        "system": {
+            "mass": float(body.mass),
+            "center_of_mass": body.center_of_mass.tolist(),
+            "inertia": body.inertia.tolist(),
+            "gravity": load.gravity.tolist(),
+            "pivot": None if load.pivot is None else load.pivot.tolist(),
+            "damping": float(load.damping),
+            "torque_body": load.torque_body.tolist(),
+            "torque_world": load.torque_world.tolist(),
+        },
+    }

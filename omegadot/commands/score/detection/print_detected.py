@@ -1,0 +1,92 @@
+"""``omegadot score --detect``: the conventions that fit, printed with the options to pass."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import typer
+
+from omegadot.commands.score.detection.reading import Reading
+from omegadot.commands.score.detection.search import Detected
+from omegadot.reports.record.run_json import dump_json
+
+MOST_SHOWN = 8
+
+
+def print_detected(found: Detected, trace: Path, scenario: str, *, as_json: bool) -> int:
+    """Print which conventions fit, and the options to pass.
+
+    0 where one does, 1 where none or more than one do.
+    """
+    fitting = found.fitting
+    code = 0 if len(fitting) == 1 else 1
+    if as_json:
+        typer.echo(dump_json(_machine(found, fitting, code)))
+    else:
+        typer.echo("\n".join(_lines(trace, scenario, found, fitting)))
+    return code
+
+
+def _machine(found: Detected, fitting: list[Reading], code: int) -> dict[str, object]:
+    nearest = found.others[0] if found.others else None
+    return {
+        "exit_code": code,
+        "ambiguous": len(fitting) > 1,
+        "fitting": [{"options": r.options(), "misfit": r.misfit} for r in fitting],
+        "runner_up": nearest and {"options": nearest.options(), "misfit": nearest.misfit},
+        "turn": found.turn,
+    }
+
+
+def _lines(trace: Path, scenario: str, found: Detected, fitting: list[Reading]) -> list[str]:
+    if not fitting:
+        return [
+            f"No convention that was tried fits {trace} to {scenario}: "
+            "is it a motion of that scenario, from its start?"
+        ]
+    if len(fitting) > 1:
+        return _ambiguous(found, fitting)
+    best = fitting[0]
+    judgement = [
+        f"One convention fits, to {best.misfit:.1e} of the motion:",
+        _command(trace, scenario, best),
+    ]
+    if found.others:
+        second = found.others[0]
+        times = second.misfit / best.misfit if best.misfit > 0.0 else math.inf
+        judgement.append(
+            f"The next best is {times:.0e} times as far off ({second.misfit:.1e}): "
+            f"{' '.join(_different(second, best))}"
+        )
+    return judgement + _lacking(best)
+
+
+def _ambiguous(found: Detected, fitting: list[Reading]) -> list[str]:
+    why = "This motion does not distinguish them"
+    if found.turn < 0.1:
+        why = f"The body turns by {found.turn:.1e} rad only, too little to distinguish them"
+    judgement = [f"Ambiguous: {len(fitting)} conventions fit alike. {why}; nothing is guessed."]
+    judgement += [f"  {' '.join(reading.options())}" for reading in fitting[:MOST_SHOWN]]
+    more = len(fitting) - MOST_SHOWN
+    return judgement + ([f"  and {more} more"] if more > 0 else [])
+
+
+def _command(trace: Path, scenario: str, best: Reading) -> str:
+    options = " ".join(best.options())
+    return f"  omegadot score {trace} --scenario {scenario} {options}"
+
+
+def _different(second: Reading, best: Reading) -> list[str]:
+    own = [option for option in second.options() if option not in best.options()]
+    left = [option for option in best.options() if option not in second.options()]
+    return own or [f"without {' '.join(left)}"]
+
+
+def _lacking(best: Reading) -> list[str]:
+    judgement = []
+    if best.attitude is None:
+        judgement.append("No columns were found that fit as an attitude.")
+    if best.omega is None:
+        judgement.append("No columns were found that fit as an angular velocity.")
+    return judgement

@@ -1,0 +1,80 @@
+"""Which class an engine of one's own is: a file, a module, or the class itself."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import sys
+from pathlib import Path
+
+from omegadot.adapters.registry import BUILT_IN, registered
+from omegadot.harness.usage import UsageError
+
+EngineLike = str | type[object]
+"""``NAME``, ``NAME:INTEGRATOR``, ``FILE.py``, ``FILE.py:Class``, ``module:Class``, or a class."""
+
+
+def is_target(engine: EngineLike) -> bool:
+    """Whether an engine is given by its class, not by a name that is registered."""
+    if not isinstance(engine, str):
+        return True
+    left, separator, right = engine.rpartition(":")
+    if not separator or left in registered():
+        return right.endswith(".py")
+    return left.endswith(".py") or _is_module(left.partition(".")[0])
+
+
+def _is_module(package: str) -> bool:
+    known = package.isidentifier() and package != "__main__"
+    return known and importlib.util.find_spec(package) is not None
+
+
+def target_of(engine: EngineLike) -> str:
+    """``FILE.py:Class`` or ``module:Class``, which an engine's own process can import.
+
+    A file alone is given its adapter's class. Raises UsageError.
+    """
+    if not isinstance(engine, str):
+        return _target_of_class(engine)
+    return f"{engine}:{_class_in(Path(engine))}" if engine.endswith(".py") else engine
+
+
+def _target_of_class(engine: object) -> str:
+    if not isinstance(engine, type):
+        raise UsageError(
+            f"{engine!r}: not an engine; give a name, FILE.py:Class, module:Class or a class."
+        )
+    module, name = engine.__module__, engine.__qualname__
+    if f"{module}:{name}" in BUILT_IN.values():
+        return f"{module}:{name}"
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if module == "__main__" or "." in name or file is None:
+        raise UsageError(
+            f"{name}: this class is defined in {_where(module, name)}, and an engine runs in a "
+            "process of its own, which cannot import it from there; put the class into a file and "
+            f"give FILE.py:{engine.__name__}, or import it from that file."
+        )
+    # A module that stands alone is named by its file: the other process has its own search path.
+    return f"{module}:{name}" if "." in module else f"{Path(file).resolve()}:{name}"
+
+
+def _where(module: str, name: str) -> str:
+    if "<locals>" in name:
+        return "a function"
+    return "a notebook or the script itself" if module == "__main__" else "another class"
+
+
+def _class_in(path: Path) -> str:
+    """The adapter in a file: the only class that is called ...Adapter, or the only one."""
+    try:
+        body = ast.parse(path.read_text(encoding="utf-8")).body
+    except OSError:
+        raise UsageError(f"{path}: no such adapter file; check the path.") from None
+    except (SyntaxError, ValueError):
+        raise UsageError(f"{path}: not a Python file; give FILE.py:Class.") from None
+    names = [node.name for node in body if isinstance(node, ast.ClassDef)]
+    named = [name for name in names if name.endswith("Adapter")] or names
+    if len(named) != 1:
+        found = ", ".join(named) or "no class"
+        raise UsageError(f"{path}: which class is the adapter? It has {found}; give FILE.py:Class.")
+    return named[0]
