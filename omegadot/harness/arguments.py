@@ -48,15 +48,15 @@ def engine_choices(
     extra: engines of one's own, by class.  The same name may come several times with different
     integrators. Raises UsageError.
     """
-    added = adapters_named([*extra, *(engine for engine in wanted if is_target(engine))])
-    known = {**registered(), **added}
+    known = registered()
+    names = [e for e in wanted if isinstance(e, str) and not is_target(e, known)]
+    added = adapters_named([*extra, *(engine for engine in wanted if engine not in names)])
+    known |= added
     if not wanted:
         chosen = added or known
         return [EngineChoice(name, target) for name, target in {**known, **chosen}.items()]
     picked: dict[str, list[str]] = {}
-    for term in wanted:
-        if not isinstance(term, str) or is_target(term):
-            continue
+    for term in names:
         name, _, integrator = term.partition(":")
         if name not in known:
             raise UsageError(

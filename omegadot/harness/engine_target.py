@@ -5,21 +5,22 @@ from __future__ import annotations
 import ast
 import importlib.util
 import sys
+from collections.abc import Container
 from pathlib import Path
 
-from omegadot.adapters.registry import BUILT_IN, registered
+from omegadot.adapters.registry import BUILT_IN
 from omegadot.harness.usage import UsageError
 
 EngineLike = str | type[object]
 """``NAME``, ``NAME:INTEGRATOR``, ``FILE.py``, ``FILE.py:Class``, ``module:Class``, or a class."""
 
 
-def is_target(engine: EngineLike) -> bool:
-    """Whether an engine is given by its class, not by a name that is registered."""
+def is_target(engine: EngineLike, known: Container[str]) -> bool:
+    """Whether an engine is given by its class, not by one of the names known."""
     if not isinstance(engine, str):
         return True
     left, separator, right = engine.rpartition(":")
-    if not separator or left in registered():
+    if not separator or left in known:
         return right.endswith(".py")
     return left.endswith(".py") or _is_module(left.partition(".")[0])
 

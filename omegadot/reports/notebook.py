@@ -8,7 +8,7 @@ LARGEST_PAGE = 10_000_000  # characters; every cell that shows it stores them in
 HEIGHT = 900  # CSS pixels: the headline and the charts below it
 
 # Where a page stands in a frame, "#part" would lead to a part of the notebook.
-_OWN_BASE = '<base href="about:srcdoc">'
+OWN_BASE = '<base href="about:srcdoc">'
 
 
 def framed(page: str, alternative: str, height: int = HEIGHT) -> str:
@@ -24,7 +24,7 @@ def framed(page: str, alternative: str, height: int = HEIGHT) -> str:
             f"<p>{escape(alternative)} The page takes {size}, too much for a notebook's cell; "
             "write it with .save(FOLDER) and open it there.</p>"
         )
-    own = page.replace("<head>", f"<head>{_OWN_BASE}", 1)
+    own = page.replace("<head>", f"<head>{OWN_BASE}", 1)
     text = own.replace("&", "&amp;").replace('"', "&quot;")
     return (
         f'<iframe srcdoc="{text}" sandbox="allow-scripts allow-downloads" '

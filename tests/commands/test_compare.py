@@ -12,13 +12,15 @@ import pytest
 from command_line import omegadot, quick_scenario
 
 from omegadot.commands.check.baseline import OF_A_RUN, OF_A_SCENARIO
-from omegadot.commands.compare.compare import compare_folders
-from omegadot.commands.report.report import report_of
+from omegadot.commands.compare.compare import compare
+from omegadot.commands.report.print_report import printed
 from omegadot.harness.usage import UsageError
 from omegadot.reports.record.record import METRICS, read_record
+from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.two_runs.figures import changed_figures, paired
 from omegadot.reports.two_runs.sides import Side
+from omegadot.reports.two_runs.text import as_json, as_markdown
 
 # One engine, as it is and as it comes on another machine or in another version.
 ENGINE = '''
@@ -82,10 +84,10 @@ def run_of(tmp_path_factory):
 
 
 def compared(was: Path, now: Path) -> Any:
-    """What the command states to machines, and that its exit code states the same."""
-    message, code = compare_folders(was, now, "json")
-    found = json.loads(message)
-    assert code == (1 if found["regressed"] else 0)
+    """What the command prints for machines, and that the comparison has the same verdict."""
+    comparison = compare(was, now)
+    found = json.loads(dump_json(as_json(comparison)))
+    assert comparison.regressed == found["regressed"]
     return found
 
 
@@ -121,9 +123,9 @@ def test_an_engine_that_raises_where_it_ran_is_a_regression(run_of) -> None:
     assert {(c["was"], c["now"]) for c in found["worse"]} == {("ok", "raised")}
     assert len(found["worse"]) == 6
     assert "the solver gave up" in found["worse"][0]["why"]
-    message, code = compare_folders(run_of(crash=True), run_of(), "markdown")
-    assert message.startswith("### Better: fly ")
-    assert code == 0
+    mended = compare(run_of(crash=True), run_of())
+    assert as_markdown(mended).startswith("### Better: fly ")
+    assert not mended.regressed
 
 
 def test_bands_are_those_of_the_baselines(run_of) -> None:
@@ -146,7 +148,7 @@ def test_two_runs_stand_side_by_side_on_a_page(run_of, tmp_path: Path) -> None:
     text = (tmp_path / "two-runs.html").read_text(encoding="utf-8")
     assert "✓ pass → ✗ fail" in text
     assert "1.0 → 2.0" in text
-    assert report_of([was, now], tmp_path / "page.html", None, markdown=False)
+    assert printed([was, now], tmp_path / "page.html", None, markdown=False)
     assert (tmp_path / "page.html").read_text(encoding="utf-8") == text
 
 
@@ -158,7 +160,7 @@ def test_one_run_as_figures_and_as_a_comment(run_of, tmp_path: Path) -> None:
     names = {path.name for path in (tmp_path / "figures").iterdir()}
     assert {"quick-attitude.svg", "quick-attitude.png", "quick-work-precision.svg"} <= names
     assert {Path(line).name for line in drawn.out.splitlines()} == names
-    message = report_of([folder], None, None, markdown=True)
+    message = printed([folder], None, None, markdown=True)
     assert message.startswith("### omegadot: fly agrees")
     assert (folder / "report.html").read_bytes() == before
 
@@ -184,10 +186,10 @@ def test_a_folder_that_is_no_run_is_one_sentence(run_of, tmp_path: Path) -> None
     for folder, message in _damaged(tmp_path, run_of()).items():
         for was, now in ((run_of(), folder), (folder, run_of())):
             with pytest.raises(RecordError, match=message) as caught:
-                compare_folders(was, now, "text")
+                compare(was, now)
             assert "\n" not in str(caught.value)
             with pytest.raises(RecordError, match=message):
-                report_of([was, now], tmp_path / "page.html", None, markdown=False)
+                printed([was, now], tmp_path / "page.html", None, markdown=False)
     result = omegadot("compare", run_of(), tmp_path / "cut", folder=tmp_path)
     assert (result.code, result.out) == (2, "")
     assert result.err.count("\n") == 1
@@ -204,7 +206,7 @@ def test_a_folder_that_is_no_run_is_one_sentence(run_of, tmp_path: Path) -> None
 )
 def test_wrong_usage_is_one_sentence(folders, options, message) -> None:
     with pytest.raises(UsageError, match=message) as caught:
-        report_of([Path("nowhere")] * folders, *options)
+        printed([Path("nowhere")] * folders, *options)
     assert "\n" not in str(caught.value)
 
 

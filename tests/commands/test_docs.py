@@ -109,8 +109,20 @@ def test_toml_blocks_are_valid(name: str, text: str) -> None:
         scenario_of(data, name)
 
 
-@pytest.mark.parametrize(("name", "text"), blocks("python"))
-def test_python_blocks_run(name: str, text: str, workplace: Path) -> None:
+def script(name: str, *languages: str) -> str:
+    """The Python of a document as one script: a later block may use an earlier one's names."""
+    found = [text for kind in languages for file, text in blocks(kind) if file == name]
+    return "\n".join(found)
+
+
+WITH_PYTHON = sorted({name for name, _ in blocks("python")})
+# The page on adapters shows a class as people write their first one, without annotations.
+TYPED = [name for name in WITH_PYTHON if name != "add-an-engine.md"]
+
+
+@pytest.mark.parametrize("name", WITH_PYTHON)
+def test_python_blocks_run(name: str, workplace: Path) -> None:
+    text = script(name, "python")
     if "omegadot-run/" in text:  # what the first command of the README leaves
         arguments = in_this_environment(".venv/bin/omegadot run sphere --engine mujoco")[0]
         subprocess.run(arguments, cwd=workplace, capture_output=True, check=True)
@@ -118,6 +130,23 @@ def test_python_blocks_run(name: str, text: str, workplace: Path) -> None:
         [sys.executable, "-c", text], cwd=workplace, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_python_blocks_are_typed(tmp_path: Path) -> None:
+    """As strictly as the package; blocks in ``py`` are not run, for they fetch or take long."""
+    files = []
+    for name in TYPED:
+        files.append(tmp_path / f"{name.removesuffix('.md').replace('-', '_').lower()}.py")
+        files[-1].write_text(script(name, "python", "py"), encoding="utf-8")
+    settings = ("--config-file", "pyproject.toml", "--cache-dir", ".mypy_cache")
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", *settings, *map(str, files)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout
 
 
 def test_the_page_shows_the_toy_engine_as_it_is() -> None:

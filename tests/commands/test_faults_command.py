@@ -93,12 +93,15 @@ def test_the_command_refuses_other_engines(tmp_path: Path) -> None:
 def test_the_command_prints_the_matrix(
     form: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    from omegadot.commands.faults import faults as command_faults
     from omegadot.commands.faults import matrix
+    from omegadot.commands.faults.faults import faults
+    from omegadot.commands.faults.print_faults import print_faults
 
     few = [FAULTS[name] for name in ("MassSlightlyOff", "GyroscopicDropped", "AttitudeOfOrderTwo")]
     monkeypatch.setattr(matrix, "ORDERED", few)
-    assert command_faults.print_faults(["dart"], 1, 0, form) == 0
+    found = faults("dart", bodies=1)
+    assert found.passed
+    print_faults(found, form)
     out = capfd.readouterr().out
     if form == "json":
         engine = json.loads(out)["engines"][0]
