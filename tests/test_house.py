@@ -87,6 +87,27 @@ def test_no_circle_of_files() -> None:
         pytest.fail(f"files import one another: {' -> '.join(error.args[1])}")
 
 
+def test_the_harness_knows_of_reports_the_record_alone() -> None:
+    for file in files_of("harness"):
+        named = {name for name in imported(parsed(file)) if name.startswith("omegadot.reports.")}
+        assert all(name.startswith("omegadot.reports.record") for name in named), file.name
+
+
+def test_functions_print_nothing() -> None:
+    """Scripts call them: what is typed, printed and exited with stands in files of its own."""
+    for file in files_of("commands"):
+        if file.name.startswith("print_") or file.name in {"command.py", "cli.py", "options.py"}:
+            continue
+        tree = parsed(file)
+        outside = {name.partition(".")[0] for name in imported(tree)}
+        allowed = {"rich"} if file.name == "progress.py" else set()
+        assert not outside & {"typer", "rich"} - allowed, file
+        named = {ast.unparse(node) for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+        assert not named & {"sys.argv", "sys.exit", "sys.stdout.isatty", "sys.stderr.isatty"}, file
+        called = {ast.unparse(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)}
+        assert "print" not in called, file
+
+
 @pytest.mark.parametrize("room", THIRD_PARTY)
 def test_lower_rooms_stay_small(room: str) -> None:
     for file in files_of(room):

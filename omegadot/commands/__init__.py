@@ -1,1 +1,5 @@
-"""The commands' words: one signature a file, its work imported only when it is called."""
+"""What people type and call: one folder a command.
+
+``command.py`` holds the arguments as they are typed, ``X.py`` the typed function that scripts call,
+``print_X.py`` what is printed and the exit code. What a command does is imported when it is called.
+"""

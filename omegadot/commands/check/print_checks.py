@@ -7,6 +7,7 @@ import sys
 from collections import Counter
 from collections.abc import Mapping
 
+import typer
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -81,7 +82,7 @@ def print_json(found: CheckResult) -> None:
         "only_skipped": found.only_skipped,
         "checks": [{"id": c.id, **vars(c), **vars(r)} for c, r in found.by_check.items()],
     }
-    print(json.dumps(printed, indent=2))
+    typer.echo(json.dumps(printed, indent=2))
 
 
 def print_checks(found: CheckResult) -> None:
