@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from omegadot.scenarios.errors import ScenarioError, Spoken
+from omegadot.scenarios.errors import ScenarioError, Phrase
 from omegadot.scenarios.loader import find_scenario, load_scenario, scenario_of
 from omegadot.scenarios.model import Scenario
 
@@ -40,7 +40,7 @@ def _named(given: object) -> Scenario:
         return find_scenario(given)
     if isinstance(given, os.PathLike):
         return load_scenario(given)
-    found = Spoken(f"of type {type(given).__name__}")
+    found = Phrase(f"of type {type(given).__name__}")
     advice = "give a built-in's name, a path, a Scenario or a mapping of its tables"
     raise ScenarioError(IN_CODE, None, found, advice)
 
