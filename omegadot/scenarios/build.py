@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from omegadot.scenarios.errors import ScenarioError, Phrase
+from omegadot.scenarios.errors import Phrase, ScenarioError
 from omegadot.scenarios.loader import find_scenario, load_scenario, scenario_of
 from omegadot.scenarios.model import Scenario
 

@@ -94,14 +94,13 @@ def exact(scenario: ScenarioLike, times: ArrayLike | None = None) -> ExactStates
 
 
 def _followed(case: Case, requested: Array) -> Array:
-    """The times requested, and from 0 to the last of them those of the scenario's samples.
+    """The times requested, and those of the scenario's samples, from 0 to the last of all.
 
-    What rounding comes to grows along the motion, so the floor needs the motion up to there.
+    What rounding comes to grows along the motion, so the floor needs the whole of it.
     """
     own = case.sample_times
     further = np.arange(own[-1], requested[-1], own[-1] / (len(own) - 1))[:MOST_FURTHER]
-    known = np.concatenate((own, further))
-    return np.union1d(known[known <= requested[-1]], requested)
+    return np.union1d(np.concatenate((own, further)), requested)
 
 
 def _checked(times: ArrayLike, case: Case) -> Array:
