@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -19,15 +20,15 @@ class Progress:
 
 Reporter = Callable[[Progress], object]
 Reporting = bool | Reporter
-"""Nothing (False), a bar on standard error (True), or a function that is called with Progress."""
+"""Nothing (False), a bar or a line on standard error (True), or a function of Progress."""
 
 
 @contextmanager
 def reporting(progress: Reporting) -> Iterator[Reporter]:
     """What a command reports to. A function may be called from several threads, one at a time."""
     if progress is True:
-        with _bar() as bar:
-            yield bar
+        with _bar() if sys.stderr.isatty() else _line() as shown:
+            yield shown
         return
     if progress is False:
         yield lambda now: None
@@ -56,6 +57,19 @@ def _bar() -> Iterator[Reporter]:
         yield lambda now: bar.update(
             task, description=now.what, completed=now.done, total=now.total
         )
+
+
+@contextmanager
+def _line() -> Iterator[Reporter]:
+    """One line that is written over, as notebooks show it."""
+
+    def write(now: Progress) -> None:
+        count = "" if now.total is None else f": {now.done} of {now.total}"
+        sys.stderr.write(f"\r{now.what + count:<72}")
+        sys.stderr.flush()
+
+    yield write
+    sys.stderr.write("\r" + " " * 72 + "\r")
 
 
 class Count:

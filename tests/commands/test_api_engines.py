@@ -81,6 +81,10 @@ def test_progress_is_reported_and_nothing_printed(
     assert [p.done for p in seen if p.total is not None] == [0, 1, 2, 3]
     assert seen[-1] == api.Progress("running", 3, 3)
     assert capfd.readouterr() == ("", "")
+    api.run(quick, "mujoco:RK4", timesteps=0.02, progress=True)
+    shown = capfd.readouterr()
+    assert shown.out == ""
+    assert "\rrunning: 1 of 1 " in shown.err
 
 
 def test_it_runs_in_a_thread(quick: Path) -> None:

@@ -127,7 +127,7 @@ def test_an_earlier_record_gives_way_and_nothing_else_does(tmp_path: Path) -> No
         (("run", "sphere", "--timestep", "soon"), "--timestep"),
         (("run", "sphere", "--setup", "racing"), "racing"),
         (("run", "sphere", "sphere"), "name of its own"),
-        (("run", "sphere", "--adapter", "mine.py"), "no class is named"),
+        (("run", "sphere", "--adapter", "mine"), "no class is named"),
         (("run", "sphere", "--speed"), "--speed"),
         (("run", "sphere", "--timeout", "-1"), "--timeout"),
         (("report", "nowhere"), "no such folder"),
