@@ -229,7 +229,7 @@ def test_an_interpreter_with_another_version_is_not_taken(
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"bisect": "order attitude stap"}, "no metric has the word 'stap'; write step"),
+        ({"bisect": "order attitude stap"}, "no metric has 'stap' in its name; write step"),
         ({"integrators": ["stap"]}, "write step"),
         ({"timestep": -1.0}, "not a positive number"),
         ({"engine": "mujoko", "adapter": None}, "write mujoco"),
