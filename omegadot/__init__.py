@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from omegadot.commands.faults.faults import FaultsResult, faults
     from omegadot.commands.progress import Progress
     from omegadot.commands.report.report import report
-    from omegadot.commands.run.run import RunInterrupted, RunResult, run
+    from omegadot.commands.run.result import RunInterrupted, RunResult
+    from omegadot.commands.run.run import run
     from omegadot.commands.schemes.schemes import SchemesResult, schemes
     from omegadot.commands.score.detection.detect import detect
     from omegadot.commands.score.detection.search import Detected
@@ -51,7 +52,8 @@ _PLACES = {
     "commands.faults.faults": ("FaultsResult", "faults"),
     "commands.progress": ("Progress",),
     "commands.report.report": ("report",),
-    "commands.run.run": ("RunInterrupted", "RunResult", "run"),
+    "commands.run.result": ("RunInterrupted", "RunResult"),
+    "commands.run.run": ("run",),
     "commands.schemes.schemes": ("SchemesResult", "schemes"),
     "commands.score.detection.detect": ("detect",),
     "commands.score.detection.search": ("Detected",),

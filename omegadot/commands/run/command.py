@@ -74,7 +74,7 @@ def run(
     timed out or could not be started.
     """
     from omegadot.commands.run.print_run import exit_code, print_json, print_text
-    from omegadot.commands.run.run import RunInterrupted
+    from omegadot.commands.run.result import RunInterrupted
     from omegadot.commands.run.run import run as run_scenarios
 
     if memory is not None and not _memory_is_limited():

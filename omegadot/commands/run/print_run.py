@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from omegadot.commands.run.run import RunResult
+from omegadot.commands.run.result import RunResult
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.text.terminal import print_summary

@@ -132,7 +132,7 @@ def score(
         fits = detect_conventions(trace, scenario, columns=column or [], map_file=map_file)
         raise typer.Exit(print_detected(fits, trace, scenario, as_json=output is Format.json))
     from omegadot.commands.run.print_run import exit_code
-    from omegadot.commands.run.run import RunInterrupted
+    from omegadot.commands.run.result import RunInterrupted
     from omegadot.commands.score.print_score import print_json, print_text
     from omegadot.commands.score.score import score as score_trace
 

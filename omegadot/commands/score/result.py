@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from omegadot.commands.run.run import RunResult
+from omegadot.commands.run.result import RunResult
 from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.sentences import sentences
 from omegadot.commands.score.shift import Shift

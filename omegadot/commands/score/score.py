@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from omegadot.commands.progress import Reporting, reporting
-from omegadot.commands.run.run import RunInterrupted, result_of
+from omegadot.commands.run.result import RunInterrupted, result_of
 from omegadot.commands.score.judged import Making, judge_trace
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.record import scored_record

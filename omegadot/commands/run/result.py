@@ -1,0 +1,81 @@
+"""What comes of a run, for a script: its record, and what of it fails or has no answer."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from omegadot.harness.plan import EngineChoice
+from omegadot.reports.run_record import RunRecord, TaskResult
+
+
+@dataclass(frozen=True, repr=False)
+class RunResult:
+    """A run. record: its tables and its page.  folder: where it was written, if anywhere.
+
+    required: engines that were given by name; one of these that is missing counts against the run.
+    """
+
+    record: RunRecord
+    folder: Path | None = None
+    required: frozenset[str] = frozenset()
+
+    @property
+    def complete(self) -> bool:
+        """Whether it was not interrupted."""
+        return bool(self.record.run["complete"])
+
+    @property
+    def failures(self) -> tuple[TaskResult, ...]:
+        """The runs of which a gate fails, or that diverged."""
+        return tuple(task for task in self.record.tasks if task.failed)
+
+    @property
+    def unanswered(self) -> tuple[TaskResult, ...]:
+        """The runs whose engine crashed, raised, timed out, or is missing though it was named."""
+        return tuple(
+            task
+            for task in self.record.tasks
+            if task.broken or (task.outcome == "not-installed" and task.engine in self.required)
+        )
+
+    @property
+    def answered(self) -> bool:
+        """Whether every engine answered: no run is without an answer, and no process died."""
+        return not (self.unanswered or self.record.run["worker_deaths"])
+
+    @property
+    def stale_exceptions(self) -> tuple[str, ...]:
+        """Why a declared exception does not hold any more, a sentence each."""
+        return tuple(entry["problem"] for entry in self.record.run.get("stale_exceptions", ()))
+
+    @property
+    def passed(self) -> bool:
+        """Whether the run is complete, every engine answered and every gate holds."""
+        held = not self.failures and not self.stale_exceptions
+        return self.complete and self.answered and held
+
+    def __repr__(self) -> str:
+        verdict = "passed" if self.passed else "not passed"
+        return f"<omegadot run, {verdict}: {self.record.headline}>"
+
+    def _repr_html_(self) -> str:
+        return self.record._repr_html_()
+
+
+class RunInterrupted(KeyboardInterrupt):
+    """Ctrl-C during a run. result: what had come in until then, written where it was to be."""
+
+    def __init__(self, result: RunResult) -> None:
+        super().__init__("interrupted")
+        self.result = result
+
+
+def result_of(
+    record: RunRecord, choices: Sequence[EngineChoice], out: str | os.PathLike[str] | None
+) -> RunResult:
+    """The result of a record, which is written where a folder is given. Raises RecordError."""
+    folder = None if out is None else record.save(out)
+    return RunResult(record, folder, frozenset(c.name for c in choices if c.required))
