@@ -135,6 +135,30 @@ def test_a_package_that_refuses_the_python_is_refused(monkeypatch: pytest.Monkey
     assert unmet(engine(), later)
 
 
+@pytest.mark.parametrize(
+    ("required", "python", "admitted"),
+    [
+        (">=3.11.4", "3.11", True),
+        (">3.10", "3.10", True),
+        ("<3.12.4", "3.12", True),
+        ("<3.12.0", "3.12", False),
+        ("~=3.11.2", "3.12", False),
+        ("~=3.11", "3.14", True),
+        ("==3.12.*", "3.12", True),
+        ("!=3.12.*,>=3.9", "3.12", False),
+        (">=3.9,!=3.12.0", "3.12", True),
+    ],
+)
+def test_a_minor_version_is_admitted_where_a_release_of_it_is(
+    monkeypatch: pytest.MonkeyPatch, required: str, python: str, admitted: bool
+) -> None:
+    wanted = Requirements({"attitude": 1.0}, {"attitude": "1"}, python=python)
+    module = "omegadot.commands.choose.eligible"
+    monkeypatch.setattr(f"{module}._required", lambda name: required)
+    monkeypatch.setattr(f"{module}._running", lambda: "3.99")
+    assert (unmet(engine(), wanted) == []) is admitted
+
+
 @pytest.mark.parametrize("name", ["mujoco", "pinocchio", "dart"])
 def test_what_the_packages_say_of_python_is_found(name: str) -> None:
     old = Requirements({"attitude": 1.0}, {"attitude": "1"}, python="3.1")

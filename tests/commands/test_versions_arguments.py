@@ -6,14 +6,17 @@ import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from random import Random
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from omegadot.commands.versions.arguments import requested_releases
 from omegadot.commands.versions.environments import default_cache
 from omegadot.commands.versions.metric import Figure, differ, matching, shown, unknown_metric
 from omegadot.commands.versions.product import product_of
-from omegadot.commands.versions.release import Span, key_of, rising
+from omegadot.commands.versions.release import Span, rising, version_of
 from omegadot.harness.usage import UsageError
 
 RELEASES = ("6.16.2", "6.16.10", "6.17.0", "6.17.1", "6.18.0rc1", "6.18.0", "6.18.0.post1", "7.0")
@@ -26,9 +29,40 @@ def releases(span: Span) -> Sequence[str]:
 def test_versions_are_ordered_by_number() -> None:
     assert rising(reversed(RELEASES)) == list(RELEASES)
     assert rising(["1.10", "1.9", "1.9", "about"]) == ["1.9", "1.10"]
-    assert key_of("4.0") == key_of("4.0.0")
-    assert key_of("4.0.dev1") < key_of("4.0a1") < key_of("4.0rc1") < key_of("4.0")  # type: ignore[operator]
-    assert key_of("4.x") is None
+    assert version_of("4.0") == version_of("4.0.0")
+    assert version_of("4.0.dev1") < version_of("4.0a1") < version_of("4.0rc1") < version_of("4.0")  # type: ignore[operator]
+    assert version_of("4.x") is None
+
+
+ORDERED = (
+    "1.0.dev1",
+    "1.0a1",
+    "1.0a2",
+    "1.0b1",
+    "1.0rc1",
+    "1.0",
+    "1.0.post1",
+    "1.0.1",
+    "1.2",
+    "1.10",
+)
+
+
+@given(st.lists(st.sampled_from(ORDERED), unique=True), st.randoms(use_true_random=False))
+def test_any_order_of_versions_rises_alike(versions: list[str], random: Random) -> None:
+    """Compared as texts, or by their numbers alone, some of these stand elsewhere."""
+    shuffled = [f"{version}.0" if version[-2:] == "10" else version for version in versions]
+    random.shuffle(shuffled)
+    found = rising([*shuffled, *versions])
+    assert [version_of(text) for text in found] == [version_of(v) for v in ORDERED if v in versions]
+    assert rising(found) == found
+
+
+@given(st.sampled_from(ORDERED), st.sampled_from(ORDERED))
+def test_a_range_is_what_lies_between_its_ends(low: str, high: str) -> None:
+    between = ORDERED[ORDERED.index(low) : ORDERED.index(high) + 1]
+    finals = [v for v in between if not any(mark in v for mark in ("dev", "a", "b", "rc"))]
+    assert Span(low, high).of(ORDERED) == finals
 
 
 def test_ranges_have_both_ends_and_no_trial_releases() -> None:

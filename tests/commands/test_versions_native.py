@@ -12,7 +12,7 @@ from omegadot.adapters.native_axes import GIVEN, TURNED, axes_observed, describe
 from omegadot.adapters.protocol import UnsupportedError
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.adapters.registry import BUILT_IN, build_adapter
-from omegadot.commands.versions.release import key_of
+from omegadot.commands.versions.release import version_of
 from omegadot.workers.engine_end.checked import AnswerError, checked_native
 from omegadot.workers.engine_end.operations import OPERATIONS
 
@@ -40,7 +40,7 @@ EXPECTED = {
 
 
 def at_least(version: str, release: str) -> bool:
-    one, other = key_of(version), key_of(release)
+    one, other = version_of(version), version_of(release)
     assert one is not None
     assert other is not None
     return one >= other

@@ -6,12 +6,16 @@ import sys
 from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, metadata
 
+from packaging.specifiers import SpecifierSet
+
 from omegadot.adapters.protocol import Description
 from omegadot.commands.choose.requirements import Requirements
 
 PRECISION = {"float64": "double", "float32": "single"}
 # The name of a package is not that of its module: "pinocchio" is something else on PyPI.
 PACKAGES = {"mujoco": "mujoco", "pinocchio": "pin", "dart": "dartpy"}
+# More than any minor version of Python has had.
+MOST_RELEASES = 40
 
 
 def unmet(description: Description, wanted: Requirements) -> list[str]:
@@ -50,31 +54,15 @@ def _required(engine: str) -> str | None:
 def _python_refused(engine: str, python: str) -> str:
     """The clause that states the package refuses this Python; empty where it does not."""
     required = _required(engine)
-    if required is None or python == _running():
-        return ""
-    if all(_holds(python, part.strip()) for part in required.split(",")):
+    if required is None or python == _running() or _admits(required, python):
         return ""
     return f"python: its package requires {required}, {python} is required"
 
 
-def _holds(python: str, clause: str) -> bool:
-    """Whether one clause of a version specifier admits some release of this Python."""
-    operator = clause.rstrip("0123456789.* ")
-    bound = tuple(int(n) for n in clause[len(operator) :].strip().split(".") if n.isdigit())
-    minor = tuple(int(n) for n in python.split("."))
-    short = bound[:2]
-    match operator.strip():
-        case ">=" | "~=" | ">":
-            return minor >= short
-        case "<":
-            return minor < short or (minor == short and len(bound) > 2 and bound[2] > 0)
-        case "<=":
-            return minor <= short
-        case "==":
-            return minor[: len(short)] == short
-        case "!=":
-            return not (minor == short and "*" in clause)
-    return True
+def _admits(required: str, python: str) -> bool:
+    """Whether a ``Requires-Python`` admits some release of this minor version."""
+    specifiers = SpecifierSet(required)
+    return any(f"{python}.{micro}" in specifiers for micro in range(MOST_RELEASES))
 
 
 def python_note(engine: str, python: str | None) -> str:

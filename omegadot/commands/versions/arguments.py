@@ -6,7 +6,7 @@ import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from omegadot.commands.versions.release import Span, key_of, rising
+from omegadot.commands.versions.release import Span, rising, version_of
 from omegadot.harness.usage import UsageError
 
 FEWEST = 2
@@ -33,7 +33,7 @@ def requested_releases(
         version, own, path = argument.partition("=")
         low, dots, high = version.partition("..")
         for number in filter(None, (low, high) if dots else (version,)):
-            if key_of(number) is None:
+            if version_of(number) is None:
                 raise UsageError(
                     f"{argument}: {number!r} is no version; write 1.2.3 or 1.2.0..1.4.0."
                 )
@@ -67,7 +67,7 @@ def _with_python(argument: str, version: str, dots: str, path: str) -> str:
 
 
 def _within(argument: str, span: Span, releases: Callable[[Span], Sequence[str]]) -> list[str]:
-    low, high = key_of(span.low), key_of(span.high)
+    low, high = version_of(span.low), version_of(span.high)
     if low is not None and high is not None and low > high:
         raise UsageError(f"{argument}: it ends before it starts; write {span.high}..{span.low}.")
     found = rising(releases(span))

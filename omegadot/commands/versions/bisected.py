@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
+from packaging.version import Version
+
 from omegadot.commands.versions.bisection import Bisection, bisect
 from omegadot.commands.versions.changes import Change, changes_between
 from omegadot.commands.versions.figures import Wanted
@@ -19,7 +21,6 @@ from omegadot.commands.versions.metric import (
 )
 from omegadot.commands.versions.product import Product
 from omegadot.commands.versions.record import Record, bisection_record
-from omegadot.commands.versions.release import key_of
 from omegadot.diagnosis.scheme_study.probes import PROBES
 from omegadot.gates.measured_run import CHANNELS
 from omegadot.harness.usage import UsageError, nearest
@@ -64,7 +65,7 @@ def bisect_metric(
 
     first: list[Name] = []
     found: Bisection = bisect(versions, look, compare)
-    portraits = sorted(found.looked_at, key=lambda p: key_of(p.version) or ((0,), 0, 0))
+    portraits = sorted(found.looked_at, key=lambda p: Version(p.version))
     return portraits, bisection_record(arguments, list(known), found)
 
 

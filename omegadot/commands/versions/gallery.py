@@ -13,7 +13,7 @@ from omegadot.commands.versions.figures import Wanted
 from omegadot.commands.versions.measure import Portrait, Sitting
 from omegadot.commands.versions.metric import Name
 from omegadot.commands.versions.product import Product
-from omegadot.commands.versions.release import key_of
+from omegadot.commands.versions.release import version_of
 from omegadot.commands.versions.speed import ROUNDS, time_steps
 from omegadot.commands.versions.truths import Truths
 from omegadot.workers.harness_end.pool import outcome_of
@@ -83,12 +83,12 @@ class Gallery:
     def _check_start(self, portrait: Portrait, place: Place) -> None:
         if portrait.outcome == "not-installed" and place.origin != OWN:
             portrait.reason = f"installed, and it cannot be imported: {portrait.reason}"
-        statement = key_of(portrait.statement)
+        statement = version_of(portrait.statement)
         if (
             portrait.ok
             and place.origin == OWN
             and statement
-            and statement != key_of(portrait.version)
+            and statement != version_of(portrait.version)
         ):
             portrait.outcome = "not-installed"
             portrait.reason = f"the interpreter given for it has {portrait.statement}"

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
-from omegadot.commands.versions.release import Span, key_of
+from omegadot.commands.versions.release import Span, version_of
 from omegadot.workers.plain_text import one_line
 
 SECONDS_TO_INSTALL = 900.0
@@ -156,7 +156,7 @@ class Uv:
                 return None
             raise InstallError(reason_of(done.stderr))
         pinned = re.search(rf"^{re.escape(package)}==(\S+)", done.stdout, re.MULTILINE)
-        return pinned[1] if pinned and key_of(pinned[1]) else None
+        return pinned[1] if pinned and version_of(pinned[1]) else None
 
 
 def installer_named(name: str) -> Installer:
