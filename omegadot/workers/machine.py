@@ -2,26 +2,38 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import platform
+import re
+import subprocess
+import sys
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import psutil
 
 RECORDED = (
     "numpy", "scipy", "pydantic", "polars", "pyarrow", "plotly", "jinja2", "mujoco", "pin", "dartpy"
 )  # fmt: skip
 
+# Of control groups, version 2 and 1. A container sees its own group as the root.
+CONTAINER_LIMITS = (
+    "/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"
+)  # fmt: skip
+
 
 def _processor() -> str:
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as lines:
-            for line in lines:
-                if line.startswith("model name"):
-                    return line.partition(":")[2].strip()
-    except OSError:
-        pass
+    """The processor's name, where the system keeps it; else the kind that it is."""
+    with contextlib.suppress(OSError, subprocess.SubprocessError):
+        if sys.platform == "darwin":
+            command = ["sysctl", "-n", "machdep.cpu.brand_string"]
+            return subprocess.check_output(command, text=True).strip()
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+        if found := re.search(r"^model name\s*:\s*(.+)", text, re.MULTILINE):
+            return found[1].strip()
     return platform.processor() or platform.machine()
 
 
@@ -48,16 +60,9 @@ def package_versions() -> dict[str, str]:
 
 
 def memory_of_machine() -> int:
-    """Bytes of memory that there are: the machine's, or those that its container may have.
-
-    Zero where the system does not report.
-    """
-    try:
-        found = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    except (ValueError, OSError, AttributeError):
-        return 0
-    try:
-        with open("/sys/fs/cgroup/memory.max", encoding="ascii") as file:
-            return min(found, int(file.read()))
-    except (OSError, ValueError):  # there is no such file, or it states "max"
-        return found
+    """Bytes of memory that there are: the machine's, or those that its container may have."""
+    most: int = psutil.virtual_memory().total
+    for limit in CONTAINER_LIMITS:
+        with contextlib.suppress(OSError, ValueError):  # there is no such file, or no limit
+            most = min(most, int(Path(limit).read_text("ascii")))
+    return most

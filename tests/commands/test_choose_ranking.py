@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import sys
-
 import pytest
 
-from omegadot.commands.choose.memory import peak_memory
 from omegadot.commands.choose.ranking import Point, front, ranked
 from omegadot.commands.choose.spread import Spread, total
 
@@ -61,15 +57,3 @@ def test_spreads_follow_their_rounds() -> None:
     assert spread.quartiles == (1.5, 3.0)
     assert spread.under(8.0).rounds == (8.0, 4.0, 2.0)
     assert total([spread, spread.scaled(2.0)]).rounds == pytest.approx((3.0, 6.0, 12.0))
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux reports")
-def test_memory_is_that_of_a_process_with_numpy_in_it() -> None:
-    found = peak_memory(os.getpid())
-    assert found is not None
-    assert 10_000_000 < found < 100_000_000_000
-
-
-def test_memory_of_nothing_is_not_told() -> None:
-    assert peak_memory(None) is None
-    assert peak_memory(2**30) is None

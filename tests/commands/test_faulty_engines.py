@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import polars as pl
+import psutil
 import pytest
 from command_line import FAULTY, PROGRAM, Result, omegadot, quick_scenario
 
@@ -98,16 +99,6 @@ def test_an_engine_that_does_not_start_is_said_so(
     assert reason in tasks[0]["reason"]
 
 
-def children_of(pid: int) -> list[int]:
-    # Each worker is the child of the thread that started it.
-    listed = [file.read_text() for file in Path(f"/proc/{pid}/task").glob("*/children")]
-    return [int(child) for children in listed for child in children.split()]
-
-
-def command_of(pid: int) -> str:
-    return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode()
-
-
 def long_run(folder: Path) -> subprocess.Popen[str]:
     """A run that is busy for minutes, with its MuJoCo and reference workers up."""
     text = quick_scenario(folder).read_text().replace("duration = 1.0", "duration = 100.0")
@@ -126,9 +117,9 @@ def long_run(folder: Path) -> subprocess.Popen[str]:
 
 def wait_for_worker(process: subprocess.Popen[str], name: str) -> int:
     for _ in range(600):
-        for child in children_of(process.pid):
-            if f"{name}:" in command_of(child):
-                return child
+        for child in psutil.Process(process.pid).children():
+            if any(name in target for target in child.cmdline()[-2:-1]):
+                return child.pid
         time.sleep(0.05)
     raise AssertionError(f"no worker for {name} came up")
 

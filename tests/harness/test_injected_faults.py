@@ -3,6 +3,7 @@
 Two runs, shared by every test here: one of engines that break, one of engines that hang.
 """
 
+import contextlib
 import json
 import os
 import uuid
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import polars as pl
+import psutil
 import pytest
 from command_line import ENGINES, Result, omegadot, quick_scenario
 
@@ -111,12 +113,10 @@ class Run:
 def processes_marked(mark: str) -> list[str]:
     """Processes that were started, by whomsoever, with this mark in their environment."""
     found = []
-    for process in Path("/proc").glob("[0-9]*"):
-        try:
-            if process.name != str(os.getpid()) and mark in (process / "environ").read_text():
-                found.append((process / "cmdline").read_text())
-        except (OSError, UnicodeDecodeError):
-            continue
+    for process in psutil.process_iter():
+        with contextlib.suppress(psutil.Error):
+            if process.pid != os.getpid() and mark in process.environ().values():
+                found.append(" ".join(process.cmdline()))
     return found
 
 

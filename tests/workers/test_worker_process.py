@@ -3,10 +3,12 @@
 import os
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from omegadot.workers import machine
 from omegadot.workers.harness_end import process as worker_process
 from omegadot.workers.harness_end.process import WorkerProcess
 from omegadot.workers.machine import memory_of_machine
@@ -95,3 +97,35 @@ def test_a_death_between_requests_is_counted() -> None:
         time.sleep(0.01)
     worker.finish()
     assert worker.deaths == ["ended by signal 9 (SIGKILL)"]
+
+
+def test_peak_memory_is_the_workers_own_and_holds_what_it_gave_back() -> None:
+    """Linux's getrusage would count what the starting process held: 400 MB here."""
+    held = np.ones(50_000_000)
+    worker = WorkerProcess("omegadot.adapters.reference.adapter:ReferenceAdapter", "physics", 60.0)
+    assert worker.start().ok
+    found = worker.peak_memory()
+    worker.stop()
+    assert found is not None
+    assert 10e6 < found < held.nbytes
+    assert worker.peak_memory() is None
+
+
+def test_a_container_may_have_less_than_its_machine(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    whole = memory_of_machine()
+    (tmp_path / "given").write_text("1073741824\n")
+    (tmp_path / "none").write_text("max\n")
+    for name, most in (("none", whole), ("missing", whole), ("given", 2**30)):
+        monkeypatch.setattr(machine, "CONTAINER_LIMITS", (str(tmp_path / name),))
+        assert memory_of_machine() == most
+
+
+def test_a_processor_is_named_where_the_system_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine.sys, "platform", "darwin")
+    monkeypatch.setattr(machine.subprocess, "check_output", lambda *_, **__: "Apple M2\n")
+    assert machine.describe_machine()["processor"] == "Apple M2"
+    monkeypatch.setattr(machine.sys, "platform", "other")
+    monkeypatch.setattr(machine.Path, "read_text", lambda *_, **__: "BogoMIPS : 50\n")
+    assert machine.describe_machine()["processor"]

@@ -11,7 +11,6 @@ from functools import partial
 
 from omegadot.commands.choose.candidate import BrokenError, Candidate, Prober
 from omegadot.commands.choose.eligible import unmet
-from omegadot.commands.choose.memory import peak_memory
 from omegadot.commands.choose.requirements import Requirements
 from omegadot.commands.choose.ruler import NoTruthError, Ruler
 from omegadot.commands.choose.spread import Spread
@@ -177,8 +176,7 @@ class Chooser:
         choice.costs = time_all(wanted, self.engines.drivers)
         for name in {candidate.engine.name for f in choice.cases for candidate in f.candidates}:
             with contextlib.suppress(KeyError):
-                pid = self.engines.drivers[name].worker.pid
-                choice.memory[name] = peak_memory(pid)
+                choice.memory[name] = self.engines.drivers[name].worker.peak_memory()
 
 
 def choices_to_make(choices: Sequence[EngineChoice]) -> list[EngineChoice]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal
 
-from omegadot.commands.choose.units import quantity
+from omegadot.commands.units import quantity
 from omegadot.harness.usage import UsageError, nearest
 
 Precision = Literal["double", "single"]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 
-from omegadot.commands.score.units import ANGLE, LENGTH, RATE, TIME, scale
+from omegadot.commands.units import UNITS, unit_named
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
 
@@ -47,14 +48,15 @@ class Convention:
 
     def scale_of(self, kind: str) -> float:
         """The SI value of the unit of ``time``, ``angle``, ``rate`` or ``length``."""
-        tables = {"time": TIME, "angle": ANGLE, "rate": RATE, "length": LENGTH}
-        return tables[kind][getattr(self, f"{kind}_unit")]
+        return UNITS[kind][getattr(self, f"{kind}_unit")]
 
 
 def check_convention(found: Convention) -> Convention:
-    """The convention, if all of its words are known. Raises UsageError."""
-    for kind, table in (("time", TIME), ("angle", ANGLE), ("rate", RATE), ("length", LENGTH)):
-        scale(table, getattr(found, f"{kind}_unit"), f"--{kind}-unit")
+    """The convention with its units as UNITS spells them. Raises UsageError."""
+    units: dict[str, Any] = {
+        f"{kind}_unit": unit_named(getattr(found, f"{kind}_unit"), kind, f"--{kind}-unit")
+        for kind in ("time", "angle", "rate", "length")
+    }
     for name, allowed in (
         ("omega_frame", FRAMES),
         ("attitude", DIRECTIONS),
@@ -65,7 +67,7 @@ def check_convention(found: Convention) -> Convention:
             option = OPTIONS[name]
             raise UsageError(f"{option} {argument}: no such choice; {nearest(argument, allowed)}.")
     check_sequence(found.euler)
-    return found
+    return replace(found, **units)
 
 
 OPTIONS = {

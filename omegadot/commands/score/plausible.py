@@ -11,7 +11,7 @@ from omegadot.commands.score.columns import GROUPS, Columns
 from omegadot.commands.score.convention import OPTIONS, Convention
 from omegadot.commands.score.table import Table, TraceError
 from omegadot.commands.score.trace import Trace, trace_of
-from omegadot.commands.score.units import ANGLE, LENGTH, RATE, TIME
+from omegadot.commands.units import UNITS
 from omegadot.gates.scales import norm
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.rotations import attitude_angle, normalize
@@ -36,7 +36,8 @@ def check_duration(table: Table, trace: Trace, how: Convention, duration: float)
     if end <= LONGEST * duration:
         return
     unit = how.scale_of("time")
-    spans = {u: end * s / unit for u, s in TIME.items() if end * s / unit <= 1.5 * duration}
+    spans = {name: end * size / unit for name, size in UNITS["time"].items()}
+    spans = {name: span for name, span in spans.items() if span <= 1.5 * duration}
     # The longest that does not outlast the scenario; far shorter, and it is any unit's guess.
     best = max(spans, key=lambda u: spans[u], default=None)
     fits = best is not None and spans[best] > 0.01 * duration
@@ -51,9 +52,8 @@ def check_units(
     table: Table, columns: Columns, how: Convention, system: System, trace: Trace, truth: Truth
 ) -> None:
     """Raise TraceError where another unit than the declared one fits, and that one does not."""
-    for kind, group, units in (
-        ("rate", "w", RATE), ("angle", "e", ANGLE), ("length", "p", LENGTH)
-    ):  # fmt: skip
+    for kind, group in (("rate", "w"), ("angle", "e"), ("length", "p")):
+        units = UNITS[kind]
         if GROUPS[group][0] not in columns:
             continue
         declared = _misfit(kind, trace, truth)

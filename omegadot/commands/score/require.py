@@ -8,18 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.commands.score.measured import Measured
-from omegadot.commands.score.units import ANGLE, LENGTH, NUMBER, RATE, TIME, quantity
 from omegadot.commands.score.verdicts import GATES
+from omegadot.commands.units import UNITS, quantity, unit_written
 from omegadot.gates.rows import Row
 from omegadot.harness.usage import UsageError
 
-UNITS: Mapping[str, dict[str, float]] = {
-    "attitude": ANGLE,
-    "omega": RATE,
-    "position": LENGTH,
-    "energy": NUMBER,
-    "momentum": NUMBER,
-    "flip-time": TIME,
+KINDS = {
+    **{"attitude": "angle", "omega": "rate", "position": "length"},
+    **{"energy": "ratio", "momentum": "ratio", "flip-time": "time"},
 }
 CHANNEL = {"momentum": "angular_momentum", "flip-time": "time"}
 
@@ -39,15 +35,15 @@ class Requirement:
 
     def as_text(self, value: float) -> str:
         """A value in the unit that the requirement is written in."""
-        unit = self.text.lstrip("+-.0123456789 ")
-        unit = unit[1:].lstrip("+-.0123456789 ") if unit[:1] in ("e", "E") else unit
-        return f"{value / UNITS[self.name][unit.strip()]:.4g}{unit.strip()}"
+        kind = KINDS[self.name]
+        unit = unit_written(self.text, kind, f"--{self.name}")
+        return f"{value / UNITS[kind][unit]:.4g}{'' if unit == '1' else unit}"
 
 
 def requirements_of(arguments: Mapping[str, str | None]) -> list[Requirement]:
     """By option name, without the dashes. Raises UsageError."""
     return [
-        Requirement(name, text, quantity(UNITS[name], text, f"--{name}"))
+        Requirement(name, text, quantity(text, KINDS[name], f"--{name}", needs_unit=True))
         for name, text in arguments.items()
         if text is not None
     ]

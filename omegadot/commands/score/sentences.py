@@ -8,7 +8,7 @@ import numpy as np
 
 from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.shift import scatter
-from omegadot.commands.score.units import ANGLE, LENGTH, RATE
+from omegadot.commands.units import UNITS
 from omegadot.gates.rows import Row
 
 
@@ -17,12 +17,12 @@ def factor_of(found: Judged, channel: str) -> tuple[float, str]:
     how = found.reading.how
     if channel == "omega":
         unit = how.rate_unit
-        return found.truth.yardstick.rate / RATE[unit], unit
+        return found.truth.yardstick.rate / UNITS["rate"][unit], unit
     if channel == "attitude":
         unit = how.angle_unit if "e1" in found.reading.columns else "rad"
-        return 1.0 / ANGLE[unit], unit
+        return 1.0 / UNITS["angle"][unit], unit
     if channel == "position":
-        return 1.0 / LENGTH[how.length_unit], how.length_unit
+        return 1.0 / UNITS["length"][how.length_unit], how.length_unit
     return 1.0, "relative"
 
 
@@ -50,7 +50,7 @@ def _late(found: Judged) -> list[str]:
     if shift is None:
         return []
     spins = shift.of == "omega"
-    factor = 1.0 / (RATE[found.reading.how.rate_unit] if spins else 1.0)
+    factor = 1.0 / (UNITS["rate"][found.reading.how.rate_unit] if spins else 1.0)
     unit, what = (found.reading.how.rate_unit, "omega") if spins else ("rad", "the attitude")
     before, after = f"{factor * shift.before:.3g} {unit}", f"{factor * shift.after:.3g} {unit}"
     if shift.explains:

@@ -23,6 +23,7 @@ from omegadot.workers.engine_end.checked import (
     checked_torque,
     checked_trajectory,
 )
+from omegadot.workers.engine_end.memory import peak_memory
 from omegadot.workers.wire import acceleration_from, state_from, system_from
 
 Request = dict[str, Any]
@@ -147,8 +148,13 @@ def _native(adapter: Adapter, _: Request) -> Any:
     return checked_native(request())
 
 
+def _memory(_: Adapter, __: Request) -> Any:
+    return peak_memory()
+
+
 OPERATIONS: dict[str, Callable[[Adapter, Request], Any]] = {
     "native": _native,
+    "memory": _memory,
     "solve": _solve,
     "companion": _companion,
     "load": _load,

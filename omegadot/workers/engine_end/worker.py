@@ -19,30 +19,13 @@ from typing import Any, BinaryIO, cast
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import build_adapter
 from omegadot.workers.engine_end.checked import checked_description
+from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.plain_text import one_line
 from omegadot.workers.wire import encode_frame, read_frame
 
-MEMORY_VARIABLE = "OMEGADOT_WORKER_MEMORY"
-"""Names the environment's limit on the worker's data, in bytes."""
-
-# Given back when memory runs out, so that there is some to state so.
+# Given back when memory runs out, so that there is some to report it.
 _reserve = [bytearray(1 << 22)]
-
-
-def limit_memory(most: int) -> None:
-    """Have allocations beyond `most` bytes of data refused, where the system can.
-
-    Data, not address space: engines and numerical libraries reserve much more than they use.
-    """
-    try:
-        import resource
-    except ImportError:  # there is no such limit on this system
-        return
-    _, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    if hard != resource.RLIM_INFINITY:
-        most = min(most, hard)
-    resource.setrlimit(resource.RLIMIT_DATA, (most, hard))
 
 
 def _text_of(error: BaseException) -> str:

@@ -12,7 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from omegadot.workers.engine_end.worker import MEMORY_VARIABLE
+import psutil
+
+from omegadot.workers.engine_end.memory import MEMORY_VARIABLE
 from omegadot.workers.harness_end.family import end_family, marked, new_mark
 from omegadot.workers.harness_end.pipes import Lost, Pipes
 from omegadot.workers.machine import memory_of_machine
@@ -109,6 +111,14 @@ class WorkerProcess:
             return Answer("crashed", "the worker is not running")
         pipes.send({"operation": operation, **fields})
         return self._wait(process, pipes, self._timeout)
+
+    def peak_memory(self) -> int | None:
+        """Bytes that the living process has held in memory at most; None where it is not known."""
+        answer = self.request("memory")
+        if answer.ok and answer.result is None and self.pid is not None:
+            # Windows keeps it for others to read.
+            return getattr(psutil.Process(self.pid).memory_info(), "peak_wset", None)
+        return answer.result if answer.ok else None
 
     def _wait(self, process: subprocess.Popen[bytes], pipes: Pipes, seconds: float) -> Answer:
         try:

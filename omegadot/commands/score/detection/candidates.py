@@ -16,7 +16,7 @@ from omegadot.commands.score.detection.numbers import (
     stacked,
 )
 from omegadot.commands.score.detection.parts import Attitude, Omega
-from omegadot.commands.score.units import RATE
+from omegadot.commands.units import UNITS
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.rotations import (
     attitude_angle,
@@ -81,7 +81,7 @@ def omegas(
     sizes = norm(numbers.angular_velocity)
     for three in runs(list(numbers.columns), 3):
         given = norm(stacked(numbers.columns, three))
-        for unit, scale in RATE.items():
+        for unit, scale in UNITS["rate"].items():
             if np.median(np.abs(scale * given - sizes)) > limit * numbers.rate:
                 continue
             for order in itertools.permutations(three):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from omegadot.commands.score.units import ANGLE
+from omegadot.commands.units import UNITS
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.rotations import attitude_angle, normalize
 from omegadot.reference_impl.system import Array
@@ -89,7 +89,7 @@ def rotation_of(columns: dict[str, Array], names: Sequence[str], kind: str, unit
     if kind == "matrix":
         turned = Rotation.from_matrix(values.reshape(-1, 3, 3))
     else:
-        turned = Rotation.from_euler(kind, ANGLE[unit] * values)
+        turned = Rotation.from_euler(kind, UNITS["angle"][unit] * values)
     return np.asarray(np.roll(turned.as_quat(), 1, axis=-1))
 
 

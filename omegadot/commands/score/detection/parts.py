@@ -13,7 +13,7 @@ from omegadot.commands.score.detection.numbers import (
     rotation_of,
     stacked,
 )
-from omegadot.commands.score.units import RATE
+from omegadot.commands.units import UNITS
 from omegadot.reference_impl.rotations import conjugate, quaternion_product, rotate_inverse
 from omegadot.reference_impl.system import Array
 
@@ -62,7 +62,8 @@ class Omega:
 
     def read(self, columns: dict[str, Array], orientation: Array | None) -> Array:
         """(n, 3) rad/s in body axes: other numbers in these columns, read so."""
-        values: Array = RATE[self.unit] * stacked(columns, self.columns) @ AXES[self.axes].T
+        scale = UNITS["rate"][self.unit]
+        values: Array = scale * stacked(columns, self.columns) @ AXES[self.axes].T
         if self.frame == "body" or orientation is None:
             return values
         return rotate_inverse(orientation, values)
@@ -70,5 +71,5 @@ class Omega:
     @property
     def plainness(self) -> tuple[object, ...]:
         """For ordering readings that fit alike: the plainer one first."""
-        units = list(RATE)
+        units = list(UNITS["rate"])
         return (self.axes != SAME, self.frame != "body", units.index(self.unit))

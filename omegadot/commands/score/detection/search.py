@@ -16,7 +16,7 @@ from omegadot.commands.score.detection.candidates import attitudes, omegas
 from omegadot.commands.score.detection.numbers import AXES, SAME, Numbers, rotations
 from omegadot.commands.score.detection.reading import Clock, Reading, unlike
 from omegadot.commands.score.table import Table, TraceError
-from omegadot.commands.score.units import TIME
+from omegadot.commands.units import UNITS
 from omegadot.gates.case import Case
 from omegadot.reference_impl.system import Array
 
@@ -64,7 +64,7 @@ def time_column(table: Table, wanted: str | None) -> str:
 
 def _clocks(raw: Array, column: str, duration: float) -> list[Clock]:
     found = []
-    for unit, scale in TIME.items():
+    for unit, scale in UNITS["time"].items():
         span, first = scale * float(raw[-1] - raw[0]), scale * float(raw[0])
         if not 0.0 < span <= LONGEST * duration:
             continue
@@ -87,7 +87,7 @@ def _next_to(
     trajectory, turned = exact_trajectory(case.system, case.initial), rotations(columns)
     found = []
     for clock in _clocks(raw, column, case.scenario.run.duration):
-        exact = trajectory(np.maximum(TIME[clock.unit] * raw[rows] - clock.offset, 0.0))
+        exact = trajectory(np.maximum(UNITS["time"][clock.unit] * raw[rows] - clock.offset, 0.0))
         found.append((clock, Numbers(columns, exact.orientation, exact.angular_velocity, turned)))
     return found
 
