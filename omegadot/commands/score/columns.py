@@ -86,7 +86,7 @@ def columns_of(
             found[role] = find_column(table, name, role)
     named = {group for group, roles in GROUPS.items() if any(role in found for role in roles)}
     attitude = named & {"q", "e", "r"}
-    for name in table.names:
+    for name in (name for name in table.names if table.names.count(name) == 1):
         role = KNOWN.get(name.casefold(), "")
         if role in TURNS and len(set(euler.lower())) == 3:
             role = _turn_role(name.casefold(), euler)

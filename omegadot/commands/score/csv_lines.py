@@ -1,17 +1,20 @@
-"""Lines of a CSV file: their text, their delimiter, their cells, the names above them."""
+"""The dialect of a CSV file: its text, delimiter, decimal sign, and the names of its columns."""
 
 from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import chain
 
 from omegadot.commands.score.table import TraceError
 
 DELIMITERS = ",;\t|"
-COMMENT = re.compile(r"\s*(#|%|//|!)")
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$")
+COMMENT = r"^\s*(#|%|//|!)"
+NUMBER = r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eEdD][+-]?[0-9]+)?$"
 NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity|1\.#\w+|na|null|none)$", re.IGNORECASE)
+DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eEdD][+-]?\d+)?$")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+$")
 
 
 def text_of(file: str, content: bytes) -> str:
@@ -41,44 +44,57 @@ def delimiter_of(lines: Sequence[str]) -> str:
     return best
 
 
+def raw_cells_of(line: str, delimiter: str) -> list[str]:
+    """The cells of a line as they stand; with no delimiter, what stands between blanks."""
+    return next(csv.reader([line], delimiter=delimiter), []) if delimiter else line.split()
+
+
 def cells_of(line: str, delimiter: str) -> list[str]:
     """The cells of a line, without the blanks around them."""
-    if not delimiter:
-        return line.split()
-    row = [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter), [])]
+    row = [cell.strip() for cell in raw_cells_of(line, delimiter)]
     # A delimiter at the end of a line makes no column.
     return row[:-1] if len(row) > 1 and not row[-1] else row
 
 
+def decimal_of(file: str, rows: Iterable[Sequence[str]]) -> str:
+    """The decimal sign: a comma where numbers have one and none has a point.
+
+    Raises TraceError where it may as well group thousands.
+    """
+    cells = list(chain.from_iterable(rows))
+    commas = [cell for cell in cells if DECIMAL_COMMA.match(cell)]
+    if not commas or any("." in cell and re.match(NUMBER, cell) for cell in cells):
+        return "."
+    if all(_THOUSANDS.match(cell) for cell in commas):
+        raise TraceError(
+            f"{file}: {commas[0]!r} may be {commas[0].replace(',', '.')} or "
+            f"{commas[0].replace(',', '')}; write it with a decimal point, or without a comma."
+        )
+    return ","
+
+
 def is_sample(row: Sequence[str]) -> bool:
     """A row that is of numbers: more than half of it, so that one bad cell does not hide it."""
-    numbers = sum(bool(NUMBER.match(c) or NOT_FINITE.match(c)) for c in row)
-    return 2 * numbers > len(row)
+    numbers = [
+        c for c in row if re.match(NUMBER, c) or DECIMAL_COMMA.match(c) or NOT_FINITE.match(c)
+    ]
+    return 2 * len(numbers) > len(row)
 
 
-def header_names(file: str, heads: Sequence[tuple[int, list[str]]], width: int) -> tuple[str, ...]:
-    """The header's names: of the first line that has one for every column."""
-    for _, row in heads:
-        if len(row) == width:
-            return _unique(file, row)
-    return ()
+def names_of(line: str, delimiter: str, widths: Sequence[int]) -> list[str]:
+    """The names that a line gives to so many columns, one of the numbers given; else none.
+
+    Between blanks, a name may have a unit behind a single one: ``wx (deg/s)   wy (deg/s)``.
+    """
+    rows = [cells_of(line, delimiter)]
+    rows += [] if delimiter else [re.split(r"\s{2,}|\t", line.strip())]
+    return next((row for row in rows if len(row) in widths), [])
 
 
-def _unique(file: str, row: Sequence[str]) -> tuple[str, ...]:
-    twice = [name for k, name in enumerate(row) if name and name in row[:k]]
-    if twice:
-        raise TraceError(f"{file}: two columns are called {twice[0]!r}; rename one.")
-    return tuple(name or f"#{k}" for k, name in enumerate(row, 1))
-
-
-def comment_names(
-    numbered: Sequence[tuple[int, str]], first: int, delimiter: str, width: int
-) -> tuple[str, ...]:
-    """Names in the last comment before the samples, as NumPy writes them; else #1, #2, ..."""
-    for line, text in reversed(numbered):
-        found = COMMENT.match(text)
-        if line < first and found:
-            row = cells_of(text[found.end() :].strip(), delimiter)
-            if len(row) == width and len(set(row)) == width and not is_sample(row):
-                return tuple(row)
-    return tuple(f"#{k}" for k in range(1, width + 1))
+def comment_names(comments: Sequence[str], delimiter: str, width: int) -> list[str]:
+    """Names in the last of these comments that has some, as NumPy writes them; else none."""
+    for text in reversed(comments):
+        row = names_of(re.sub(COMMENT, "", text).strip(), delimiter, [width])
+        if len(set(row)) == width and not is_sample(row):
+            return row
+    return []

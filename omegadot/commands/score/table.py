@@ -54,11 +54,13 @@ class Table(Protocol):
 def find_column(table: Table, wanted: str, role: str) -> str:
     """The column of this name, or of this number (from one, as ``#3``). Raises TraceError."""
     if wanted in table.names:
+        check_alone(table, wanted)
         return wanted
     if wanted.startswith("#") and wanted[1:].isdecimal():
         number = int(wanted[1:])
         if 1 <= number <= len(table.names):
-            return table.names[number - 1]
+            name = table.names[number - 1]
+            return name if table.names.count(name) == 1 else wanted
         raise TraceError(
             f"{table.file}: there is no column {wanted} for {role}; it has {len(table.names)}."
         )
@@ -69,6 +71,15 @@ def find_column(table: Table, wanted: str, role: str) -> str:
         f"{table.file}: there is no column {wanted!r} for {role}; "
         f"{_near(wanted, table.names)} (the columns are {_listed(table.names)})."
     )
+
+
+def check_alone(table: Table, name: str) -> None:
+    """Raise TraceError where another column is called so too."""
+    if table.names.count(name) > 1:
+        raise TraceError(
+            f"{table.file}: two columns are called {name!r}; rename one, or give its number, "
+            f"like #{table.names.index(name) + 1}."
+        )
 
 
 def _near(wanted: str, names: Sequence[str]) -> str:
