@@ -17,6 +17,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from platformdirs import user_cache_path
+
 from omegadot.commands.other_python import worker_command
 from omegadot.commands.versions.installer import Installer, InstallError, python_of
 from omegadot.commands.versions.product import Product
@@ -41,14 +43,7 @@ class Absent:
 
 def default_cache() -> Path:
     """The user's folder for what can be made again, as the platform has it."""
-    home = Path.home()
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = home / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
-    return base / "omegadot" / "versions"
+    return user_cache_path("omegadot", appauthor=False, opinion=False) / "versions"
 
 
 def _suffix() -> str:
