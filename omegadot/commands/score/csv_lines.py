@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterable, Sequence
 from itertools import chain
 
+import polars as pl
+
 from omegadot.commands.score.table import TraceError
 
 DELIMITERS = ",;\t|"
@@ -54,6 +56,16 @@ def cells_of(line: str, delimiter: str) -> list[str]:
     row = [cell.strip() for cell in raw_cells_of(line, delimiter)]
     # A delimiter at the end of a line makes no column.
     return row[:-1] if len(row) > 1 and not row[-1] else row
+
+
+def split_lines(lines: pl.Series, delimiter: str) -> pl.Series:
+    """`raw_cells_of` every line, all at once: lists of texts."""
+    if not delimiter:
+        return lines.str.strip_chars().str.replace_all(r"\s+", " ").str.split(" ")
+    if lines.str.contains('"', literal=True).any():  # a delimiter may stand within quotes
+        cells = [raw_cells_of(line, delimiter) for line in lines]
+        return pl.Series(cells, dtype=pl.List(pl.String))
+    return lines.str.split(delimiter)
 
 
 def decimal_of(file: str, rows: Iterable[Sequence[str]]) -> str:

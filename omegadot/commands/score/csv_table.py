@@ -20,6 +20,7 @@ from omegadot.commands.score.csv_lines import (
     is_sample,
     names_of,
     raw_cells_of,
+    split_lines,
     text_of,
 )
 from omegadot.commands.score.digits import open_of
@@ -135,14 +136,7 @@ def _rows(file: str, samples: pl.DataFrame, delimiter: str, width: int) -> pl.Se
             f"{file}: {len(samples):,} samples; give at most {MOST_SAMPLES:,}, every tenth of them "
             "for example."
         )
-    texts = samples["text"]
-    if not delimiter:
-        rows = texts.str.strip_chars().str.replace_all(r"\s+", " ").str.split(" ")
-    elif texts.str.contains('"', literal=True).any():  # a delimiter may stand within quotes
-        cells = [raw_cells_of(text, delimiter) for text in texts]
-        rows = pl.Series(cells, dtype=pl.List(pl.String))
-    else:
-        rows = texts.str.split(delimiter)
+    rows = split_lines(samples["text"], delimiter)
     ends_empty = rows.list.last().str.strip_chars() == ""
     counts = rows.list.len().cast(pl.Int64) - ends_empty.cast(pl.Int64)
     bad = ((counts != width) & (counts != width - 1)).arg_true()
