@@ -148,7 +148,7 @@ def test_texts_and_presence_differ_plainly() -> None:
     assert not differ(Figure(None), Figure(2.0, 0.15))
     assert shown(("order", "RK4"), Figure(1.996, 0.15)) == "2.00"
     assert shown(("drift", "x"), None) == "none"
-    assert shown(("drift", "x"), Figure(None)) == "not reported"
+    assert shown(("drift", "x"), Figure(None)) == "not stated"
 
 
 NAMES = [

@@ -117,6 +117,6 @@ def test_paces_are_apart_where_their_spreads_do_not_touch() -> None:
 def test_a_word_that_no_metric_has_is_taught() -> None:
     names = [NAME, ("convention", "velocity frame")]
     text = _no_such("convention attitude", names)
-    assert "no metric has all these words" in text
+    assert "no metric has all of these terms in its name" in text
     assert "order:RK4:free:attitude" in text
     assert "'speed'" in _no_such("speed RK4", names)
