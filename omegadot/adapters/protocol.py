@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, Protocol, runtime_checkable
 
+from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 Setup = Literal["physics", "as-shipped"]
@@ -33,7 +34,7 @@ class Integrator:
     scheme: the name of the reference scheme it is declared to equal, or None when unknown.
     orders: declared order of the accumulated error per channel.
     knob: "timestep", or "accuracy" for an error-controlled integrator.
-    steps_origin: the engine steps the position of a free body's origin, not its centre of mass's.
+    coordinates: those in which the engine steps a free body's translation, see `Coordinates`.
     one_step: a step depends on the state alone; False for a multistep method, which keeps earlier
     steps in mind.
     """
@@ -43,7 +44,7 @@ class Integrator:
     orders: dict[str, int]
     knob: Literal["timestep", "accuracy"] = "timestep"
     note: str = ""
-    steps_origin: bool = False
+    coordinates: Coordinates = "com-world"
     one_step: bool = True
 
 

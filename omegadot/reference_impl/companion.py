@@ -14,15 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.reference_impl.body_origin import (
-    from_origin,
-    origin_acceleration_of,
-    to_origin,
-)
+from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.growth import growth_along
-from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
-from omegadot.reference_impl.stepping import kept_steps, step_through
+from omegadot.reference_impl.stepping import kept_steps, step_body
 from omegadot.reference_impl.system import Array, State, System
 
 # Lanes share their samples; beyond this many rows it is cheaper to run each step by itself.
@@ -52,24 +47,16 @@ class CompanionRun:
     growth: Array
 
 
-def _fields(state: State) -> tuple[Array, Array, Array, Array]:
-    return (state.orientation, state.angular_velocity, state.position, state.linear_velocity)
-
-
 def _run_together(
-    system: System, scheme: Scheme, initial: State, at_origin: bool, plan: Sequence[Steps]
+    system: System, scheme: Scheme, initial: State, coordinates: Coordinates, plan: Sequence[Steps]
 ) -> list[State]:
     """All of `plan` as lanes; samples are kept where any of them needs one."""
     every = gcd(*(n for step in plan for n in (step.every, step.steps)))
     longest = max(step.steps for step in plan)
     timesteps = np.array([step.timestep for step in plan])
-    lanes = State(*(np.repeat(f[None], len(plan), axis=0) for f in _fields(initial)))
-    acceleration = (origin_acceleration_of if at_origin else acceleration_of)(system)
-    start = to_origin(system, lanes) if at_origin else lanes
-    _, kept = step_through(scheme, system, acceleration, start, timesteps, longest, every)
-    states = from_origin(system, kept) if at_origin else kept
+    _, states = step_body(scheme, system, initial, timesteps, longest, every, coordinates)
     return [
-        State(*(f[step.kept // every, lane] for f in _fields(states)))
+        State(*(field[step.kept // every, lane] for field in vars(states).values()))
         for lane, step in enumerate(plan)
     ]
 
@@ -80,19 +67,19 @@ def companion(
     scheme: str,
     rate: float,
     plan: Sequence[Steps],
-    at_origin: bool = False,
+    coordinates: Coordinates = "com-world",
 ) -> list[CompanionRun]:
     """The reference stepping `scheme` from `initial`, once per entry of `plan`.
 
     rate: rad/s, the scale by which changes of omega are measured against changes of attitude.
-    at_origin: step the position of the body's origin instead of the centre of mass's.
+    coordinates: those in which a free body is stepped.
     """
     shared = gcd(*(n for step in plan for n in (step.every, step.steps)))
     longest = max(step.steps for step in plan)
     groups = [plan] if longest // shared <= MOST_SHARED_ROWS else [[step] for step in plan]
     named = SCHEMES[scheme]
     states = [
-        s for group in groups for s in _run_together(system, named, initial, at_origin, group)
+        s for group in groups for s in _run_together(system, named, initial, coordinates, group)
     ]
     return [
         CompanionRun(times, state, growth_along(system, times, state, rate))

@@ -14,12 +14,10 @@ another, and its inverse, taken from any difference of runs, is lost in rounding
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.body_motion import attitude_motion
 from omegadot.reference_impl.rotations import rotation_between, turn_in_body
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian
@@ -37,15 +35,6 @@ def changes(before: State, after: State, rate: float) -> Array:
     turn = rotation_between(before.orientation, after.orientation)
     spin = (after.angular_velocity - before.angular_velocity) / rate
     return np.concatenate((turn, spin), axis=-1)
-
-
-def changed(state: State, change: Array, rate: float) -> State:
-    """The state moved by a small vector (..., 6) as `changes` measures it."""
-    return replace(
-        state,
-        orientation=turn_in_body(state.orientation, change[..., :3], 1.0),
-        angular_velocity=state.angular_velocity + rate * change[..., 3:],
-    )
 
 
 def growth_along(system: System, times: Array, states: State, rate: float) -> Array:
@@ -84,31 +73,23 @@ def _maps_between(system: System, times: Array, states: State, rate: float) -> A
     spans = np.diff(times)
     delta = EPS ** (1 / 3)  # central differences: curvature delta^2 against rounding eps / delta
     axes = delta * np.concatenate((np.eye(6), -np.eye(6)))
-    q, w = states.orientation[: len(spans), None], states.angular_velocity[: len(spans), None]
-    lanes = changed(_bare(q, w), axes, rate)
-    lanes = _bare(lanes.orientation, lanes.angular_velocity)
-    acceleration = acceleration_of(system)
-    here, jacobian, _ = acceleration_and_jacobian(acceleration, _bare(q[:, 0], w[:, 0]))
+    q, w = states.orientation[: len(spans)], states.angular_velocity[: len(spans)]
+    motion = attitude_motion(system)
+    w_dot, jacobian = acceleration_and_jacobian(motion, q, w)
     rates = (  # 1/s: turning, the loads' pull, damping and the gyroscopic term
-        np.max(np.abs(w), axis=(-1, -2)),
-        np.sqrt(np.max(np.abs(here.angular), axis=-1)),
+        np.max(np.abs(w), axis=-1),
+        np.sqrt(np.max(np.abs(w_dot), axis=-1)),
         np.max(np.abs(jacobian), axis=(-1, -2)),
     )
     fastest = STEPS_A_RADIAN * np.max(np.abs(spans) * np.maximum.reduce(rates), initial=0.1)
     steps = int(np.ceil(min(fastest, MOST_STEPS)))
-    spans_of_lanes = np.broadcast_to(spans[:, None], (len(spans), 12))
+    q, w = turn_in_body(q[:, None], axes[:, :3], 1.0), w[:, None] + rate * axes[:, 3:]
+    h = np.broadcast_to(spans[:, None, None], (len(spans), 12, 1)) / steps
     for _ in range(steps):
-        lanes = SCHEMES["lie-rk4"].step(acceleration, lanes, spans_of_lanes / steps)
-    q, w = lanes.orientation, lanes.angular_velocity
-    change = changes(_bare(q[:, 6:], w[:, 6:]), _bare(q[:, :6], w[:, :6]), rate)
-    maps: Array = np.swapaxes(change, -1, -2) / (2 * delta)
+        q, w = SCHEMES["lie-rk4"].step(motion, q, w, h)
+    turn, spin = rotation_between(q[:, 6:], q[:, :6]), (w[:, :6] - w[:, 6:]) / rate
+    maps: Array = np.swapaxes(np.concatenate((turn, spin), axis=-1), -1, -2) / (2 * delta)
     return maps
-
-
-def _bare(orientation: Array, angular_velocity: Array) -> State:
-    """A state of turning alone, at rest at the origin."""
-    nowhere = np.zeros_like(angular_velocity)
-    return State(orientation, angular_velocity, nowhere, nowhere)
 
 
 def _starts(count: int) -> NDArray[np.intp]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from omegadot.reference_impl.kinematics import place_on_pivot
-from omegadot.reference_impl.schemes.scheme import AccelerationOf, Scheme
+from omegadot.reference_impl.body_motion import body_motion
+from omegadot.reference_impl.coordinates import Coordinates, from_coordinates, to_coordinates
+from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array, State, System
 
 
@@ -19,48 +20,61 @@ def kept_steps(steps: int, every: int) -> list[int]:
 
 def step_through(
     scheme: Scheme,
+    motion: Motion,
+    q: Array,
+    v: Array,
+    dt: float | Array,
+    steps: int,
+    every: int,
+) -> tuple[Array, Array, Array]:
+    """Times, q and v of a motion at step 0, each `every`-th and the last.
+
+    dt: s, a float, or an array; the lanes are those of dt, of q and of v, broadcast against each
+    other, and all take as many steps. Times are ``n * dt``, (samples,) or (samples, *dt.shape);
+    q and v have the samples in front, (samples, ..., k). A run that diverges goes on with
+    infinities and NaN, without warnings.
+    Raises ValueError for negative steps or `every` below one.
+    """
+    kept, step = kept_steps(steps, every), scheme.step
+    times = np.multiply.outer(kept, dt)
+    lanes = np.broadcast_shapes(np.shape(dt), q.shape[:-1], v.shape[:-1])
+    plain = np.ndim(dt) == 0 and not isinstance(dt, np.longdouble)
+    h = float(dt) if plain else np.asarray(dt)[..., None]
+    if lanes:
+        q, v = (np.broadcast_to(x, (*lanes, x.shape[-1])) for x in (q, v))
+    logged, done = [(q, v)], 0
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        for target in kept[1:]:
+            for _ in range(target - done):
+                q, v = step(motion, q, v, h)
+            logged.append((q, v))
+            done = target
+    return times, np.stack([q for q, _ in logged]), np.stack([v for _, v in logged])
+
+
+def step_body(
+    scheme: Scheme,
     system: System,
-    acceleration: AccelerationOf,
     initial: State,
     dt: float | Array,
     steps: int,
     every: int,
+    coordinates: Coordinates = "com-world",
+    motion: Motion | None = None,
 ) -> tuple[Array, State]:
-    """Times and states at step 0, each `every`-th and the last.
+    """Times and states of one body, as `step_through`, stepped in these coordinates.
 
-    dt: s, a float, or an array; the lanes are those of dt and of `initial`, broadcast against each
-    other, and all take as many steps. Times are ``n * dt``, (samples,) or (samples, *dt.shape);
-    states have the samples in front, (samples, ..., 3). A pivoted body's position and velocity
-    follow from its attitude and ω. A run that diverges goes on with infinities and NaN, without
-    warnings.
-    Raises ValueError for negative steps or `every` below one.
+    motion: what is stepped in place of the reference's own `body_motion`. A pivoted body's
+    position and velocity follow from its attitude and ω.
     """
-    kept = kept_steps(steps, every)
-    step = scheme.step
-    h = float(dt) if np.ndim(dt) == 0 and not isinstance(dt, np.longdouble) else np.asarray(dt)
-    state, done = _on_lanes(initial, np.shape(h)), 0
-    logged = [state]
-    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        for target in kept[1:]:
-            for _ in range(target - done):
-                state = step(acceleration, state, h)
-            logged.append(state)
-            done = target
-        states = place_on_pivot(system, stack(logged))
-    return np.multiply.outer(kept, h), states
-
-
-def _on_lanes(state: State, lanes: tuple[int, ...]) -> State:
-    fields = (state.orientation, state.angular_velocity, state.position, state.linear_velocity)
-    shape = np.broadcast_shapes(lanes, *(field.shape[:-1] for field in fields))
-    return State(*(np.broadcast_to(field, (*shape, field.shape[-1])) for field in fields))
+    q, v = to_coordinates(system, initial, coordinates)
+    stepped = motion or body_motion(system, coordinates)
+    times, q, v = step_through(scheme, stepped, q, v, dt, steps, every)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return times, from_coordinates(system, q, v, coordinates)
 
 
 def stack(states: list[State]) -> State:
     """Many states as one, with a new axis in front."""
-    return State(
-        np.stack([state.orientation for state in states]),
-        np.stack([state.angular_velocity for state in states]),
-        np.stack([state.position for state in states]),
-        np.stack([state.linear_velocity for state in states]),
-    )
+    fields = zip(*(vars(state).values() for state in states), strict=True)
+    return State(*(np.stack(values) for values in fields))

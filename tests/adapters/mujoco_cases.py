@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
-from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.motion import acceleration_of
-from omegadot.reference_impl.rotations import rotate
-from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
+from omegadot.reference_impl.system import Array, Body, Load, State, System
 
 EPS = float(np.finfo(float).eps)
 GRAVITY = np.array([1.0, 2.0, -9.81])
@@ -84,29 +79,3 @@ def parts(state: State) -> tuple[Array, Array, Array, Array]:
 def norm(vectors: Array) -> Array:
     lengths: Array = np.linalg.norm(vectors, axis=-1)
     return lengths
-
-
-def of_origin(system: System, state: State) -> State:
-    """The state with the body origin's position and velocity, the point that MuJoCo steps."""
-    return _moved(state, -system.body.center_of_mass)
-
-
-def of_center(system: System, state: State) -> State:
-    return _moved(state, system.body.center_of_mass)
-
-
-def _moved(state: State, arm: Array) -> State:
-    q, w, p, v = parts(state)
-    return State(q, w, p + rotate(q, arm), v + rotate(q, cross(w, arm)))
-
-
-def origin_acceleration(system: System) -> Callable[[State], Acceleration]:
-    """ω̇ and the body origin's acceleration as a function of the origin's state."""
-    of_mass, arm = acceleration_of(system), system.body.center_of_mass
-
-    def acceleration(state: State) -> Acceleration:
-        found, w = of_mass(of_center(system, state)), state.angular_velocity
-        lift = cross(found.angular, arm) + cross(w, cross(w, arm))
-        return Acceleration(found.angular, found.linear - rotate(state.orientation, lift))
-
-    return acceleration

@@ -13,9 +13,6 @@ from mujoco_cases import (
     LOADS,
     at,
     norm,
-    of_center,
-    of_origin,
-    origin_acceleration,
     parts,
     states,
     system,
@@ -28,10 +25,9 @@ from omegadot.adapters.mujoco.stepping import CHUNK, SPARSE
 from omegadot.adapters.protocol import Setup, UnsupportedError
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.momentum import angular_momentum
-from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.stepping import kept_steps, step_through
+from omegadot.reference_impl.stepping import kept_steps, step_body
 from omegadot.reference_impl.system import Array, Body, State, System
 
 VERSION = version_of(mujoco.__version__)
@@ -68,13 +64,7 @@ def stepped(of: System, scheme: str, initial: State, dt: float, steps: int) -> t
     """The reference's run at the body's origin, and how much it enlarges an early error."""
     distance = 2.0**-26
     start = place_on_pivot(of, spread(initial, distance))
-    if of.load.pivot is None:
-        lanes = step_through(
-            SCHEMES[scheme], of, origin_acceleration(of), of_origin(of, start), dt, steps, 1
-        )[1]
-        lanes = of_center(of, lanes)
-    else:
-        lanes = step_through(SCHEMES[scheme], of, acceleration_of(of), start, dt, steps, 1)[1]
+    lanes = step_body(SCHEMES[scheme], of, start, dt, steps, 1, "origin-world")[1]
     apart = [np.abs(value[:, 1] - value[:, 0]).max() for value in parts(lanes)]
     return State(*(value[:, 0] for value in parts(lanes))), float(max(apart)) / distance
 

@@ -7,9 +7,12 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import strategies as st
 
+from omegadot.reference_impl.body_motion import body_motion
+from omegadot.reference_impl.coordinates import Coordinates, from_coordinates, to_coordinates
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import exp_quaternion, normalize, rotation_matrix
+from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
 EPS = np.finfo(float).eps
@@ -134,3 +137,18 @@ def cloud(seed: int, pivot: Array | None) -> tuple[System, Array, Array]:
 
 pivots = st.one_of(st.none(), vectors)
 seeds = st.integers(0, 1000)
+
+
+def one_step(
+    scheme: Scheme,
+    on: System,
+    state: State,
+    dt: float | Array,
+    coordinates: Coordinates = "com-world",
+    motion: Motion | None = None,
+) -> State:
+    """The state after one step of the reference's body, or of another motion of it."""
+    q, v = to_coordinates(on, state, coordinates)
+    h = dt if isinstance(dt, float) else np.asarray(dt)[..., None]
+    q, v = scheme.step(motion or body_motion(on, coordinates), q, v, h)
+    return from_coordinates(on, q, v, coordinates)

@@ -28,7 +28,7 @@ SEMI_IMPLICIT = Integrator(
     "semi-implicit-euler-short-turns",
     dict(SCHEMES["semi-implicit-euler-short-turns"].orders),
     note="World.step",
-    steps_origin=True,
+    coordinates="origin-world",
 )
 CONVENTIONS = (
     "FreeJoint velocities are in body axes up to 6.16 and in world axes from 6.17; BallJoint "

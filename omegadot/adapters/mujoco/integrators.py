@@ -139,7 +139,7 @@ def declared_integrators(mujoco: Any, case: Case) -> tuple[Integrator, ...]:
     A free joint's position is the body origin's, so that is what every one of them steps.
     """
     return tuple(
-        replace(declare(case), steps_origin=True)
+        replace(declare(case), coordinates="origin-world")
         for name, declare in _DECLARATIONS.items()
         if integrator_flag(mujoco, name) is not None
     )

@@ -28,7 +28,8 @@ CONVENTIONS = (
     "a free body has a free-flyer joint at the body origin: its velocity is the spatial velocity "
     "(linear, angular) of that origin in body axes, its acceleration the spatial one",
     "a pivoted body has a spherical joint at the pivot: its velocity is omega in body axes",
-    "no stepper: the reference's schemes step pinocchio.aba (convention LOCAL)",
+    "no stepper: the reference's schemes step pinocchio.aba (convention LOCAL) and "
+    "pinocchio.integrate in these coordinates",
     "no damping inside aba: -damping * omega and the applied torques are added to the joint torque "
     "at every evaluation",
 )
@@ -55,7 +56,13 @@ LOOPED = (
 
 
 def _integrator(scheme: Scheme) -> Integrator:
-    return Integrator(PREFIX + scheme.name, scheme.name, dict(scheme.orders), note=NOTE)
+    return Integrator(
+        PREFIX + scheme.name,
+        scheme.name,
+        dict(scheme.orders),
+        note=NOTE,
+        coordinates="body-spatial",
+    )
 
 
 def _rows(states: State) -> State:
@@ -116,18 +123,11 @@ class PinocchioAdapter:
     def forward_dynamics(self, states: State) -> Acceleration:
         """`pinocchio.aba` at each state; the leading axes of the answer are those of the states."""
         joint = self._loaded()
-        if states.angular_velocity.ndim == 1 == states.orientation.ndim:
-            return Acceleration(*joint.forward(states))
-        lead = states.angular_velocity.shape[:-1]
-        alike = len(lead) == 1 and all(f.shape[:-1] == lead for f in vars(states).values())
-        rows = states if alike else _rows(states)
-        answers = np.empty((2, *rows.angular_velocity.shape))
-        for n in range(answers.shape[1]):
-            answers[:, n] = joint.forward(_row(rows, n))
-        if not alike:
-            lead = np.broadcast_shapes(states.orientation.shape[:-1], lead)
-        angular, linear = answers.reshape(2, *lead, 3)
-        return Acceleration(angular, linear)
+        q, v = joint.coordinates(states)
+        lanes = np.broadcast_shapes(q.shape[:-1], v.shape[:-1])
+        q, v = (np.broadcast_to(x, (*lanes, x.shape[-1])).reshape(-1, x.shape[-1]) for x in (q, v))
+        answers = np.array([joint.forward(*row) for row in zip(q, v, strict=True)])
+        return Acceleration(*(answers[:, k].reshape(*lanes, 3) for k in range(2)))
 
     def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
         """`pinocchio.rnea` at n states."""
@@ -142,12 +142,14 @@ class PinocchioAdapter:
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
         """Step a scheme of the reference over `aba`. Raises UnsupportedError for other names."""
-        scheme = SCHEMES.get(integrator.removeprefix(PREFIX))
-        if scheme is None or not integrator.startswith(PREFIX):
+        name = integrator.removeprefix(PREFIX)
+        if name not in LOOPED or not integrator.startswith(PREFIX):
             raise UnsupportedError(f"pinocchio has no integrator {integrator!r}.")
-        system, acceleration = self._loaded().system, self.forward_dynamics
-        times, state = step_through(scheme, system, acceleration, initial, timestep, steps, every)
-        return Trajectory(times, state)
+        scheme = SCHEMES[name]
+        joint = self._loaded()
+        start = joint.coordinates(initial)
+        times, q, v = step_through(scheme, joint.motion, *start, timestep, steps, every)
+        return Trajectory(times, joint.states(q, v))
 
     def native(self) -> dict[str, dict[str, str]]:
         """Conventions as measured of the engine itself, and its defaults."""

@@ -1,8 +1,7 @@
 """One body on a joint of Pinocchio's: its model, its coordinates, and one call of ABA or RNEA.
 
-Every conversion between frames at a state goes through Pinocchio's own kinematics where it has
-one. Spatial vectors are (linear, angular). See Featherstone, Rigid Body Dynamics Algorithms
-(2008), section 2.11, for the spatial acceleration of a point: ``a_spatial = a - omega x v``.
+Spatial vectors are (linear, angular). See Featherstone, Rigid Body Dynamics Algorithms (2008),
+section 2.11, for the spatial acceleration of a point: ``a_spatial = a - omega x v``.
 """
 
 from __future__ import annotations
@@ -12,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from omegadot.adapters.pinocchio.motion import joint_motion, joint_torque
+from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.system import Array, Body, State, System
 
 
@@ -36,11 +37,8 @@ class PinocchioJoint:
         self._model.gravity.linear = np.array(load.gravity, float)
         self._data = self._model.createData()
         self._joint_M_com = self._pin.SE3(np.eye(3), lever)
-        self._damping = float(load.damping)
-        self._torque_body = np.array(load.torque_body, float)
-        self._torque_world = np.array(load.torque_world, float)
-        self._loaded = bool(self._damping or self._torque_body.any() or self._torque_world.any())
-        self._no_torque = np.zeros(self._model.nv)
+        self._torque = joint_torque(load, self._model.nv)
+        self.motion = joint_motion(engine, self._model, load)
         self._q, self._v = self._pin.neutral(self._model), np.zeros(self._model.nv)
 
     def body(self) -> Body:
@@ -50,7 +48,7 @@ class PinocchioJoint:
 
     def set_state(self, state: State) -> None:
         """Keep the state as joint coordinates."""
-        self._q, self._v, _ = self._coordinates(state)
+        self._q, self._v = self.coordinates(state)
 
     def get_state(self) -> State:
         """The state by `pinocchio.centerOfMass`, which runs the forward kinematics as well."""
@@ -63,14 +61,13 @@ class PinocchioJoint:
             self._data.vcom[0].copy(),
         )
 
-    def forward(self, state: State) -> tuple[Array, Array]:
+    def forward(self, q: Array, v: Array) -> tuple[Array, Array]:
         """omega-dot (3,), body, and the acceleration of the centre of mass (3,), world.
 
         The first is ABA's; the second is ABA's joint acceleration taken to the centre of mass by
         `pinocchio.centerOfMass`.
         """
-        q, v, world_R_body = self._coordinates(state)
-        torque = self._torque(state, world_R_body) if self._loaded else self._no_torque
+        torque = self._torque(q, v) if callable(self._torque) else self._torque
         a = self._pin.aba(self._model, self._data, q, v, torque)
         self._pin.centerOfMass(self._model, self._data, q, v, a, False)
         # both are Pinocchio's own memory, which its next call writes over
@@ -80,7 +77,7 @@ class PinocchioJoint:
         """The torque (3,), body axes, by RNEA, about the centre of mass or about the pivot."""
         if self._free:
             return self.wrench(state, angular, linear)[3:]
-        q, v, _ = self._coordinates(state)
+        q, v = self.coordinates(state)
         torque: Array = self._pin.rnea(self._model, self._data, q, v, np.array(angular))
         return torque.copy()
 
@@ -89,7 +86,8 @@ class PinocchioJoint:
 
         ``a_spatial`` of the centre of mass is ``R^T a - omega x R^T v``.
         """
-        q, v, world_R_body = self._coordinates(state)
+        q, v = self.coordinates(state)
+        world_R_body = self._pin.Quaternion(q[-4:]).toRotationMatrix()
         turning = self._pin.skew(state.angular_velocity) @ (state.linear_velocity @ world_R_body)
         at_com = self._pin.Motion(linear @ world_R_body - turning, np.array(angular))
         a = self._joint_M_com.act(at_com).vector
@@ -97,20 +95,20 @@ class PinocchioJoint:
         found: Array = self._joint_M_com.actInv(at_joint).vector
         return found.copy()
 
-    def _coordinates(self, state: State) -> tuple[Array, Array, Array]:
-        """q, v of the joint, and world_R_body."""
-        w, x, y, z = state.orientation.tolist()
-        world_R_body = self._pin.Quaternion(w, x, y, z).toRotationMatrix()
-        omega = np.array(state.angular_velocity, float)
-        if not self._free:
-            return np.array([x, y, z, w]), omega, world_R_body
-        position = state.position - world_R_body @ self._joint_M_com.translation
-        com_velocity = self._pin.Motion(state.linear_velocity @ world_R_body, omega)
-        v = self._joint_M_com.act(com_velocity).vector
-        return np.array([*position.tolist(), x, y, z, w]), v, world_R_body
+    def coordinates(self, state: State) -> tuple[Array, Array]:
+        """Q and v of the joint, (..., 7) and (..., 6) of a free flyer, (..., 4) and (..., 3)."""
+        q, v = to_coordinates(self.system, state, "body-spatial")
+        return _scalar_last(q), np.array(v, float)
 
-    def _torque(self, state: State, world_R_body: Array) -> Array:
-        """The applied torques and the damping as a joint torque; a couple has no linear part."""
-        couple = self._torque_body + self._torque_world @ world_R_body
-        couple = couple - self._damping * state.angular_velocity
-        return np.concatenate([self._no_torque[3:], couple])
+    def states(self, q: Array, v: Array) -> State:
+        """The states of joint coordinates: the inverse of `coordinates`."""
+        return from_coordinates(self.system, _scalar_first(q), v, "body-spatial")
+
+
+def _scalar_last(q: Array) -> Array:
+    """(position, w, x, y, z) to Pinocchio's (position, x, y, z, w)."""
+    return np.concatenate((q[..., :-4], q[..., -3:], q[..., -4:-3]), axis=-1, dtype=float)
+
+
+def _scalar_first(q: Array) -> Array:
+    return np.concatenate((q[..., :-4], q[..., -1:], q[..., -4:-1]), axis=-1)

@@ -3,21 +3,11 @@
 from __future__ import annotations
 
 from omegadot import __version__
-from omegadot.adapters.protocol import (
-    Description,
-    Integrator,
-    Setup,
-    Trajectory,
-    UnsupportedError,
-)
+from omegadot.adapters.protocol import Description, Integrator, Setup, Trajectory, UnsupportedError
 from omegadot.reference_impl.kinematics import place_on_pivot
-from omegadot.reference_impl.motion import (
-    acceleration_of,
-    forward_dynamics,
-    inverse_dynamics,
-)
+from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 FEATURES = frozenset(
@@ -90,8 +80,5 @@ class ReferenceAdapter:
         """Step the scheme named `integrator`. Raises UnsupportedError where there is none."""
         if integrator not in SCHEMES:
             raise UnsupportedError(f"the reference has no scheme {integrator!r}.")
-        scheme, acceleration = SCHEMES[integrator], acceleration_of(self.system)
-        times, states = step_through(
-            scheme, self.system, acceleration, initial, timestep, steps, every
-        )
-        return Trajectory(times, states)
+        plan = (timestep, steps, every)
+        return Trajectory(*step_body(SCHEMES[integrator], self.system, initial, *plan))

@@ -15,7 +15,8 @@ from omegadot.reference_impl.schemes import (
     semi_implicit_euler,
     short_turns_euler,
 )
-from omegadot.reference_impl.schemes.scheme import AccelerationOf, Scheme
+from omegadot.reference_impl.schemes.motion import Motion
+from omegadot.reference_impl.schemes.scheme import Scheme
 
 SCHEMES: dict[str, Scheme] = {
     module.SCHEME.name: module.SCHEME
@@ -34,4 +35,4 @@ SCHEMES: dict[str, Scheme] = {
     )
 }
 
-__all__ = ["SCHEMES", "AccelerationOf", "Scheme"]
+__all__ = ["SCHEMES", "Motion", "Scheme"]

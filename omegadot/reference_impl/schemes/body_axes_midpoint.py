@@ -5,37 +5,34 @@ from __future__ import annotations
 import numpy as np
 
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.rotations import rotate, rotate_inverse, turn_in_body
-from omegadot.reference_impl.schemes.frozen_torque_midpoint import mean_velocity
-from omegadot.reference_impl.schemes.scheme import (
-    AccelerationOf,
-    Scheme,
-    every_channel,
-    per_component,
-)
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.rotations import rotate, rotate_inverse
+from omegadot.reference_impl.schemes import frozen_torque_midpoint
+from omegadot.reference_impl.schemes.motion import Motion
+from omegadot.reference_impl.schemes.scheme import IN_WORLD, Scheme, every_channel
+from omegadot.reference_impl.system import Array
 
 
-def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
+def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
     """ω and q as frozen-torque-midpoint; ``u₁ - u₀ = h (q₀⁻¹ a* - ω_m × (u₀ + u₁)/2)``.
 
-    ``u = q⁻¹ v`` is the velocity in body axes, ``v₁ = q₁ u₁`` and ``p₁ = p₀ + h (v₀ + v₁)/2``. The
-    forces stay in body axes for the step, so that gravity is turned by half the step's turn, and
-    as u is turned by Cayley's increment but q by the exponential, a steady velocity too is turned:
-    by ``|h ω|³/12`` a step.
+    ``u = q⁻¹ ṗ`` is a free body's velocity in body axes, ``ṗ₁ = q₁ u₁`` and
+    ``p₁ = p₀ + h (ṗ₀ + ṗ₁)/2``. The forces stay in body axes for the step, so that gravity is
+    turned by half the step's turn, and as u is turned by Cayley's increment but q by the
+    exponential, a steady velocity too is turned: by ``|h ω|³/12`` a step. It knows one body alone:
+    q is (position, quaternion), v is (velocity in the world, ω). On a pivot there is no u.
     """
-    h = per_component(dt)
-    mean, found = mean_velocity(acceleration, state, h)
-    q = turn_in_body(state.orientation, mean, h)
-    u = rotate_inverse(state.orientation, state.linear_velocity)
-    push = h * rotate_inverse(state.orientation, found.linear)
-    v = rotate(q, _unturned(u - cross(0.5 * h * mean, u) + push, 0.5 * h * mean))
-    return State(
-        q,
-        2 * mean - state.angular_velocity,
-        state.position + 0.5 * h * (state.linear_velocity + v),
-        v,
-    )
+    if v.shape[-1] == 3:
+        return frozen_torque_midpoint.step(motion, q, v, h)
+    mean = frozen_torque_midpoint.mean_velocity(motion, q, v, h)
+    attitude, start, half_turn = q[..., 3:], v[..., :3], 0.5 * h * mean[..., 3:]
+    turning = np.concatenate((np.zeros_like(start), mean[..., 3:]), axis=-1)
+    turned = motion.retract(q, h * turning)[..., 3:]
+    u = rotate_inverse(attitude, start)
+    push = 2 * rotate_inverse(attitude, mean[..., :3] - start)
+    velocity = rotate(turned, _unturned(u - cross(half_turn, u) + push, half_turn))
+    end = np.concatenate((velocity, 2 * mean[..., 3:] - v[..., 3:]), axis=-1)
+    place = q[..., :3] + 0.5 * h * (start + velocity)
+    return np.concatenate((place, turned), axis=-1), end
 
 
 def _unturned(b: Array, r: Array) -> Array:
@@ -53,4 +50,5 @@ SCHEME = Scheme(
     special={"torque-free": {"omega": 2, "attitude": 2, "angular_momentum": 2}},
     source="MuJoCo's changelog, versions 3.7.0 and 3.11.0, the linear velocity by its steps",
     solved_to=3e-13,
+    coordinates=IN_WORLD,
 )

@@ -2,90 +2,53 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from omegadot.reference_impl.rotations import turn_in_body
 from omegadot.reference_impl.schemes.jacobian import (
     acceleration_and_jacobian,
-    inverse_of_one_minus,
+    natural_size,
+    solver_of_one_minus,
 )
+from omegadot.reference_impl.schemes.motion import Motion, per_matrix
 from omegadot.reference_impl.schemes.newton import mean_velocity_of
-from omegadot.reference_impl.schemes.scheme import (
-    AccelerationOf,
-    Scheme,
-    every_channel,
-    per_component,
-)
-from omegadot.reference_impl.system import Acceleration, Array, State
+from omegadot.reference_impl.schemes.scheme import Scheme, every_channel
+from omegadot.reference_impl.system import Array
 
 
-def mean_velocity(
-    acceleration: AccelerationOf, state: State, h: float | Array
-) -> tuple[Array, Acceleration]:
-    """``ω_m = ω₀ + h/2 ω̇*`` and the accelerations ``a*`` by which the step changes velocities.
+def mean_velocity(motion: Motion, q: Array, v: Array, h: float | Array) -> Array:
+    """``v_m = v₀ + h/2 a*``, with a* the accelerations by which the step changes velocities.
 
-    Of what depends on ω, the part that is quadratic, and so even, is taken at ω_m; the part that
-    is linear, and so odd, damping, stays at ω₀:
-    ``a* = (a(q₀, ω_m) + a(q₀, -ω_m))/2 + (a(q₀, ω₀) - a(q₀, -ω₀))/2``. Hence
+    Of what depends on v, the part that is quadratic, and so even, is taken at v_m; the part that
+    is linear, and so odd, damping, stays at v₀:
+    ``a* = (a(q₀, v_m) + a(q₀, -v_m))/2 + (a(q₀, v₀) - a(q₀, -v₀))/2``. Hence
     ``I (ω₁ - ω₀) = h (τ₀ - ω_m × I ω_m)`` with ``ω_m = (ω₀ + ω₁)/2``.
 
-    ω_m is found by Newton's method, see `mean_velocity_of`.
+    v_m is found by Newton's method, see `mean_velocity_of`.
     """
-    w0, half = state.angular_velocity, 0.5 * h
-    turn = half if isinstance(half, float) else half[..., None]
-    even, odd = _even_and_odd(acceleration, state)
-    rate = _natural_rate(w0, even.angular + odd.angular)
+    acceleration, half = motion.acceleration, 0.5 * h
+    size = natural_size(motion, v, acceleration(q, v))
+    ahead, jacobian = acceleration_and_jacobian(motion, q, v, size)
+    back, jacobian_back = acceleration_and_jacobian(motion, q, -v, size)
+    odd = 0.5 * (ahead - back)
+    solve = solver_of_one_minus(per_matrix(half) * 0.5 * (jacobian - jacobian_back))
 
-    def starred(at: State) -> Acceleration:
-        even, _ = _even_and_odd(acceleration, at)
-        return Acceleration(even.angular + odd.angular, even.linear + odd.linear)
+    def push(w: Array) -> Array:
+        even = 0.5 * acceleration(q, w)
+        return half * (even + 0.5 * acceleration(q, -w) + odd)
 
-    found, jacobian, _ = acceleration_and_jacobian(starred, state, rate)
-    inverse = inverse_of_one_minus(turn * jacobian)
-
-    def evaluate(w: Array, _: Acceleration) -> Acceleration:
-        return starred(_with_velocity(state, w))
-
-    return mean_velocity_of(evaluate, found, w0, half, inverse)
+    return mean_velocity_of(push, half * ahead, v, solve, motion.spin)
 
 
-def _even_and_odd(acceleration: AccelerationOf, state: State) -> tuple[Acceleration, Acceleration]:
-    """``(a(ω) + a(-ω))/2`` and ``(a(ω) - a(-ω))/2`` at one attitude, in one call."""
-    w = state.angular_velocity
-    q, x, v = state.orientation, state.position, state.linear_velocity
-    found = acceleration(State(*(np.array(pair) for pair in ([q, q], [w, -w], [x, x], [v, v]))))
-    (w_dot, w_dot_back), (pull, pull_back) = found.angular, found.linear
-    even = Acceleration(0.5 * (w_dot + w_dot_back), 0.5 * (pull + pull_back))
-    return even, Acceleration(0.5 * (w_dot - w_dot_back), 0.5 * (pull - pull_back))
-
-
-def _natural_rate(w: Array, omega_dot: Array) -> Array:
-    """(..., 1) rad/s: ``(|ω|² + |ω̇|)^½``, which like ω scales with the unit of time."""
-    spin, pull = np.add.reduce(w * w, -1), np.add.reduce(omega_dot * omega_dot, -1)
-    rate: Array = np.sqrt(spin + np.sqrt(pull))[..., None]
-    return rate
-
-
-def _with_velocity(state: State, w: Array) -> State:
-    return State(state.orientation, w, state.position, state.linear_velocity)
-
-
-def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-    """``ω₁ = 2 ω_m - ω₀``, ``q₁ = q₀ exp(h ω_m)``, ``v₁ = v₀ + h a*``, ``p₁ = p₀ + h v₁``.
+def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """``v₁ = 2 v_m - v₀``, ``q₁ = q₀ exp(h ω_m)``, ``p₁ = p₀ + h ṗ₁``.
 
     A free body without torques keeps ``ωᵀ I ω``, as under the implicit midpoint rule; a torque
     that changes within the step, damping among them, is of order 1. Here the equation is solved
     to rounding; MuJoCo stops at residuals of some 2e-13 of the momentum.
     """
-    h = per_component(dt)
-    mean, found = mean_velocity(acceleration, state, h)
-    v = state.linear_velocity + h * found.linear
-    return State(
-        turn_in_body(state.orientation, mean, h),
-        2 * mean - state.angular_velocity,
-        state.position + h * v,
-        v,
-    )
+    mean = mean_velocity(motion, q, v, h)
+    end = 2 * mean - v
+    way = end.copy()
+    way[..., motion.spin] = mean[..., motion.spin]
+    return motion.retract(q, h * way), end
 
 
 SCHEME = Scheme(

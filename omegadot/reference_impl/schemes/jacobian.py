@@ -1,66 +1,106 @@
-"""How the accelerations change with ω at fixed attitude, for linearly implicit schemes."""
+"""How the accelerations change with the velocities at fixed q, for linearly implicit schemes."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.schemes.scheme import AccelerationOf
-from omegadot.reference_impl.symmetric import apply
-from omegadot.reference_impl.system import Acceleration, Array, State
+from omegadot.reference_impl.schemes.motion import Motion, Velocity
+from omegadot.reference_impl.system import Array
 
 
 def acceleration_and_jacobian(
-    acceleration: AccelerationOf, state: State, size: Array | None = None
-) -> tuple[Acceleration, Array, Array]:
-    """Accelerations, ``∂ω̇/∂ω`` and ``∂a/∂ω``, the latter two (..., 3, 3), row by component.
+    motion: Motion, q: Array, v: Array, size: Array | None = None
+) -> tuple[Array, Array]:
+    """``v̇`` (..., n) and ``∂v̇/∂v`` (..., n, m), row by component: see `Motion`."""
+    if motion.jacobian is not None:
+        return motion.jacobian(q, v, size)
+    return by_differences(motion.acceleration, q, v, v.shape[-1], size)
 
-    By central differences, in one call over seven states. Both accelerations are quadratic in ω
-    (equation (8), and the pivot's ``ω × (ω × r)``), for which the central difference is exact at
-    any distance; one as large as |ω| itself leaves the least rounding. size: (..., 1) rad/s, the
-    distance where ω itself gives none, as at rest.
+
+def by_differences(
+    acceleration: Velocity, q: Array, v: Array, last: int, size: Array | None
+) -> tuple[Array, Array]:
+    """Accelerations and their derivatives by the last m velocities, at 2 m + 1 states.
+
+    Accelerations are quadratic in v (equation (8), and a pivot's ``ω × (ω × r)``), for which the
+    central difference is exact at any distance; one as large as those velocities leaves the least
+    rounding. size: (..., 1), the distance where v itself gives none, as at rest.
     """
-    w = state.angular_velocity
     if size is None:
-        size = np.sqrt(np.add.reduce(w * w, -1))[..., None]
-    distance = np.where(size > 0, size, 1)  # rad/s; any does at rest
-    moves = np.zeros((7, *(1,) * (w.ndim - 1), 3), w.dtype)
-    for axis in range(3):
-        moves[1 + axis, ..., axis], moves[4 + axis, ..., axis] = 1, -1
-    spread = State(
-        _repeat(state.orientation),
-        w + distance * moves,
-        _repeat(state.position),
-        _repeat(state.linear_velocity),
-    )
-    found = acceleration(spread)
-    here = Acceleration(found.angular[0], found.linear[0])
-    return here, _columns(found.angular, distance), _columns(found.linear, distance)
+        moving = v[..., -last:]
+        size = np.sqrt(np.add.reduce(moving * moving, -1))[..., None]
+    distance = np.where(size > 0, size, 1)  # any does at rest
+    moves = _moves(last, v.shape[-1])
+    if v.ndim == 1:  # one call each is quicker, and need not broadcast
+        found = np.array([acceleration(q, w).copy() for w in v + distance * moves])
+    else:
+        moves = moves.reshape(len(moves), *(1,) * (v.ndim - 1), v.shape[-1])
+        found = acceleration(q[None].repeat(len(moves), 0), v + distance * moves)
+    slopes: Array = (found[1 : last + 1] - found[last + 1 :]) / (2 * distance)
+    return found[0], slopes.transpose(*range(1, slopes.ndim), 0)
 
 
-def _repeat(field: Array) -> Array:
-    return field[None].repeat(7, 0)  # on arrays this small faster than broadcast_to
+@cache
+def _moves(last: int, count: int) -> Array:
+    """No move, then one forth along each of the last axes, then one back: (2 last + 1, count)."""
+    forth = np.eye(count)[count - last :]
+    return np.concatenate((np.zeros((1, count)), forth, -forth))
 
 
-def _columns(values: Array, distance: Array) -> Array:
-    differences: Array = (values[1:4] - values[4:7]) / (2 * distance)
-    return differences.transpose(*range(1, differences.ndim), 0)
+def natural_size(motion: Motion, v: Array, a: Array) -> Array:
+    """(..., 1) rad/s: ``(|ω|² + |ω̇|)^½``, at which what depends on ω is as large as what does not.
 
-
-def inverse_of_one_minus(matrix: Array) -> Array:
-    """``(1 - M)⁻¹``, (..., 3, 3), in any precision.
-
-    By cofactors, which are cross products of the columns: with a step that makes sense ``1 - M``
-    is near the identity.
+    Unlike any constant it scales with the unit of time.
     """
-    a = np.eye(3) - matrix
-    c0, c1, c2 = a[..., 0], a[..., 1], a[..., 2]
-    c12 = cross(c1, c2)
-    determinant = np.add.reduce(c0 * c12, -1)[..., None, None]
-    inverse: Array = np.stack([c12, cross(c2, c0), cross(c0, c1)], axis=-2) / determinant
-    return inverse
+    w, w_dot = v[..., motion.spin], a[..., motion.spin]
+    spin, pull = np.add.reduce(w * w, -1), np.add.reduce(w_dot * w_dot, -1)
+    size: Array = np.sqrt(spin + np.sqrt(pull))[..., None]
+    return size
 
 
-def solve_one_minus(matrix: Array, right: Array) -> Array:
-    """Solve ``(1 - M) x = b`` for x: (..., 3, 3) and (..., 3), in any precision."""
-    return apply(inverse_of_one_minus(matrix), right)
+def solver_of_one_minus(matrix: Array) -> Callable[[Array], Array]:
+    """What solves ``(1 - M) x = b`` for x, (..., n) to (..., n), in any precision.
+
+    matrix: (..., n, m), the last m columns of M; the others are zero.
+    """
+    m = matrix.shape[-1]
+    inverse = _inverse(np.eye(m) - matrix[..., -m:, :])
+    if matrix.shape[-2] == m:
+        return lambda b: (inverse @ b[..., None])[..., 0]
+    rest = matrix[..., :-m, :]
+
+    def solve(b: Array) -> Array:
+        x = inverse @ b[..., -m:, None]
+        first: Array = b[..., :-m] + (rest @ x)[..., 0]
+        return np.concatenate((first, x[..., 0]), axis=-1)
+
+    return solve
+
+
+def _inverse(a: Array) -> Array:
+    """``A⁻¹``, (..., m, m); NaN or infinite where there is none.
+
+    With a step that makes sense A is near the identity. LAPACK knows doubles alone, and a call of
+    it a matrix; lanes of 3x3 are inverted by cofactors, which are cross products of the columns,
+    and what is longer than a double by one step of Newton's from a double's inverse.
+    """
+    if a.shape[-1] == 3 and (a.ndim > 2 or a.dtype != np.dtype(float)):
+        c0, c1, c2 = a[..., 0], a[..., 1], a[..., 2]
+        c12 = cross(c1, c2)
+        determinant = np.add.reduce(c0 * c12, -1)[..., None, None]
+        adjugate: Array = np.stack([c12, cross(c2, c0), cross(c0, c1)], axis=-2)
+        return adjugate / determinant
+    try:
+        inverse: Array = np.linalg.inv(a.astype(float, copy=False))
+    except np.linalg.LinAlgError:
+        lanes = a.reshape(-1, *a.shape[-2:])
+        if len(lanes) == 1:
+            return np.full_like(a, np.nan)
+        return np.array([_inverse(one) for one in lanes]).reshape(a.shape)
+    return (
+        inverse if a.dtype == inverse.dtype else inverse @ (2 * np.eye(a.shape[-1]) - a @ inverse)
+    )

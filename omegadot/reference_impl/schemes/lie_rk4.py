@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.schemes.runge_kutta import step_in_rotation_vector
-from omegadot.reference_impl.schemes.scheme import AccelerationOf, Scheme, every_channel
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.schemes.motion import Motion
+from omegadot.reference_impl.schemes.runge_kutta import step_in_exponential
+from omegadot.reference_impl.schemes.scheme import Scheme, every_channel
+from omegadot.reference_impl.system import Array
 
 
-def vector_rate(u: Array, w: Array) -> Array:
-    """``u̇ = ω + ½ u × ω + ¹⁄₁₂ u × (u × ω)``, (..., 3): how ``exp(u)`` must move to turn with ω.
+def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """RK4 on u of ``q = q₀ exp(u)`` and v with ``u̇ = v + ½ [u, v] + ¹⁄₁₂ [u, [u, v]]``.
 
-    The series of dexp⁻¹ for ``q = q₀ exp(u)`` and ω in the body frame, without its terms from
-    ``|u|⁴ ω`` on; u is of the size h, so that they touch the step at h⁵ alone.
+    The series of dexp⁻¹ lacks its terms from ``|u|⁴ v`` on; u is of the size h, so that they touch
+    the step at h⁵ alone.
     """
-    turned = cross(u, w)
-    return w + 0.5 * turned + cross(u, turned) / 12
-
-
-def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-    """RK4 on the rotation vector u of ``q = q₀ exp(u)``, whose rate is `vector_rate`, and ω."""
-    return step_in_rotation_vector(acceleration, state, dt, vector_rate)
+    return step_in_exponential(motion, motion.rate_to_second_order, q, v, h)
 
 
 SCHEME = Scheme(

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from omegadot.reference_impl.schemes.runge_kutta import step_in_rotation_vector
-from omegadot.reference_impl.schemes.scheme import AccelerationOf, Scheme, every_channel
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.schemes.motion import Motion
+from omegadot.reference_impl.schemes.runge_kutta import step_in_exponential
+from omegadot.reference_impl.schemes.scheme import Scheme, every_channel
+from omegadot.reference_impl.system import Array
 
 
-def vector_rate(u: Array, w: Array) -> Array:
-    """``u̇ = ω``, as if rotations commuted: the commutator ``½ u × ω`` is missing."""
-    return w
+def _as_if_rotations_commuted(_: Array, v: Array) -> Array:
+    """``u̇ = v``: the commutator ``½ [u, v]`` is missing."""
+    return v
 
 
-def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-    """Stages ``q_i = q₀ exp(h a_i ω_{i-1})``, end ``q₁ = q₀ exp(h Σ b_i ω_i)``.
+def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """Stages ``q_i = q₀ exp(h a_i v_{i-1})``, end ``q₁ = q₀ exp(h Σ b_i v_i)``.
 
     The attitude is of order 2. Where the torque does not depend on the attitude, ω is still of
     order 4, and so is the energy of a free body, which therefore does not show the fault; the
     angular momentum in the world does.
     """
-    return step_in_rotation_vector(acceleration, state, dt, vector_rate)
+    return step_in_exponential(motion, _as_if_rotations_commuted, q, v, h)
 
 
 SCHEME = Scheme(

@@ -2,33 +2,17 @@
 
 from __future__ import annotations
 
-from omegadot.reference_impl.rotations import turn_in_body
-from omegadot.reference_impl.schemes.jacobian import (
-    acceleration_and_jacobian,
-    solve_one_minus,
-)
-from omegadot.reference_impl.schemes.scheme import (
-    AccelerationOf,
-    Scheme,
-    every_channel,
-    per_component,
-)
-from omegadot.reference_impl.symmetric import apply
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian, solver_of_one_minus
+from omegadot.reference_impl.schemes.motion import Motion, per_matrix
+from omegadot.reference_impl.schemes.scheme import Scheme, every_channel
+from omegadot.reference_impl.system import Array
 
 
-def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-    """``(1 - h J) Δω = h ω̇`` with ``J = ∂ω̇/∂ω`` at fixed attitude, then as semi-implicit Euler.
-
-    The linear acceleration follows the change of ω too: ``Δv = h (a + (∂a/∂ω) Δω)``.
-    """
-    h = per_component(dt)
-    found, angular, linear = acceleration_and_jacobian(acceleration, state)
-    turn = h if isinstance(h, float) else h[..., None]
-    change = solve_one_minus(turn * angular, h * found.angular)
-    w = state.angular_velocity + change
-    v = state.linear_velocity + h * (found.linear + apply(linear, change))
-    return State(turn_in_body(state.orientation, w, h), w, state.position + h * v, v)
+def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """``(1 - h J) Δv = h v̇`` with ``J = ∂v̇/∂v`` at fixed q, then ``q₁ = q₀ exp(h v₁)``."""
+    a, jacobian = acceleration_and_jacobian(motion, q, v)
+    v = v + solver_of_one_minus(per_matrix(h) * jacobian)(h * a)
+    return motion.retract(q, h * v), v
 
 
 SCHEME = Scheme(

@@ -1,4 +1,4 @@
-"""The mean angular velocity of an implicit midpoint step, by Newton's method."""
+"""The mean velocity of an implicit midpoint step, by Newton's method."""
 
 from __future__ import annotations
 
@@ -6,38 +6,38 @@ from collections.abc import Callable
 
 import numpy as np
 
-from omegadot.reference_impl.symmetric import apply
-from omegadot.reference_impl.system import Acceleration, Array
+from omegadot.reference_impl.system import Array
 
 MOST_ITERATIONS = 50
-UNSETTLED = 0.01  # of ω, a change that shrinks no further: no rounding is as large as that
+UNSETTLED = 0.01  # of v, a change that shrinks no further: no rounding is as large as that
 
 
 def mean_velocity_of(
-    evaluate: Callable[[Array, Acceleration], Acceleration],
-    found: Acceleration,
-    w0: Array,
-    half: float | Array,
-    inverse: Array,
-) -> tuple[Array, Acceleration]:
-    """The ω_m with ``ω_m = ω₀ + h/2 ω̇(ω_m)``, (..., 3), and the accelerations there.
+    push: Callable[[Array], Array],
+    first: Array,
+    v0: Array,
+    solve: Callable[[Array], Array],
+    spin: slice,
+) -> Array:
+    """The v_m with ``v_m = v₀ + h/2 v̇(v_m)``, (..., n).
 
-    evaluate: the accelerations at an ω_m, given those of the iteration before.  found: those at
-    ω₀.  half: ``h/2``.  inverse: of ``1 - h/2 J``, with J the Jacobian in ω of the step's start.
-    It ends where ω_m stands still to round-off, which may be that of an engine: a fast body's
+    push: ``h/2 v̇`` at a v_m.  first: the same at v₀.  solve: by ``1 - h/2 J``, with J the Jacobian
+    in v of the step's start.  spin: the velocities that are judged.
+    It ends where they stand still to round-off, which may be that of an engine: a fast body's
     bias forces, ``m |v|²``, can leave far fewer digits of ω̇ than the number format has. A lane
     that has not settled comes back as NaN: its step is too large.
     """
-    w = w0 + apply(inverse, half * found.angular)
-    eps, last = np.finfo(w.dtype).eps, np.inf
+    v = v0 + solve(first)
+    eps, last = np.finfo(v.dtype).eps, np.inf
     for _ in range(MOST_ITERATIONS):
-        found = evaluate(w, found)
-        change = apply(inverse, w0 + half * found.angular - w)
-        w = w + change
-        size = np.sqrt(np.add.reduce(change * change, -1) / np.add.reduce(w * w, -1).clip(1e-300))
+        change = solve(v0 + push(v) - v)
+        v = v + change
+        moved, spinning = change[..., spin], v[..., spin]
+        square = np.add.reduce(spinning * spinning, -1)
+        size = np.sqrt(np.add.reduce(moved * moved, -1) / np.maximum(square, 1e-300))
         # among rounding a change need not shrink each time; above it, slow is not yet settled
         least = np.where(size <= np.sqrt(eps), 0.5 * last, last)
         if np.all((size <= eps) | ~(size < least)):
             break
         last = size
-    return np.where((size <= UNSETTLED)[..., None], w, np.nan), found
+    return np.where((size <= UNSETTLED)[..., None], v, np.nan)

@@ -2,36 +2,27 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from omegadot.reference_impl.rotations import normalize, quaternion_product
-from omegadot.reference_impl.schemes.runge_kutta import runge_kutta_4
-from omegadot.reference_impl.schemes.scheme import (
-    AccelerationOf,
-    Scheme,
-    every_channel,
-    per_component,
-)
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.schemes.motion import Motion
+from omegadot.reference_impl.schemes.scheme import Scheme, every_channel
+from omegadot.reference_impl.system import Array
 
 
-def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-    """RK4 on ``y = (q, ω, p, v)`` with ``q̇ = ½ q (0, ω)``; q is made unit after the step.
+def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """Kutta's method of 1901 on q and v with q̇ as of any vector: ``½ q (0, ω)`` of a quaternion.
 
-    The stages' quaternions leave the unit sphere a little; forces are taken at their directions.
+    The stages' quaternions leave the unit sphere a little; accelerations are taken at their
+    directions, and they are made unit after the step.
     """
-
-    def rates(y: Array) -> Array:
-        q, w, p, v = y[..., :4], y[..., 4:7], y[..., 7:10], y[..., 10:]
-        pure = np.zeros(q.shape, q.dtype)
-        pure[..., 1:] = 0.5 * w
-        found = acceleration(State(normalize(q), w, p, v))
-        turning = quaternion_product(q, pure)
-        return np.concatenate((turning, found.angular, v, found.linear), axis=-1)
-
-    parts = (state.orientation, state.angular_velocity, state.position, state.linear_velocity)
-    end = runge_kutta_4(rates, np.concatenate(parts, axis=-1), per_component(dt))
-    return State(normalize(end[..., :4]), end[..., 4:7], end[..., 7:10], end[..., 10:])
+    acceleration, unit, rate = motion.acceleration, motion.normalize, motion.coordinate_rate
+    half = 0.5 * h
+    a, r1 = h * acceleration(q, v), rate(q, v)
+    q2, v2 = q + half * r1, v + 0.5 * a
+    b, r2 = h * acceleration(unit(q2), v2), rate(q2, v2)
+    q3, v3 = q + half * r2, v + 0.5 * b
+    c, r3 = h * acceleration(unit(q3), v3), rate(q3, v3)
+    q4, v4 = q + h * r3, v + c
+    d, r4 = h * acceleration(unit(q4), v4), rate(q4, v4)
+    return unit(q + h / 6 * (r1 + 2 * (r2 + r3) + r4)), v + (a + 2 * (b + c) + d) / 6
 
 
 SCHEME = Scheme(

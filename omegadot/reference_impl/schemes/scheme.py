@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
-from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.reference_impl.coordinates import Coordinates, canonical
+from omegadot.reference_impl.schemes.motion import Motion
+from omegadot.reference_impl.system import Array, System
 
-AccelerationOf = Callable[[State], Acceleration]
-"""Accelerations of a state under all loads, the reference's or an engine's.
-
-It must broadcast over leading axes, as everything here does: schemes may ask for several states
-at once.
-"""
+IN_WORLD: tuple[Coordinates, ...] = ("com-world", "origin-world")
 
 
 class Step(Protocol):
     """How a scheme is called."""
 
-    def __call__(self, acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-        """One step of `dt` s, a float or an array that broadcasts over the state's lanes."""
+    def __call__(self, motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+        """The q and v after one step of h s, a float, or (..., 1) with a step a lane."""
         ...
 
 
@@ -34,6 +31,7 @@ class Scheme:
     special: where a simpler system does better, per kind of system (see `kinds_of`); None stands
     for a channel without truncation error, in which only rounding is left.
     solved_to: relative residual at which engines stop solving the step's equation; 0 at rounding.
+    coordinates: those of one body in which it can be stepped.
     """
 
     name: str
@@ -43,10 +41,19 @@ class Scheme:
     special: Mapping[str, Mapping[str, int | None]] = field(default_factory=dict)
     source: str = ""
     solved_to: float = 0.0
+    coordinates: tuple[Coordinates, ...] = (*IN_WORLD, "body-spatial")
 
-    def order(self, channel: str, system: System) -> int | None:
-        """The declared order of a channel for this system; None where only rounding is left."""
+    def order(
+        self, channel: str, system: System, coordinates: Coordinates = "com-world"
+    ) -> int | None:
+        """The declared order of a channel for this system; None where only rounding is left.
+
+        Where translation is stepped in other coordinates than those of the centre of mass in the
+        world, rotation takes part in it, and the scheme's general orders hold for it.
+        """
         found: int | None = self.orders[channel]
+        if channel in TRANSLATION and canonical(system, coordinates) != "com-world":
+            return found
         for kind in kinds_of(system):
             found = self.special.get(kind, {}).get(channel, found)
         return found
@@ -68,13 +75,9 @@ def kinds_of(system: System) -> tuple[str, ...]:
 
 
 CHANNELS = ("omega", "attitude", "energy", "angular_momentum", "linear_momentum", "position")
+TRANSLATION = ("energy", "linear_momentum", "position")
 
 
 def every_channel(order: int) -> dict[str, int]:
     """The same order in every channel."""
     return dict.fromkeys(CHANNELS, order)
-
-
-def per_component(dt: float | Array) -> float | Array:
-    """The step, shaped to multiply vectors: (lanes,) becomes (lanes, 1), a float stays one."""
-    return dt if isinstance(dt, float) else np.asarray(dt)[..., None]

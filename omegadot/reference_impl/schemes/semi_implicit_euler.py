@@ -1,27 +1,19 @@
-"""Semi-implicit (symplectic) Euler with the exponential on SO(3): velocities first, then places."""
+"""Semi-implicit (symplectic) Euler with the exponential: velocities first, then places."""
 
 from __future__ import annotations
 
-from omegadot.reference_impl.rotations import turn_in_body
-from omegadot.reference_impl.schemes.scheme import (
-    AccelerationOf,
-    Scheme,
-    every_channel,
-    per_component,
-)
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.schemes.motion import Motion
+from omegadot.reference_impl.schemes.scheme import Scheme, every_channel
+from omegadot.reference_impl.system import Array
 
 
-def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-    """``ω₁ = ω₀ + h ω̇(q₀, ω₀)``, ``q₁ = q₀ exp(h ω₁)``, ``v₁ = v₀ + h a``, ``p₁ = p₀ + h v₁``.
+def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """``v₁ = v₀ + h v̇(q₀, v₀)``, ``q₁ = q₀ exp(h v₁)``.
 
     On a free body the step in ω is plain explicit Euler: the name speaks of places and velocities.
     """
-    h = per_component(dt)
-    found = acceleration(state)
-    w = state.angular_velocity + h * found.angular
-    v = state.linear_velocity + h * found.linear
-    return State(turn_in_body(state.orientation, w, h), w, state.position + h * v, v)
+    v = v + h * motion.acceleration(q, v)
+    return motion.retract(q, h * v), v
 
 
 SCHEME = Scheme(

@@ -12,13 +12,9 @@ from omegadot.reference_impl.rotations import (
     quaternion_product,
     rotation_matrix,
 )
-from omegadot.reference_impl.schemes.scheme import (
-    AccelerationOf,
-    Scheme,
-    every_channel,
-    per_component,
-)
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.schemes.motion import Motion
+from omegadot.reference_impl.schemes.scheme import IN_WORLD, Scheme, every_channel
+from omegadot.reference_impl.system import Array
 
 SHORT = 1e-3  # rad
 # The attitude of the joint's frame in the world, 120 degrees about (1, 1, 1): in which frame a
@@ -73,13 +69,12 @@ def _turned(q: Array, rotation_vector: Array) -> Array:
     return np.where(short, _turned_short(q, rotation_vector), exact)
 
 
-def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
+def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
     """As semi-implicit Euler, the attitude by the turn above."""
-    h = per_component(dt)
-    found = acceleration(state)
-    w = state.angular_velocity + h * found.angular
-    v = state.linear_velocity + h * found.linear
-    return State(_turned(state.orientation, w * h), w, state.position + h * v, v)
+    v = v + h * motion.acceleration(q, v)
+    if motion.turned_by is None:
+        return motion.retract(q, h * v), v
+    return motion.turned_by(_turned, q, h * v), v
 
 
 SCHEME = Scheme(
@@ -89,4 +84,5 @@ SCHEME = Scheme(
     orders=every_channel(1),
     special={"free": {"linear_momentum": None}},
     source="DART (dart/math/Geometry.cpp, expMapRot and logMap), confirmed by its steps",
+    coordinates=IN_WORLD,
 )

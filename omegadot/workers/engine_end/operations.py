@@ -127,7 +127,7 @@ def _companion(_: Adapter, request: Request) -> Any:
     """The reference stepping one scheme over a sweep, with the growth of rounding."""
     system, initial = system_from(request["system"]), state_from(request["initial"])
     plan = [Steps(**step) for step in request["plan"]]
-    how = (request["scheme"], request["rate"], plan, request["at_origin"])
+    how = (request["scheme"], request["rate"], plan, request["coordinates"])
     runs = companion(system, initial, *how)
     return [
         {

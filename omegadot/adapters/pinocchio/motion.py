@@ -1,0 +1,84 @@
+"""Pinocchio's own `aba` and `integrate` as a motion that the reference's schemes step.
+
+Nothing but calls of Pinocchio is in the loop where no load depends on the state. Coordinates are
+Pinocchio's: a free flyer's q is (position, x, y, z, w) and its v the spatial velocity (linear,
+angular) in body axes; a spherical joint's are (x, y, z, w) and omega.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL
+from omegadot.reference_impl.components import apart, length, rotated, together
+from omegadot.reference_impl.schemes import Motion
+from omegadot.reference_impl.system import Array, Load
+
+Torque = Callable[[Array, Array], Array]
+
+
+def joint_torque(load: Load, count: int) -> Array | Torque:
+    """The applied torques and the damping as a torque (n,) of the joint: constant, or of q and v.
+
+    A couple has no linear part.
+    """
+    constant, damping = np.zeros(count), np.zeros(count)
+    constant[-3:], damping[-3:] = load.torque_body, load.damping
+    in_world = [float(x) for x in load.torque_world]
+    if not any(in_world):
+        return constant if not damping.any() else lambda _, v: constant - damping * v
+
+    def torque(q: Array, v: Array) -> Array:
+        *_, x, y, z, w = q.tolist()
+        couple = constant - damping * v
+        couple[-3:] += rotated(-w, x, y, z, *in_world)
+        return couple
+
+    return torque
+
+
+def joint_motion(pin: Any, model: Any, load: Load) -> Motion:
+    """The joint's motion under its loads."""
+    data, torque = model.createData(), joint_torque(load, model.nv)
+    parts = {**(SPATIAL if load.pivot is None else ATTITUDE), "turned_by": None}
+    parts["retract"] = partial(pin.integrate, model)
+    parts["normalize"] = partial(pin.normalize, model)
+    parts["coordinate_rate"] = _coordinate_rate
+    damping = float(load.damping)
+
+    def acceleration(q: Array, v: Array) -> Array:
+        assert callable(torque)
+        found: Array = pin.aba(model, data, q, v, torque(q, v))
+        return found
+
+    def jacobian(q: Array, v: Array, _: Array | None) -> tuple[Array, Array]:
+        tau = torque(q, v) if callable(torque) else torque
+        _, by_v, inverse_mass = pin.computeABADerivatives(model, data, q, v, tau)
+        by_v = by_v.copy()  # Pinocchio's own memory, as are the others
+        if damping:
+            by_v[:, -3:] -= damping * inverse_mass[:, -3:]
+        return data.ddq.copy(), by_v
+
+    constant = None if callable(torque) else partial(pin.aba, model, data, tau=torque)
+    return Motion(acceleration=constant or acceleration, jacobian=jacobian, **parts)
+
+
+def _coordinate_rate(q: Array, v: Array) -> Array:
+    """``(R u, ½ q (0, ω))`` in Pinocchio's order, R at the direction of q."""
+    *place, x, y, z, w = apart(q)
+    *linear, a, b, c = apart(v)
+    a, b, c = 0.5 * a, 0.5 * b, 0.5 * c
+    if place:
+        size = length(w * w + x * x + y * y + z * z)
+        linear = [*rotated(w / size, x / size, y / size, z / size, *linear)]
+    turning = (
+        w * a + y * c - z * b,
+        w * b - x * c + z * a,
+        w * c + x * b - y * a,
+        -x * a - y * b - z * c,
+    )
+    return together([*linear, *turning], v)

@@ -1,0 +1,168 @@
+"""One body as a motion that schemes step: equations (7) and (8) in components."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL, WORLD
+from omegadot.reference_impl.components import (
+    Number,
+    apart,
+    constants,
+    cross3,
+    rotated,
+    together,
+)
+from omegadot.reference_impl.coordinates import Coordinates, acceleration_in, from_coordinates
+from omegadot.reference_impl.cross_product import skew
+from omegadot.reference_impl.inertia import lever, moving_inertia
+from omegadot.reference_impl.loads import weight
+from omegadot.reference_impl.schemes.jacobian import by_differences
+from omegadot.reference_impl.schemes.motion import Motion, Velocity
+from omegadot.reference_impl.symmetric import inverse
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+Angular = Callable[..., tuple[Number, Number, Number]]
+
+
+def body_motion(system: System, coordinates: Coordinates = "com-world") -> Motion:
+    """One body under its loads, in these coordinates."""
+    if system.load.pivot is not None:
+        return attitude_motion(system)
+    return _free(_free_acceleration(system, coordinates), coordinates)
+
+
+def attitude_motion(system: System) -> Motion:
+    """The turning of a body alone: q is the quaternion, v is ω. A pivoted body has no more."""
+    angular = _angular(system)
+
+    def acceleration(q: Array, v: Array) -> Array:
+        return together([*angular(*apart(q), *apart(v))], v)
+
+    jacobian = partial(_jacobian_by_omega, acceleration)
+    return Motion(acceleration=acceleration, jacobian=jacobian, **ATTITUDE)
+
+
+def motion_over(
+    system: System, coordinates: Coordinates, acceleration: Callable[[State], Acceleration]
+) -> Motion:
+    """Any accelerations of a body's states, an engine's or wrong ones, as a motion.
+
+    They must broadcast over leading axes, and not depend on the linear velocity.
+    """
+
+    def rate(q: Array, v: Array) -> Array:
+        state = from_coordinates(system, q, v, coordinates)
+        return acceleration_in(system, state, acceleration(state), coordinates)
+
+    if system.load.pivot is not None:
+        return Motion(acceleration=rate, jacobian=partial(_jacobian_by_omega, rate), **ATTITUDE)
+    return _free(rate, coordinates)
+
+
+def _free(acceleration: Velocity, coordinates: Coordinates) -> Motion:
+    if coordinates == "body-spatial":
+        jacobian = partial(_jacobian_by_all, acceleration)
+        return Motion(acceleration=acceleration, jacobian=jacobian, **SPATIAL)
+    jacobian = partial(_jacobian_by_omega, acceleration)
+    return Motion(acceleration=acceleration, jacobian=jacobian, **WORLD)
+
+
+def _jacobian_by_omega(
+    acceleration: Velocity, q: Array, v: Array, size: Array | None
+) -> tuple[Array, Array]:
+    """In the world, where accelerations do not depend on the linear velocity: (..., n, 3)."""
+    return by_differences(acceleration, q, v, 3, size)
+
+
+def _jacobian_by_all(
+    acceleration: Velocity, q: Array, v: Array, size: Array | None
+) -> tuple[Array, Array]:
+    """In body axes ``∂u̇/∂u = -ω_×``, and the rest by differences: (..., 6, 6)."""
+    found, by_omega = by_differences(acceleration, q, v, 3, size)
+    by_u = np.concatenate((-skew(v[..., 3:]), np.zeros_like(by_omega[..., 3:, :])), axis=-2)
+    return found, np.concatenate((by_u, by_omega), axis=-1)
+
+
+def _angular(system: System) -> Angular:
+    """``ω̇ = I⁻¹ (τ - ω × I ω)``, equation (8), of the components of q and ω.
+
+    τ is the torque of `loads.torque_of`; what is zero is left out here, not at each step.
+    """
+    load, inertia = system.load, moving_inertia(system)
+    ixx, ixy, ixz, _, iyy, iyz, _, _, izz = constants(inertia)
+    jxx, jxy, jxz, _, jyy, jyz, _, _, jzz = constants(inverse(inertia))
+    driven, damped = bool(np.any(load.torque_body)), bool(np.any(load.damping))
+    bx, by, bz = constants(load.torque_body)
+    (d,) = constants(np.asarray(load.damping)[..., None])
+    in_world = bool(np.any(load.torque_world))
+    wx0, wy0, wz0 = constants(load.torque_world)
+    hangs = load.pivot is not None and bool(np.any(load.gravity))
+    fx, fy, fz = constants(weight(system))
+    rx, ry, rz = constants(lever(system))
+
+    def angular(
+        qw: Number, qx: Number, qy: Number, qz: Number, wx: Number, wy: Number, wz: Number
+    ) -> tuple[Number, Number, Number]:
+        hx = ixx * wx + ixy * wy + ixz * wz
+        hy = ixy * wx + iyy * wy + iyz * wz
+        hz = ixz * wx + iyz * wy + izz * wz
+        tx, ty, tz = hy * wz - hz * wy, hz * wx - hx * wz, hx * wy - hy * wx
+        if driven:
+            tx, ty, tz = tx + bx, ty + by, tz + bz
+        if damped:
+            tx, ty, tz = tx - d * wx, ty - d * wy, tz - d * wz
+        if in_world:
+            ax, ay, az = rotated(-qw, qx, qy, qz, wx0, wy0, wz0)
+            tx, ty, tz = tx + ax, ty + ay, tz + az
+        if hangs:
+            ax, ay, az = cross3(rx, ry, rz, *rotated(-qw, qx, qy, qz, fx, fy, fz))
+            tx, ty, tz = tx + ax, ty + ay, tz + az
+        return (
+            jxx * tx + jxy * ty + jxz * tz,
+            jxy * tx + jyy * ty + jyz * tz,
+            jxz * tx + jyz * ty + jzz * tz,
+        )
+
+    return angular
+
+
+def _free_acceleration(system: System, coordinates: Coordinates) -> Velocity:
+    """``v̇`` of a free body, equations (7) and (8): see `coordinates.acceleration_in`."""
+    angular = _angular(system)
+    gx, gy, gz = gravity = constants(system.load.gravity)
+    cx, cy, cz = center = constants(system.body.center_of_mass)
+
+    def of_center(q: Array, v: Array) -> Array:
+        _, _, _, qw, qx, qy, qz = apart(q)
+        _, _, _, wx, wy, wz = apart(v)
+        return together([gx, gy, gz, *angular(qw, qx, qy, qz, wx, wy, wz)], v)
+
+    def of_origin(q: Array, v: Array) -> Array:
+        _, _, _, *attitude = apart(q)
+        _, _, _, *w = apart(v)
+        ax, ay, az = angular(*attitude, *w)
+        x, y, z = cross3(*w, *cross3(*w, *center))
+        dx, dy, dz = cross3(ax, ay, az, *center)
+        lx, ly, lz = rotated(*attitude, x + dx, y + dy, z + dz)
+        return together([gx - lx, gy - ly, gz - lz, ax, ay, az], v)
+
+    def spatial(q: Array, v: Array) -> Array:
+        _, _, _, qw, qx, qy, qz = apart(q)
+        ux, uy, uz, *w = apart(v)
+        ax, ay, az = angular(qw, qx, qy, qz, *w)
+        x, y, z = cross3(*w, *center)
+        x, y, z = cross3(*w, ux + x, uy + y, uz + z)
+        dx, dy, dz = cross3(ax, ay, az, cx, cy, cz)
+        fx, fy, fz = rotated(-qw, qx, qy, qz, *gravity)
+        return together([fx - x - dx, fy - y - dy, fz - z - dz, ax, ay, az], v)
+
+    by_name: dict[Coordinates, Velocity] = {
+        "com-world": of_center,
+        "origin-world": of_origin,
+        "body-spatial": spatial,
+    }
+    return by_name[coordinates]
