@@ -8,6 +8,7 @@ import numpy as np
 
 from omegadot.diagnosis.match import Match
 from omegadot.gates.scales import norm
+from omegadot.reference_impl.body_motion import attitude_motion
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import (
@@ -17,7 +18,6 @@ from omegadot.reference_impl.loads import (
     torque,
 )
 from omegadot.reference_impl.motion import (
-    acceleration_of,
     center_of_mass_acceleration,
     forward_dynamics,
 )
@@ -190,14 +190,15 @@ def difference_quotient(match: Match) -> str:
     It is off by ``h/2`` times the second derivative; the third bounds what is left, by h times the
     fastest rate of the size of the first.
     """
-    acceleration = acceleration_of(match.system)
+    motion, states = attitude_motion(match.system), match.states
     rate = float(np.max(norm(match.states.angular_velocity)))
     if not rate > 0.0:
         return ""
-    delta = 1e-4 / rate
-    step = SCHEMES["lie-rk4"].step
-    ahead = acceleration(step(acceleration, match.states, delta)).angular
-    behind = acceleration(step(acceleration, match.states, -delta)).angular
+    delta, step = 1e-4 / rate, SCHEMES["lie-rk4"].step
+    ahead, behind = (
+        motion.acceleration(*step(motion, states.orientation, states.angular_velocity, h))
+        for h in (delta, -delta)
+    )
     second = (ahead - behind) / (2 * delta)
     rest = match.found.angular - match.true.angular
     weight = 1.0 / match.angular_bound[:, None]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from omegadot.reference_impl.body_origin import from_origin
+from omegadot.reference_impl.kinematics import at_point
 from omegadot.reference_impl.rotations import conjugate, normalize, rotate, rotate_inverse
 from omegadot.reference_impl.system import State, System
 
@@ -92,11 +92,14 @@ NOT_UNIT = Misreading(
 def of_origin(system: System) -> tuple[Misreading, ...]:
     """Position or velocity reported at the body's origin instead of the centre of mass."""
 
+    def meant(state: State) -> State:
+        return at_point(state, system.body.center_of_mass)
+
     def position(state: State) -> State:
-        return replace(state, position=from_origin(system, state).position)
+        return replace(state, position=meant(state).position)
 
     def velocity(state: State) -> State:
-        return replace(state, linear_velocity=from_origin(system, state).linear_velocity)
+        return replace(state, linear_velocity=meant(state).linear_velocity)
 
     at = "looks like that of the body's origin, not of the centre of mass"
     nothing: Change = lambda state: state  # noqa: E731
@@ -105,7 +108,7 @@ def of_origin(system: System) -> tuple[Misreading, ...]:
         Misreading(f"the linear velocity {at}", velocity, nothing),
         Misreading(
             f"position and linear velocity {at}".replace("looks", "look").replace("that", "those"),
-            lambda state: from_origin(system, state),
+            meant,
             nothing,
         ),
     )

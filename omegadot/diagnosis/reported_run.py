@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.restep import step_again
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.measured_run import CHANNELS, scheme_key
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
-from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
-from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import Array, State, System
 from omegadot.workers.wire import state_from
 
 LEAST_SAMPLES = 6
@@ -74,23 +74,23 @@ class ReportedRun:
     ) -> State:
         """The reference's run with something else in it; the declared where nothing is given."""
         wanted, sweep = system or self.case.system, self.sweep
-        declared = SCHEMES[self.integrator.scheme or ""]
-        exact = acceleration_of(wanted)
+        stepped = scheme or SCHEMES[self.integrator.scheme or ""]
+        exact = body_motion(wanted, self.integrator.coordinates)
         plan = (timestep or sweep.timestep, sweep.steps, 1 if every_step else sweep.every)
 
-        def acceleration(state: State) -> Acceleration:  # a wrong end may leave q too long
-            return exact(replace(state, orientation=normalize(state.orientation)))
+        def acceleration(q: Array, v: Array) -> Array:  # a wrong end may leave q too long
+            return exact.acceleration(exact.normalize(q), v)
 
-        how = (wanted, acceleration, scheme or declared, self.integrator.steps_origin)
-        return step_again(*how, initial or self.case.initial, plan)[1]
+        how = (*plan, self.integrator.coordinates, replace(exact, acceleration=acceleration))
+        return step_body(stepped, wanted, initial or self.case.initial, *how)[1]
 
     def stepped_on(self, states: State) -> State:
         """Where the declared scheme leads from each of (m,) states to the next sample."""
         plan = (self.sweep.timestep, self.sweep.every, self.sweep.every)
         system, declared = self.case.system, SCHEMES[self.integrator.scheme or ""]
-        how = (system, acceleration_of(system), declared, self.integrator.steps_origin)
         unit = replace(states, orientation=normalize(states.orientation))
-        return State(*(values[-1] for values in vars(step_again(*how, unit, plan)[1]).values()))
+        ends = step_body(declared, system, unit, *plan, self.integrator.coordinates)[1]
+        return State(*(values[-1] for values in vars(ends).values()))
 
 
 def reported_run(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from omegadot.reference_impl.body_origin import from_origin, is_offset, to_origin
-from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.rotations import rotate
-from omegadot.reference_impl.schemes import AccelerationOf, Scheme
-from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.body_motion import motion_over
+from omegadot.reference_impl.coordinates import Coordinates
+from omegadot.reference_impl.motion import AccelerationOf
+from omegadot.reference_impl.schemes import Scheme
+from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 
@@ -28,29 +28,14 @@ def on_rows(forward: AccelerationOf) -> AccelerationOf:
     return acceleration
 
 
-def at_origin(system: System, of_center: AccelerationOf) -> AccelerationOf:
-    """The same accelerations of states reported at the body's origin."""
-    c = system.body.center_of_mass
-
-    def acceleration(state: State) -> Acceleration:
-        found, w = of_center(from_origin(system, state)), state.angular_velocity
-        lever = cross(found.angular, c) + cross(w, cross(w, c))
-        return Acceleration(found.angular, found.linear - rotate(state.orientation, lever))
-
-    return acceleration
-
-
 def step_again(
     system: System,
     acceleration: AccelerationOf,
     scheme: Scheme,
-    origin: bool,
+    coordinates: Coordinates,
     initial: State,
     plan: tuple[float, int, int],
 ) -> tuple[Array, State]:
     """Times and states of a scheme over any acceleration. plan: the step in s, steps, every."""
-    reported_at_origin = origin and is_offset(system)
-    start = to_origin(system, initial) if reported_at_origin else initial
-    rate = at_origin(system, acceleration) if reported_at_origin else acceleration
-    times, states = step_through(scheme, system, rate, start, *plan)
-    return times, from_origin(system, states) if reported_at_origin else states
+    motion = motion_over(system, coordinates, acceleration)
+    return step_body(scheme, system, initial, *plan, coordinates, motion)

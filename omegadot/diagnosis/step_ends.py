@@ -1,4 +1,4 @@
-"""What wrong steppers make of the end of a step: ``end(before, after, dt) -> state``."""
+"""What wrong steppers make of the end of a step: ``end(before, after, h) -> state``."""
 
 from __future__ import annotations
 
@@ -14,19 +14,31 @@ from omegadot.reference_impl.rotations import (
     quaternion_product,
     turn_in_body,
 )
-from omegadot.reference_impl.schemes import AccelerationOf, Scheme
+from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array, State
 
 End = Callable[[State, State, float | Array], State]
 
 
 def with_end(scheme: Scheme, end: End) -> Scheme:
-    """A scheme whose every step ends in ``end(before, after, dt)`` instead of ``after``."""
+    """A scheme whose every step ends in ``end(before, after, h)`` instead of ``after``.
 
-    def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-        return end(state, scheme.step(acceleration, state, dt), dt)
+    The states are those of the coordinates that are stepped: position and linear velocity are what
+    stands there, and on a pivot they are empty.
+    """
+
+    def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+        ended = end(_kept(q, v), _kept(*scheme.step(motion, q, v, h)), h)
+        return (
+            np.concatenate((ended.position, ended.orientation), axis=-1),
+            np.concatenate((ended.linear_velocity, ended.angular_velocity), axis=-1),
+        )
 
     return replace(scheme, step=step)
+
+
+def _kept(q: Array, v: Array) -> State:
+    return State(q[..., -4:], v[..., -3:], q[..., :-4], v[..., :-3])
 
 
 def left_multiplied(before: State, after: State, dt: float | Array) -> State:
@@ -38,7 +50,7 @@ def left_multiplied(before: State, after: State, dt: float | Array) -> State:
 
 def straight_quaternion(before: State, after: State, dt: float | Array) -> State:
     """``q + h/2 q omega``, never normalised."""
-    w, h = after.angular_velocity, np.asarray(dt)[..., None]
+    w, h = after.angular_velocity, dt
     pure = np.concatenate([np.zeros_like(w[..., :1]), 0.5 * w], axis=-1)
     q = before.orientation
     return replace(after, orientation=q + h * quaternion_product(q, pure))
@@ -46,8 +58,7 @@ def straight_quaternion(before: State, after: State, dt: float | Array) -> State
 
 def turned_by_last_omega(before: State, after: State, dt: float | Array) -> State:
     """``q exp(h omega)`` with the omega at the end of the step."""
-    h = np.asarray(dt)[..., None]
-    turned = turn_in_body(before.orientation, after.angular_velocity, h)
+    turned = turn_in_body(before.orientation, after.angular_velocity, dt)
     return replace(after, orientation=turned)
 
 

@@ -22,7 +22,7 @@ from omegadot.gates.scales import norm
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
-from omegadot.reference_impl.body_origin import is_offset
+from omegadot.reference_impl.coordinates import PHRASES, canonical, distinct
 from omegadot.reference_impl.growth import changes
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State
@@ -127,13 +127,13 @@ def _clipped(reported: ReportedRun) -> str:
 
 def _other_scheme(reported: ReportedRun) -> str:
     for name, scheme in SCHEMES.items():
-        declared = reported.integrator.steps_origin
-        for origin in (declared, not declared) if is_offset(reported.case.system) else (declared,):
-            other = replace(reported, integrator=replace(reported.integrator, steps_origin=origin))
+        system, declared = reported.case.system, reported.integrator.coordinates
+        ways = sorted(distinct(system), key=lambda way: way != canonical(system, declared))
+        for way in (way for way in ways if way in scheme.coordinates):
+            other = replace(reported, integrator=replace(reported.integrator, coordinates=way))
             if reported.agrees(reported.state, other.stepped(scheme)):
-                where = "the body's origin" if origin else "the centre of mass"
                 if name == reported.integrator.scheme:
-                    return f"it steps {where}, which is not what is declared"
+                    return f"it steps {PHRASES[way]}, which is not what is declared"
                 return f"it is stepped by {name}, though {reported.integrator.scheme} is declared"
     return ""
 

@@ -17,7 +17,7 @@ from omegadot.gates.verdicts import (
     judge,
     observed_order,
 )
-from omegadot.reference_impl.body_origin import is_offset
+from omegadot.reference_impl.coordinates import Coordinates, canonical
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
 
@@ -126,30 +126,23 @@ class SchemeKey:
     """Which of the reference's runs an integrator is held against."""
 
     scheme: str
-    at_origin: bool
+    coordinates: Coordinates = "com-world"
 
 
 def scheme_key(integrator: Integrator, system: System) -> SchemeKey | None:
     """The run of the reference that this integrator should equal; None for an unknown scheme."""
     if integrator.scheme is None:
         return None
-    return SchemeKey(integrator.scheme, integrator.steps_origin and is_offset(system))
+    return SchemeKey(integrator.scheme, canonical(system, integrator.coordinates))
 
 
 def orders_for(integrator: Integrator, system: System) -> dict[str, int | None]:
-    """The declared orders; those of a known scheme are higher where the system is simple.
-
-    Stepping an origin off the centre of mass couples translation to rotation, so that there the
-    scheme's general orders hold for what translation takes part in.
-    """
+    """The declared orders; those of a known scheme are higher where the system is simple."""
     key = scheme_key(integrator, system)
     if key is None or key.scheme not in SCHEMES:
         return {c: integrator.orders.get(c) for c in CHANNELS}
     scheme = SCHEMES[key.scheme]
-    found = {c: scheme.order(c, system) for c in CHANNELS}
-    if key.at_origin:
-        found |= {c: scheme.orders[c] for c in ("energy", "linear_momentum", "position")}
-    return found
+    return {c: scheme.order(c, system, key.coordinates) for c in CHANNELS}
 
 
 def findings_of(

@@ -21,7 +21,7 @@ from omegadot.gates.measured_run import (
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import ORDER_TOLERANCE, is_whole
-from omegadot.reference_impl.body_origin import is_offset
+from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
 
@@ -125,8 +125,12 @@ def comparison_keys(integrator: Integrator, system: System) -> list[SchemeKey]:
     declared = scheme_key(integrator, system)
     if declared is not None:
         return [declared]
-    at_origin = integrator.steps_origin and is_offset(system)
-    return [SchemeKey(name, at_origin) for name in SCHEMES]
+    coordinates = canonical(system, integrator.coordinates)
+    return [
+        SchemeKey(name, coordinates)
+        for name, scheme in SCHEMES.items()
+        if coordinates in scheme.coordinates
+    ]
 
 
 def match_row(

@@ -22,6 +22,7 @@ from omegadot.gates.scales import (
     linear_size,
     norm,
 )
+from omegadot.reference_impl.body_motion import attitude_motion
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian
@@ -44,10 +45,11 @@ def probe_of(system: System, evaluation: EvaluationStates) -> Probe:
     along = np.unique(np.linspace(0, count - 1, PROBES).round().astype(int))
     pairs = zip(vars(evaluation.random).values(), vars(evaluation.path).values(), strict=True)
     states = State(*(np.concatenate([one[:PROBES], two[along]]) for one, two in pairs))
-    here, jacobian, _ = acceleration_and_jacobian(acceleration_of(system), states)
+    turning = (states.orientation, states.angular_velocity)
+    w_dot, jacobian = acceleration_and_jacobian(attitude_motion(system), *turning)
     rates = (
         norm(states.angular_velocity),
-        np.sqrt(norm(here.angular)),
+        np.sqrt(norm(w_dot)),
         np.max(np.abs(jacobian), axis=(-1, -2)),
     )
     rate = np.maximum.reduce(rates)

@@ -50,7 +50,11 @@ def case_companions(
     found = {}
     for key in keys:
         fields = {"system": case.system, "initial": case.initial, "plan": plan}
-        fields |= {"scheme": key.scheme, "at_origin": key.at_origin, "rate": truth.yardstick.rate}
+        fields |= {
+            "scheme": key.scheme,
+            "coordinates": key.coordinates,
+            "rate": truth.yardstick.rate,
+        }
         answer = reference.request(case, "companion", **fields)
         if answer.outcome == "crashed":
             answer = reference.request(case, "companion", **fields)
@@ -75,7 +79,7 @@ def reference_runs(
         timed = reference.run(case, integrator.name, short)
         for sweep in case.sweeps:
             key = (integrator.name, sweep.timestep)
-            found = companions.get((SchemeKey(integrator.name, False), sweep.timestep))
+            found = companions.get((SchemeKey(integrator.name), sweep.timestep))
             if found is None or not timed.ok:
                 failed = Answer("raised", "the reference gave no answer for this scheme")
                 runs[key] = failed if timed.ok else timed

@@ -48,9 +48,9 @@ def retract_attitude(q: Array, u: Array) -> Array:
 
 def retract_in_world(q: Array, u: Array) -> Array:
     """``(p + x, q exp(r))`` with u = (x, r), (..., 7): translation is a vector space of its own."""
-    px, py, pz, *attitude = apart(q)
-    x, y, z, *r = apart(u)
-    return together([px + x, py + y, pz + z, *_turned(*attitude, *r)], u)
+    px, py, pz, qw, qx, qy, qz = apart(q)
+    x, y, z, rx, ry, rz = apart(u)
+    return together([px + x, py + y, pz + z, *_turned(qw, qx, qy, qz, rx, ry, rz)], u)
 
 
 def retract_spatial(q: Array, u: Array) -> Array:
@@ -59,15 +59,17 @@ def retract_spatial(q: Array, u: Array) -> Array:
     ``V x = x + (1 - cos |r|)/|r|² r × x + (|r| - sin |r|)/|r|³ r × (r × x)``: Murray, Li, Sastry,
     A Mathematical Introduction to Robotic Manipulation (1994), (2.36).
     """
-    px, py, pz, *attitude = apart(q)
-    x, y, z, *r = apart(u)
-    angle = length(r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+    px, py, pz, qw, qx, qy, qz = apart(q)
+    x, y, z, rx, ry, rz = apart(u)
+    angle = length(rx * rx + ry * ry + rz * rz)
     c, s = cos_sin(0.5 * angle)
     a, b = 2 * s * s / (angle * angle), (angle - 2 * s * c) / (angle * angle * angle)
-    tx, ty, tz = cross3(*r, x, y, z)
-    nx, ny, nz = cross3(*r, tx, ty, tz)
-    dx, dy, dz = rotated(*attitude, x + a * tx + b * nx, y + a * ty + b * ny, z + a * tz + b * nz)
-    return together([px + dx, py + dy, pz + dz, *_turned(*attitude, *r)], u)
+    tx, ty, tz = cross3(rx, ry, rz, x, y, z)
+    nx, ny, nz = cross3(rx, ry, rz, tx, ty, tz)
+    x, y, z = x + a * tx + b * nx, y + a * ty + b * ny, z + a * tz + b * nz
+    dx, dy, dz = rotated(qw, qx, qy, qz, x, y, z)
+    attitude = _turned(qw, qx, qy, qz, rx, ry, rz)
+    return together([px + dx, py + dy, pz + dz, *attitude], u)
 
 
 def rate_to_second_order(u: Array, v: Array) -> Array:

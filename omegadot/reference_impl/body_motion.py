@@ -20,10 +20,11 @@ from omegadot.reference_impl.coordinates import Coordinates, acceleration_in, fr
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import weight
+from omegadot.reference_impl.motion import AccelerationOf
 from omegadot.reference_impl.schemes.jacobian import by_differences
 from omegadot.reference_impl.schemes.motion import Motion, Velocity
 from omegadot.reference_impl.symmetric import inverse
-from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.reference_impl.system import Array, System
 
 Angular = Callable[..., tuple[Number, Number, Number]]
 
@@ -46,9 +47,7 @@ def attitude_motion(system: System) -> Motion:
     return Motion(acceleration=acceleration, jacobian=jacobian, **ATTITUDE)
 
 
-def motion_over(
-    system: System, coordinates: Coordinates, acceleration: Callable[[State], Acceleration]
-) -> Motion:
+def motion_over(system: System, coordinates: Coordinates, acceleration: AccelerationOf) -> Motion:
     """Any accelerations of a body's states, an engine's or wrong ones, as a motion.
 
     They must broadcast over leading axes, and not depend on the linear velocity.
@@ -133,8 +132,8 @@ def _angular(system: System) -> Angular:
 def _free_acceleration(system: System, coordinates: Coordinates) -> Velocity:
     """``v̇`` of a free body, equations (7) and (8): see `coordinates.acceleration_in`."""
     angular = _angular(system)
-    gx, gy, gz = gravity = constants(system.load.gravity)
-    cx, cy, cz = center = constants(system.body.center_of_mass)
+    gx, gy, gz = constants(system.load.gravity)
+    cx, cy, cz = constants(system.body.center_of_mass)
 
     def of_center(q: Array, v: Array) -> Array:
         _, _, _, qw, qx, qy, qz = apart(q)
@@ -142,22 +141,22 @@ def _free_acceleration(system: System, coordinates: Coordinates) -> Velocity:
         return together([gx, gy, gz, *angular(qw, qx, qy, qz, wx, wy, wz)], v)
 
     def of_origin(q: Array, v: Array) -> Array:
-        _, _, _, *attitude = apart(q)
-        _, _, _, *w = apart(v)
-        ax, ay, az = angular(*attitude, *w)
-        x, y, z = cross3(*w, *cross3(*w, *center))
-        dx, dy, dz = cross3(ax, ay, az, *center)
-        lx, ly, lz = rotated(*attitude, x + dx, y + dy, z + dz)
+        _, _, _, qw, qx, qy, qz = apart(q)
+        _, _, _, wx, wy, wz = apart(v)
+        ax, ay, az = angular(qw, qx, qy, qz, wx, wy, wz)
+        x, y, z = cross3(wx, wy, wz, *cross3(wx, wy, wz, cx, cy, cz))
+        dx, dy, dz = cross3(ax, ay, az, cx, cy, cz)
+        lx, ly, lz = rotated(qw, qx, qy, qz, x + dx, y + dy, z + dz)
         return together([gx - lx, gy - ly, gz - lz, ax, ay, az], v)
 
     def spatial(q: Array, v: Array) -> Array:
         _, _, _, qw, qx, qy, qz = apart(q)
-        ux, uy, uz, *w = apart(v)
-        ax, ay, az = angular(qw, qx, qy, qz, *w)
-        x, y, z = cross3(*w, *center)
-        x, y, z = cross3(*w, ux + x, uy + y, uz + z)
+        ux, uy, uz, wx, wy, wz = apart(v)
+        ax, ay, az = angular(qw, qx, qy, qz, wx, wy, wz)
+        x, y, z = cross3(wx, wy, wz, cx, cy, cz)
+        x, y, z = cross3(wx, wy, wz, ux + x, uy + y, uz + z)
         dx, dy, dz = cross3(ax, ay, az, cx, cy, cz)
-        fx, fy, fz = rotated(-qw, qx, qy, qz, *gravity)
+        fx, fy, fz = rotated(-qw, qx, qy, qz, gx, gy, gz)
         return together([fx - x - dx, fy - y - dy, fz - z - dz, ax, ay, az], v)
 
     by_name: dict[Coordinates, Velocity] = {

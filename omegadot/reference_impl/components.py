@@ -22,7 +22,8 @@ _LEAST = 1e-18  # rad: below it sin(x/2)/x is one half to the last digit of any 
 def apart(vector: Array) -> list[Number]:
     """The components (..., n) of a vector: n floats, or n arrays (...)."""
     if vector.ndim == 1 and vector.dtype is _DOUBLE:
-        return vector.tolist()
+        floats: list[Number] = vector.tolist()
+        return floats
     return [vector[..., i] for i in range(vector.shape[-1])]
 
 

@@ -12,7 +12,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.kinematics import place_on_pivot, point_position, point_velocity
+from omegadot.reference_impl.kinematics import at_point, place_on_pivot
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
@@ -53,13 +53,12 @@ def to_coordinates(system: System, state: State, coordinates: Coordinates) -> tu
     attitude, w = state.orientation, state.angular_velocity
     if system.load.pivot is not None:
         return attitude, w
-    place, velocity = state.position, state.linear_velocity
     if coordinates != "com-world":
-        back = -system.body.center_of_mass
-        place, velocity = point_position(state, back), point_velocity(state, back)
+        state = at_point(state, -system.body.center_of_mass)
+    velocity = state.linear_velocity
     if coordinates == "body-spatial":
         velocity = rotate_inverse(attitude, velocity)
-    return _joined(place, attitude), _joined(velocity, w)
+    return _joined(state.position, attitude), _joined(velocity, w)
 
 
 def from_coordinates(system: System, q: Array, v: Array, coordinates: Coordinates) -> State:
@@ -72,10 +71,7 @@ def from_coordinates(system: System, q: Array, v: Array, coordinates: Coordinate
     if coordinates == "body-spatial":
         velocity = rotate(attitude, velocity)
     state = State(attitude, w, place, velocity)
-    if coordinates == "com-world":
-        return state
-    c = system.body.center_of_mass
-    return State(attitude, w, point_position(state, c), point_velocity(state, c))
+    return state if coordinates == "com-world" else at_point(state, system.body.center_of_mass)
 
 
 def acceleration_in(

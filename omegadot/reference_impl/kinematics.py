@@ -35,6 +35,16 @@ def point_velocity(state: State, r: Array) -> Array:
     return velocity
 
 
+def at_point(state: State, r: Array) -> State:
+    """The state with position and velocity of the point ``r``, from the centre of mass, body axes.
+
+    With -r of that state, back again.
+    """
+    return replace(
+        state, position=point_position(state, r), linear_velocity=point_velocity(state, r)
+    )
+
+
 def place_on_pivot(system: System, state: State) -> State:
     """The state with position and velocity of the centre of mass as the pivot dictates.
 

@@ -17,6 +17,9 @@ from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
+AccelerationOf = Callable[[State], Acceleration]
+"""Accelerations of states under all loads, the reference's or an engine's, over leading axes."""
+
 
 def angular_acceleration(inertia: Array, w: Array, torque: Array) -> Array:
     """``ω̇ = I⁻¹ (τ - ω × I ω)``, (..., 3) rad/s², body axes. Equation (8), solved for ω̇."""
@@ -46,10 +49,11 @@ def center_of_mass_acceleration(system: System, state: State, w_dot: Array) -> A
     return rotate(state.orientation, cross(w_dot, r) + cross(w, cross(w, r)))
 
 
-def acceleration_of(system: System) -> Callable[[State], Acceleration]:
+def acceleration_of(system: System) -> AccelerationOf:
     """Forward dynamics of one system as a function of the state, its constants formed once.
 
-    This is what the schemes step: angular by equation (8), linear by (7) or by the pivot.
+    Angular by equation (8), linear by (7) or by the pivot. Schemes step the same in components,
+    see `body_motion`.
     """
     inertia = moving_inertia(system)
     inverse_inertia = inverse(inertia)

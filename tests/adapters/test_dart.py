@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from mujoco_cases import EPS, OFFSET, at, norm, states, system
 
-from omegadot.adapters.dart import DartAdapter
-from omegadot.adapters.dart_model import SWITCHED_OFF
+from omegadot.adapters.dart.adapter import DartAdapter
+from omegadot.adapters.dart.model import SWITCHED_OFF
 from omegadot.adapters.protocol import Trajectory
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot

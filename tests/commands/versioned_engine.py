@@ -20,9 +20,8 @@ from omegadot.adapters.protocol import (
     UnsupportedError,
 )
 from omegadot.adapters.reference.adapter import ReferenceAdapter
-from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import State, System
 
 VARIABLE = "VERSIONED_ENGINE"
@@ -86,5 +85,5 @@ class VersionedAdapter(ReferenceAdapter):
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
         name = self._scheme() if integrator == "step" else "semi-implicit-euler"
-        how = (SCHEMES[name], self.system, acceleration_of(self.system))
-        return Trajectory(*step_through(*how, initial, timestep, steps, every))
+        how = (SCHEMES[name], self.system)
+        return Trajectory(*step_body(*how, initial, timestep, steps, every))

@@ -75,8 +75,8 @@ def test_the_three_engines_are_named_and_the_page_says_so(tmp_path: Path) -> Non
     assert {who: names(integrator) for who, integrator in found.items()} == NAMED
     for who, integrator in found.items():
         assert verdicts(integrator) <= {"holds", "conserved"}, who
-        points = {m["at_origin"] for m in integrator["probes"]["free"]["matches"]}
-        assert points == {who[0] != "pinocchio"}, who
+        points = {m["coordinates"] for m in integrator["probes"]["free"]["matches"]}
+        assert points == {"body-spatial" if who[0] == "pinocchio" else "origin-world"}, who
         for kind, probe in integrator["probes"].items():
             assert probe["as_declared"] is True, (who, kind)
             assert {d["kind"] for d in probe["defects"].values()} <= {"settled", "floor"}, who

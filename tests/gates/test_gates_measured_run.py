@@ -157,11 +157,11 @@ def test_a_course_is_measured_by_the_growth_of_its_own_scheme() -> None:
 
 def test_which_run_of_the_reference_an_integrator_equals() -> None:
     plain = Integrator("euler", "semi-implicit-euler", {"omega": 1})
-    at_origin = replace(plain, steps_origin=True)
+    at_origin = replace(plain, coordinates="origin-world")
     assert scheme_key(replace(plain, scheme=None), OFFSET) is None
-    assert scheme_key(plain, OFFSET) == SchemeKey("semi-implicit-euler", False)
-    assert scheme_key(at_origin, OFFSET) == SchemeKey("semi-implicit-euler", True)
-    assert scheme_key(at_origin, FREE) == SchemeKey("semi-implicit-euler", False)
+    assert scheme_key(plain, OFFSET) == SchemeKey("semi-implicit-euler", "com-world")
+    assert scheme_key(at_origin, OFFSET) == SchemeKey("semi-implicit-euler", "origin-world")
+    assert scheme_key(at_origin, FREE) == SchemeKey("semi-implicit-euler", "com-world")
 
 
 @pytest.mark.parametrize("scheme", [None, "of-my-own"])
@@ -176,19 +176,21 @@ def test_orders_of_a_known_scheme_are_the_schemes() -> None:
     scheme = SCHEMES[name]
     plain = Integrator("rk4", name, {"omega": 1})
     assert orders_for(plain, OFFSET) == {c: scheme.order(c, OFFSET) for c in CHANNELS}
-    found = orders_for(replace(plain, steps_origin=True), OFFSET)
+    found = orders_for(replace(plain, coordinates="origin-world"), OFFSET)
     for channel in CHANNELS:
         coupled = channel in ("energy", "linear_momentum", "position")
         expected = scheme.orders[channel] if coupled else scheme.order(channel, OFFSET)
         assert found[channel] == expected
-    assert orders_for(replace(plain, steps_origin=True), FREE) == orders_for(plain, FREE)
+    assert orders_for(replace(plain, coordinates="origin-world"), FREE) == orders_for(plain, FREE)
 
 
 def test_translation_that_is_stepped_at_an_offset_origin_has_the_general_orders() -> None:
     still = System((OFFSET.body,))
     scheme = SCHEMES["semi-implicit-euler"]
     plain = Integrator("euler", scheme.name, scheme.orders)
-    simple, coupled = (orders_for(i, still) for i in (plain, replace(plain, steps_origin=True)))
+    simple, coupled = (
+        orders_for(i, still) for i in (plain, replace(plain, coordinates="origin-world"))
+    )
     assert simple != coupled
     assert {c: coupled[c] for c in ("linear_momentum", "position")} == {
         c: scheme.orders[c] for c in ("linear_momentum", "position")

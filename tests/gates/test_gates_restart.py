@@ -17,10 +17,9 @@ from omegadot.gates.case import Sweep
 from omegadot.gates.restart import refused, restart_of, row
 from omegadot.gates.rows import Row
 from omegadot.reference_impl.growth import growth_along
-from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.scheme import every_channel
-from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import State
 
 ONE_STEP = Integrator("own", None, every_channel(4))
@@ -35,8 +34,8 @@ def prepared() -> Prepared:
 
 def start(prepared: Prepared) -> tuple[Sweep, State, int, State]:
     case, sweep = prepared.case, prepared.case.sweeps[0]
-    how = (SCHEMES["lie-rk4"], case.system, acceleration_of(case.system), case.initial)
-    state = step_through(*how, sweep.timestep, sweep.steps, sweep.every)[1]
+    how = (SCHEMES["lie-rk4"], case.system, case.initial)
+    state = step_body(*how, sweep.timestep, sweep.steps, sweep.every)[1]
     found = restart_of(sweep)
     assert found is not None
     sample = found[0]

@@ -165,10 +165,10 @@ def test_a_likeness_names_where_it_is_least():
 
 
 def test_who_declares_no_scheme_is_held_against_all_of_them(case):
-    assert comparison_keys(declared("own", "lie-rk4"), case.system) == [SchemeKey("lie-rk4", False)]
+    assert comparison_keys(declared("own", "lie-rk4"), case.system) == [SchemeKey("lie-rk4")]
     silent = comparison_keys(declared("own"), case.system)
     assert {key.scheme for key in silent} == set(SCHEMES)
     offset = builtin("offset-com").system
-    at_origin = replace(declared("own"), steps_origin=True)
-    assert {key.at_origin for key in comparison_keys(at_origin, offset)} == {True}
-    assert {key.at_origin for key in comparison_keys(at_origin, case.system)} == {False}
+    at_origin = replace(declared("own"), coordinates="origin-world")
+    assert {key.coordinates for key in comparison_keys(at_origin, offset)} == {"origin-world"}
+    assert {key.coordinates for key in comparison_keys(at_origin, case.system)} == {"com-world"}

@@ -53,7 +53,7 @@ def truth_of(case: Case, schemes: tuple[str, ...] = tuple(SCHEMES)) -> Truth:
     local: Any = Local(ReferenceAdapter())
     truth = case_truth(local, case)
     assert isinstance(truth, Truth), truth
-    keys = [SchemeKey(name, False) for name in schemes]
+    keys = [SchemeKey(name) for name in schemes]
     truth.companions.update(case_companions(local, case, truth, keys, case.sweeps))
     return truth
 

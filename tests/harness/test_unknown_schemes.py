@@ -7,7 +7,6 @@ mind; a fault that only a known scheme would have shown.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -21,13 +20,12 @@ from omegadot.commands.faults.prepared import Pool
 from omegadot.commands.faults.undeclared import Nameless, without_scheme
 from omegadot.gates.case import Sweep
 from omegadot.gates.restart import restart_of
+from omegadot.reference_impl.coordinates import from_coordinates
 from omegadot.reference_impl.energy import rotational_kinetic_energy
-from omegadot.reference_impl.motion import acceleration_of
-from omegadot.reference_impl.rotations import turn_in_body
-from omegadot.reference_impl.schemes import SCHEMES, AccelerationOf, Scheme
-from omegadot.reference_impl.schemes.scheme import every_channel
-from omegadot.reference_impl.stepping import step_through
-from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
+from omegadot.reference_impl.schemes.scheme import Step, every_channel
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import Array, State, System
 
 SEED = 31
 EULER = without_scheme(Integrator("semi-implicit-euler", None, every_channel(1)))
@@ -89,28 +87,32 @@ class OwnScheme(ReferenceAdapter):
         integrator = Integrator("own", None, every_channel(self.order), one_step=self.one_step)
         return Description("own", "1.0", (integrator,), features=FEATURES)
 
-    def scheme(self) -> Callable[[AccelerationOf, State, float | Array], State]:
+    def scheme(self) -> Step:
         raise NotImplementedError
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
         own = Scheme("own", "", self.scheme(), every_channel(self.order))
-        how = (own, self.system, acceleration_of(self.system))
-        return Trajectory(*step_through(*how, initial, timestep, steps, every))
+        return Trajectory(*step_body(own, self.system, initial, timestep, steps, every))
 
 
 class Projected(OwnScheme):
     """Euler's method that scales omega back to the energy of the step's start: it conserves."""
 
-    def scheme(self) -> Callable[[AccelerationOf, State, float | Array], State]:
+    def scheme(self) -> Step:
         system = self.system
 
-        def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-            end = SCHEMES["semi-implicit-euler"].step(acceleration, state, dt)
-            before = rotational_kinetic_energy(system, state)
-            part = np.sqrt(before / rotational_kinetic_energy(system, end))
-            return replace(end, angular_velocity=end.angular_velocity * part[..., None])
+        def energy(q: Array, v: Array) -> Array:
+            state = from_coordinates(system, q, v, "com-world")
+            return rotational_kinetic_energy(system, state)[..., None]
+
+        def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+            before = energy(q, v)
+            q, v = SCHEMES["semi-implicit-euler"].step(motion, q, v, h)
+            end = v.copy()
+            end[..., -3:] *= np.sqrt(before / energy(q, v))
+            return q, end
 
         return step
 
@@ -120,28 +122,17 @@ class TwoStep(OwnScheme):
 
     one_step, order = False, 2
 
-    def scheme(self) -> Callable[[AccelerationOf, State, float | Array], State]:
-        last: list[tuple[State, Acceleration]] = []
+    def scheme(self) -> Step:
+        last: list[tuple[Array, Array]] = []
 
-        def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-            here = (state, acceleration(state))
+        def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+            here = (v, motion.acceleration(q, v))
             before = last.pop() if last else None
             last.append(here)
             if before is None:
-                return SCHEMES["lie-rk4"].step(acceleration, state, dt)
-
-            def mean(now: Array, then: Array) -> Array:
-                return np.asarray(1.5 * now - 0.5 * then)
-
-            h, (old, pull) = dt, before
-            spin = mean(state.angular_velocity, old.angular_velocity)
-            way = mean(state.linear_velocity, old.linear_velocity)
-            return State(
-                turn_in_body(state.orientation, spin, h),
-                state.angular_velocity + h * mean(here[1].angular, pull.angular),
-                state.position + h * way,
-                state.linear_velocity + h * mean(here[1].linear, pull.linear),
-            )
+                return SCHEMES["lie-rk4"].step(motion, q, v, h)
+            way, pull = (1.5 * now - 0.5 * then for now, then in zip(here, before, strict=True))
+            return motion.retract(q, h * way), v + h * pull
 
         return step
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Adapter
-from omegadot.gates.measured_run import CHANNELS, scheme_key
+from omegadot.gates.measured_run import CHANNELS, SchemeKey, scheme_key
 from omegadot.gates.measures import Yardstick
 from omegadot.gates.scales import (
     EPS,
@@ -146,10 +146,9 @@ def trajectory_gap(
     times = timestep * np.arange(STEPS + 1)
     yardstick = Yardstick(system, times, expected)
     named = next(i for i in adapter.description.integrators if i.name == integrator)
-    key = scheme_key(named, system)
-    scheme, at_origin = (key.scheme, key.at_origin) if key else ("rk4-quaternion", False)
+    key = scheme_key(named, system) or SchemeKey("rk4-quaternion")
     plan = [Steps(timestep, STEPS, 1)]
-    own = companion(system, motion.first, scheme, yardstick.rate, plan, at_origin)[0]
+    own = companion(system, motion.first, key.scheme, yardstick.rate, plan, key.coordinates)[0]
     bounds = yardstick.round_off(timestep, np.arange(STEPS + 1.0), own.growth)
     gaps = [
         np.max(yardstick.distance(channel, expected, found) / (2.0 * bounds[channel]))

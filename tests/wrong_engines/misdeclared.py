@@ -6,11 +6,9 @@ import numpy as np
 
 from omegadot.adapters.protocol import Description, Integrator, Trajectory, UnsupportedError
 from omegadot.adapters.reference.adapter import FEATURES, ReferenceAdapter
-from omegadot.reference_impl.motion import acceleration_of
-from omegadot.reference_impl.rotations import turn_in_body
-from omegadot.reference_impl.schemes import SCHEMES, AccelerationOf, Scheme
-from omegadot.reference_impl.schemes.scheme import every_channel, per_component
-from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
+from omegadot.reference_impl.schemes.scheme import every_channel
+from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
 
@@ -28,8 +26,8 @@ class Misdeclared(ReferenceAdapter):
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
-        how = (self.stepped, self.system, acceleration_of(self.system))
-        return Trajectory(*step_through(*how, initial, timestep, steps, every))
+        how = (self.stepped, self.system, initial)
+        return Trajectory(*step_body(*how, timestep, steps, every))
 
 
 class EulerAsRungeKutta(Misdeclared):
@@ -42,22 +40,10 @@ class NaiveAsRungeKutta(Misdeclared):
     stepped = SCHEMES["lie-rk4-naive"]
 
 
-def _explicit_midpoint(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-    h = per_component(dt)
-    found = acceleration(state)
-    half = State(
-        turn_in_body(state.orientation, state.angular_velocity, 0.5 * h),
-        state.angular_velocity + 0.5 * h * found.angular,
-        state.position + 0.5 * h * state.linear_velocity,
-        state.linear_velocity + 0.5 * h * found.linear,
-    )
-    middle = acceleration(half)
-    return State(
-        turn_in_body(state.orientation, half.angular_velocity, h),
-        state.angular_velocity + h * middle.angular,
-        state.position + h * half.linear_velocity,
-        state.linear_velocity + h * middle.linear,
-    )
+def _explicit_midpoint(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    middle = v + 0.5 * h * motion.acceleration(q, v)
+    halfway = motion.retract(q, 0.5 * h * v)
+    return motion.retract(q, h * middle), v + h * motion.acceleration(halfway, middle)
 
 
 class Unheard(Misdeclared):
@@ -80,12 +66,11 @@ class AlmostEuler(Misdeclared):
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
-        def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
-            end = SCHEMES["semi-implicit-euler"].step(acceleration, state, dt)
-            more = 1e-9 * np.asarray(end.angular_velocity)
-            turned = turn_in_body(end.orientation, more, per_component(dt))
-            return State(turned, end.angular_velocity, end.position, end.linear_velocity)
+        def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+            q, v = SCHEMES["semi-implicit-euler"].step(motion, q, v, h)
+            more = np.zeros_like(v)
+            more[..., -3:] = 1e-9 * v[..., -3:]
+            return motion.retract(q, h * more), v
 
-        scheme = Scheme("almost", "", step, every_channel(1))
-        how = (scheme, self.system, acceleration_of(self.system))
-        return Trajectory(*step_through(*how, initial, timestep, steps, every))
+        how = (Scheme("almost", "", step, every_channel(1)), self.system, initial)
+        return Trajectory(*step_body(*how, timestep, steps, every))

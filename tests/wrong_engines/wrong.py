@@ -9,12 +9,12 @@ import numpy as np
 
 from omegadot.adapters.protocol import Description, Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
+from omegadot.diagnosis.restep import step_again
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.rotations import conjugate, rotate
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 ONE_SCHEME = "semi-implicit-euler"
@@ -38,12 +38,8 @@ class Wrong(ReferenceAdapter):
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
-        acceleration = self.acceleration_of(self.system)
-        scheme = SCHEMES[ONE_SCHEME]
-        times, states = step_through(
-            scheme, self.system, acceleration, initial, timestep, steps, every
-        )
-        return Trajectory(times, states)
+        how = (self.system, self.acceleration_of(self.system), SCHEMES[ONE_SCHEME], "com-world")
+        return Trajectory(*step_again(*how, initial, (timestep, steps, every)))
 
 
 class Sound(Wrong):

@@ -6,8 +6,8 @@ from omegadot.adapters.protocol import Integrator, Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.fault import Spoiled
 from omegadot.diagnosis.restep import on_rows, step_again
-from omegadot.reference_impl.motion import acceleration_of
-from omegadot.reference_impl.schemes import SCHEMES, AccelerationOf, Scheme
+from omegadot.reference_impl.motion import AccelerationOf, acceleration_of
+from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.system import Acceleration, State
 
 
@@ -41,7 +41,7 @@ class Restepped(Spoiled):
         """As `Adapter.run`, by the reference's stepping."""
         declared = self.integrator(integrator)
         scheme = self.scheme(SCHEMES[declared.scheme or "semi-implicit-euler"])
-        how = (self.loaded(self.system), self.acceleration(), scheme, declared.steps_origin)
+        how = (self.loaded(self.system), self.acceleration(), scheme, declared.coordinates)
         plan = (timestep, steps, every)
         return self.logged(Trajectory(*step_again(*how, self.into(initial), plan)))
 

@@ -24,8 +24,10 @@ A scheme is named where the engine's whole trajectory equals the scheme's within
 have grown to, in every channel; what the engine declares plays no part in that. *To 1e-13 over
 1000 steps* bounds the largest distance in attitude (rad) and in angular velocity (relative), over
 all systems. An integrator may change its scheme with the system: the first name then holds unless
-another is given for a kind. *Stepped at* states whether the position of a free body's centre of
-mass or of its origin is stepped, which is another computation where the one lies off the other.
+another is given for a kind. *Stepped in* names the coordinates of a free body that are stepped, in
+which the same scheme errs otherwise: position and velocity of the centre of mass in the world
+(com-world) or of the body's origin (origin-world), or the spatial velocity in body axes with the
+exponential of SE(3) (body-spatial).
 
 An order is given as *declared (observed)*; orders that differ between systems are a range.
 The observed order is the slope of log error over log step, against the exact solution, from a step

@@ -39,7 +39,7 @@ def tables_of(record: Record) -> list[Table]:
     return [
         Table(
             "Schemes",
-            ("engine", "integrator", "scheme", "stepped at", "match", "declared"),
+            ("engine", "integrator", "scheme", "stepped in", "match", "declared"),
             [(*who, *_scheme(record, integrator)) for who, integrator in found],
         ),
         Table(
@@ -84,11 +84,10 @@ def _chosen(integrator: Record) -> list[Record]:
 
 
 def _point(integrator: Record) -> str:
-    """Where a free body with an offset is stepped, the one kind that shows it."""
+    """What of a free body with an offset is stepped, the one kind that shows it."""
     free = integrator["probes"].get("free", {"matches": []})
-    points = {match["at_origin"] for match in free["matches"]}
-    names = {True: "body origin", False: "centre of mass"}
-    return " or ".join(names[point] for point in sorted(points)) or "–"
+    ways = dict.fromkeys(match["coordinates"] for match in free["matches"])
+    return " or ".join(ways) or "–"
 
 
 def _match(record: Record, integrator: Record) -> str:

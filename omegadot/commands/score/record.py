@@ -82,7 +82,7 @@ def _engine(found: Judged, name: str) -> dict[str, Any]:
     note = "a trace from outside; its scheme is " + ("declared" if scheme else "not declared")
     integrator = {
         "name": labels["integrator"], "scheme": scheme, "orders": {}, "knob": "timestep",
-        "note": note, "steps_origin": False,
+        "note": note, "coordinates": "com-world",
     }  # fmt: skip
     return {
         "name": name,

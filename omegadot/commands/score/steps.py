@@ -15,8 +15,8 @@ from omegadot.commands.score.trace import Trace
 from omegadot.gates.likeness import Likeness, likeness
 from omegadot.gates.truth import Truth
 from omegadot.harness.usage import UsageError, nearest
-from omegadot.reference_impl.body_origin import is_offset
 from omegadot.reference_impl.companion import Steps, companion
+from omegadot.reference_impl.coordinates import Coordinates, distinct
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State
@@ -116,13 +116,13 @@ def beside(held: Compared) -> list[Comparison]:
 
 
 def _against(held: Compared, scheme: str, own_start: bool = False) -> Comparison:
-    """The nearer of the centre of mass stepped and, off it, the body's origin."""
-    places = (False, True) if is_offset(held.truth.yardstick.system) else (False,)
-    found = [_stepped(held, scheme, own_start, at_origin) for at_origin in places]
+    """The nearest of the coordinates in which the scheme's steps differ."""
+    ways = distinct(held.truth.yardstick.system)
+    found = [_stepped(held, scheme, own_start, w) for w in ways if w in SCHEMES[scheme].coordinates]
     return min(found, key=lambda one: sum(np.any(one.left[c] > one.bound[c]) for c in one.left))
 
 
-def _stepped(held: Compared, scheme: str, own_start: bool, at_origin: bool) -> Comparison:
+def _stepped(held: Compared, scheme: str, own_start: bool, way: Coordinates) -> Comparison:
     judgement, yardstick, error = held.judgement, held.truth.yardstick, held.measured.error
     numbers = judgement.numbers.astype(int)
     every = reduce(gcd, (int(n) for n in numbers), 0) or 1
@@ -133,7 +133,7 @@ def _stepped(held: Compared, scheme: str, own_start: bool, at_origin: bool) -> C
         initial = replace(initial, orientation=normalize(initial.orientation))
     # A scheme that blows up at this step is infinitely far off.
     with np.errstate(over="ignore", invalid="ignore"):
-        run = companion(yardstick.system, initial, scheme, yardstick.rate, plan, at_origin)[0]
+        run = companion(yardstick.system, initial, scheme, yardstick.rate, plan, way)[0]
         rows = numbers // every
         state, growth = part_of(run.state, rows), run.growth[rows]
         rounding = yardstick.round_off(judgement.timestep, judgement.numbers, growth)

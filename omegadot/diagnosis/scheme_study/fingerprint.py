@@ -12,8 +12,8 @@ import numpy as np
 from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
 from omegadot.diagnosis.scheme_study.subject import Stepper, is_finite
 from omegadot.gates.measured_run import CHANNELS, SchemeKey
-from omegadot.reference_impl.body_origin import is_offset
 from omegadot.reference_impl.companion import CompanionRun, Steps, companion
+from omegadot.reference_impl.coordinates import Coordinates, distinct
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State
 
@@ -36,21 +36,26 @@ class Match:
     """
 
     scheme: str
-    at_origin: bool
+    coordinates: Coordinates
     residual: float
     share: float
     steps: int
 
     @property
     def key(self) -> SchemeKey:
-        """Scheme and point stepped."""
-        return SchemeKey(self.scheme, self.at_origin)
+        """Scheme and coordinates stepped."""
+        return SchemeKey(self.scheme, self.coordinates)
 
 
 def keys_of(probe: Probe) -> list[SchemeKey]:
-    """Every reference scheme; at the body's origin too where that is another computation."""
-    points = (False, True) if is_offset(probe.system) else (False,)
-    return [SchemeKey(name, point) for name in SCHEMES for point in points]
+    """Every reference scheme in all coordinates in which it is another computation."""
+    ways = distinct(probe.system)
+    return [
+        SchemeKey(name, way)
+        for name, scheme in SCHEMES.items()
+        for way in ways
+        if way in scheme.coordinates
+    ]
 
 
 _computing = threading.Lock()  # engines are studied side by side and share what is computed here
@@ -60,7 +65,7 @@ _computing = threading.Lock()  # engines are studied side by side and share what
 def _computed(probe: Probe, key: SchemeKey, lanes: Lanes) -> list[CompanionRun]:
     plan = _plan(probe, lanes)
     rate = truth_of(probe, _times(plan[0])).yardstick.rate
-    return companion(probe.system, probe.initial, key.scheme, rate, plan, key.at_origin)
+    return companion(probe.system, probe.initial, key.scheme, rate, plan, key.coordinates)
 
 
 def _plan(probe: Probe, lanes: Lanes) -> list[Steps]:
@@ -116,5 +121,5 @@ def fingerprint(probe: Probe, step: Stepper) -> list[Match]:
         residual, share = _compare(probe, key, FOLLOWING, longer)
         if share <= 1.0:
             steps = max(count for _, count, _ in FOLLOWING)
-            found.append(Match(key.scheme, key.at_origin, residual, share, steps))
+            found.append(Match(key.scheme, key.coordinates, residual, share, steps))
     return found

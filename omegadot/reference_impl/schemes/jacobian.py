@@ -93,7 +93,8 @@ def _inverse(a: Array) -> Array:
         c12 = cross(c1, c2)
         determinant = np.add.reduce(c0 * c12, -1)[..., None, None]
         adjugate: Array = np.stack([c12, cross(c2, c0), cross(c0, c1)], axis=-2)
-        return adjugate / determinant
+        cofactors: Array = adjugate / determinant
+        return cofactors
     try:
         inverse: Array = np.linalg.inv(a.astype(float, copy=False))
     except np.linalg.LinAlgError:

@@ -12,7 +12,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
 from omegadot.commands.faults.fault import Spoiled, fault
-from omegadot.reference_impl.body_origin import to_origin
+from omegadot.reference_impl.kinematics import at_point
 from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
 from omegadot.reference_impl.system import State
 
@@ -161,7 +161,7 @@ class PositionOfOrigin(Misread):
 
     def reported(self, state: State) -> State:
         """At the origin."""
-        return replace(state, position=to_origin(self.system, state).position)
+        return replace(state, position=at_point(state, -self.system.body.center_of_mass).position)
 
 
 @fault("convention", "model", "offset")
@@ -170,7 +170,7 @@ class VelocityOfOrigin(Misread):
 
     def reported(self, state: State) -> State:
         """At the origin."""
-        velocity = to_origin(self.system, state).linear_velocity
+        velocity = at_point(state, -self.system.body.center_of_mass).linear_velocity
         return replace(state, linear_velocity=velocity)
 
 

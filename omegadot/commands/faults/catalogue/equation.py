@@ -6,11 +6,10 @@ import numpy as np
 
 from omegadot.commands.faults.catalogue.load import ExtraTorque
 from omegadot.commands.faults.fault import Spoiled, fault
-from omegadot.diagnosis.restep import on_rows
+from omegadot.diagnosis.restep import on_rows, step_again
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.symmetric import apply
@@ -90,10 +89,10 @@ class OmegaDotByDifference(Spoiled):
     def forward_dynamics(self, states: State) -> Acceleration:
         """``(omega(t + h) - omega(t)) / h`` with h a ten-thousandth of a radian's time."""
         found = super().forward_dynamics(states)
-        h = 1e-4 / np.max(norm(states.angular_velocity))
-        moved = SCHEMES["lie-rk4"].step(on_rows(super().forward_dynamics), states, float(h))
-        placed = place_on_pivot(self.system, moved)
-        quotient = (placed.angular_velocity - states.angular_velocity) / h
+        h = float(1e-4 / np.max(norm(states.angular_velocity)))
+        how = (self.system, on_rows(super().forward_dynamics), SCHEMES["lie-rk4"])
+        moved = step_again(*how, "com-world", states, (h, 1, 1))[1].angular_velocity[-1]
+        quotient = (moved - states.angular_velocity) / h
         return Acceleration(quotient, found.linear)
 
 

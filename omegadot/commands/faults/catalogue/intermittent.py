@@ -11,10 +11,12 @@ from omegadot.commands.faults.catalogue.load import ExtraTorque
 from omegadot.commands.faults.fault import fault
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.gates.scales import norm
+from omegadot.reference_impl.body_motion import motion_over
+from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import applied_torque, gravity_torque
-from omegadot.reference_impl.schemes import SCHEMES, AccelerationOf, Scheme
+from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State
 
@@ -23,12 +25,13 @@ class Timed(Restepped):
     """Steps that know their number: each is taken with `early` or with the right acceleration."""
 
     steps = 0
+    coordinates: Coordinates = "com-world"
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
-        """As `Adapter.run`, with the number of steps kept."""
-        self.steps = steps
+        """As `Adapter.run`, with the number of steps and the coordinates kept."""
+        self.steps, self.coordinates = steps, self.integrator(integrator).coordinates
         return super().run(initial, integrator, timestep, steps, every)
 
     def wrong_at(self, step: int) -> bool:
@@ -45,13 +48,17 @@ class Timed(Restepped):
 
     def scheme(self, declared: Scheme) -> Scheme:
         """The declared scheme, with a counter."""
-        taken = iter(range(self.steps + 1))
+        taken, sound = iter(range(self.steps + 1)), self.acceleration()
+        wrong = motion_over(
+            self.loaded(self.system),
+            self.coordinates,
+            lambda state: self.wrong(state, sound(state)),
+        )
 
-        def step(acceleration: AccelerationOf, state: State, dt: float | Array) -> State:
+        def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
             if not self.wrong_at(next(taken)):
-                return declared.step(acceleration, state, dt)
-            wrong = self.wrong_scheme(declared)
-            return wrong.step(lambda s: self.wrong(s, acceleration(s)), state, dt)
+                return declared.step(motion, q, v, h)
+            return self.wrong_scheme(declared).step(wrong, q, v, h)
 
         return replace(declared, step=step)
 

@@ -11,8 +11,8 @@ from omegadot.commands.faults.catalogue.stepping import StepEnds
 from omegadot.commands.faults.fault import Spoiled, fault
 from omegadot.diagnosis import step_ends
 from omegadot.gates.scales import norm
+from omegadot.reference_impl.motion import AccelerationOf
 from omegadot.reference_impl.rotations import normalize, turn_in_body
-from omegadot.reference_impl.schemes import AccelerationOf
 from omegadot.reference_impl.system import Acceleration, Array, State
 
 JITTER = 1e-9  # of omega
@@ -193,5 +193,4 @@ class PositionByFirstVelocity(StepEnds):
 
     def end(self, before: State, after: State, dt: float | Array) -> State:
         """One velocity for the whole step."""
-        h = np.asarray(dt)[..., None]
-        return replace(after, position=before.position + h * before.linear_velocity)
+        return replace(after, position=before.position + dt * before.linear_velocity)

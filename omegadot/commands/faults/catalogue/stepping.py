@@ -15,8 +15,9 @@ from omegadot.gates.scales import norm
 from omegadot.harness.random_cases import FASTEST, SLEEPY
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.momentum import angular_momentum
+from omegadot.reference_impl.motion import AccelerationOf
 from omegadot.reference_impl.rotations import normalize
-from omegadot.reference_impl.schemes import SCHEMES, AccelerationOf, Scheme
+from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.system import Acceleration, Array, State
 
 SECRET_DAMPING = 1e-4  # N m s/rad
