@@ -74,12 +74,13 @@ def retract_spatial(q: Array, u: Array) -> Array:
 
 def rate_to_second_order(u: Array, v: Array) -> Array:
     """``ω + ½ r × ω + ¹⁄₁₂ r × (r × ω)``: the series in attitude alone, (..., 3) or (..., 6)."""
-    *_, rx, ry, rz = apart(u)
-    *linear, wx, wy, wz = apart(v)
-    bx, by, bz = cross3(rx, ry, rz, wx, wy, wz)
-    cx, cy, cz = cross3(rx, ry, rz, bx, by, bz)
-    turning = (wx + 0.5 * bx + cx / 12, wy + 0.5 * by + cy / 12, wz + 0.5 * bz + cz / 12)
-    return together([*linear, *turning], v)
+    moved = apart(v)
+    rx, ry, rz = apart(u)[-3:]
+    wx, wy, wz = moved[-3:]
+    bx, by, bz = ry * wz - rz * wy, rz * wx - rx * wz, rx * wy - ry * wx
+    cx, cy, cz = ry * bz - rz * by, rz * bx - rx * bz, rx * by - ry * bx
+    moved[-3:] = wx + 0.5 * bx + cx / 12, wy + 0.5 * by + cy / 12, wz + 0.5 * bz + cz / 12
+    return together(moved, v)
 
 
 def spatial_rate_to_second_order(u: Array, v: Array) -> Array:
@@ -173,8 +174,7 @@ def spatial_coordinate_rate(q: Array, v: Array) -> Array:
     """``(R u, ½ q (0, ω))``, (..., 7), with R at the direction of q."""
     vx, vy, vz, wx, wy, wz = apart(v)
     *_, w, x, y, z = apart(q)
-    size = length(w * w + x * x + y * y + z * z)
-    velocity = rotated(w / size, x / size, y / size, z / size, vx, vy, vz)
+    velocity = rotated(w, x, y, z, vx, vy, vz, 2 / (w * w + x * x + y * y + z * z))
     return together([*velocity, *_quaternion_rate(w, x, y, z, wx, wy, wz)], v)
 
 

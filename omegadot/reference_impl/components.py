@@ -15,21 +15,23 @@ import numpy as np
 from omegadot.reference_impl.system import Array
 
 Number = Any  # a float, or an array of lanes
-_DOUBLE = np.dtype(float)
 _LEAST = 1e-18  # rad: below it sin(x/2)/x is one half to the last digit of any format
 
 
 def apart(vector: Array) -> list[Number]:
     """The components (..., n) of a vector: n floats, or n arrays (...)."""
-    if vector.ndim == 1 and vector.dtype is _DOUBLE:
-        floats: list[Number] = vector.tolist()
-        return floats
+    if vector.ndim == 1:  # of long doubles these are no floats of Python's, and go as arrays do
+        numbers: list[Number] = vector.tolist()
+        return numbers
     return [vector[..., i] for i in range(vector.shape[-1])]
 
 
 def together(parts: list[Number], like: Array) -> Array:
-    """The vector (..., n) of n components, with the lanes and the number format of `like`."""
-    if like.ndim == 1 and like.dtype is _DOUBLE:
+    """The vector (..., n) of n components, with the lanes and the number format of `like`.
+
+    The last of them tells floats from arrays; others may be constants of the system.
+    """
+    if type(parts[-1]) is float:
         return np.array(parts)
     vector = np.empty((*like.shape[:-1], len(parts)), like.dtype)
     for i, part in enumerate(parts):
@@ -74,13 +76,20 @@ def cross3(
 
 
 def rotated(
-    w: Number, x: Number, y: Number, z: Number, ax: Number, ay: Number, az: Number
+    w: Number,
+    x: Number,
+    y: Number,
+    z: Number,
+    ax: Number,
+    ay: Number,
+    az: Number,
+    twice: Number = 2.0,
 ) -> tuple[Number, Number, Number]:
     """``R a = a + 2 w (u × a) + 2 u × (u × a)`` of a unit quaternion (w, u): body to world axes.
 
-    With -w in place of w it is ``Rᵀ a``.
+    With -w in place of w it is ``Rᵀ a``. twice: ``2 / |q|²``, where q need not be unit.
     """
-    bx, by, bz = 2 * (y * az - z * ay), 2 * (z * ax - x * az), 2 * (x * ay - y * ax)
+    bx, by, bz = twice * (y * az - z * ay), twice * (z * ax - x * az), twice * (x * ay - y * ax)
     return (
         ax + w * bx + (y * bz - z * by),
         ay + w * by + (z * bx - x * bz),

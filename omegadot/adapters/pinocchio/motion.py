@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL
-from omegadot.reference_impl.components import apart, length, rotated, together
+from omegadot.reference_impl.components import rotated
 from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.system import Array, Load
 
@@ -48,37 +48,40 @@ def joint_motion(pin: Any, model: Any, load: Load) -> Motion:
     parts["retract"] = partial(pin.integrate, model)
     parts["normalize"] = partial(pin.normalize, model)
     parts["coordinate_rate"] = _coordinate_rate
-    damping = float(load.damping)
+    aba, derivatives, damping = pin.aba, pin.computeABADerivatives, float(load.damping)
 
     def acceleration(q: Array, v: Array) -> Array:
-        assert callable(torque)
-        found: Array = pin.aba(model, data, q, v, torque(q, v))
+        found: Array = aba(model, data, q, v, torque(q, v))  # type: ignore[operator]
+        return found
+
+    def steady_acceleration(q: Array, v: Array) -> Array:
+        found: Array = aba(model, data, q, v, torque)
         return found
 
     def jacobian(q: Array, v: Array, _: Array | None) -> tuple[Array, Array]:
         tau = torque(q, v) if callable(torque) else torque
-        _, by_v, inverse_mass = pin.computeABADerivatives(model, data, q, v, tau)
+        _, by_v, inverse_mass = derivatives(model, data, q, v, tau)
         by_v = by_v.copy()  # Pinocchio's own memory, as are the others
         if damping:
             by_v[:, -3:] -= damping * inverse_mass[:, -3:]
         return data.ddq.copy(), by_v
 
-    constant = None if callable(torque) else partial(pin.aba, model, data, tau=torque)
-    return Motion(acceleration=constant or acceleration, jacobian=jacobian, **parts)
+    parts["acceleration"] = acceleration if callable(torque) else steady_acceleration
+    return Motion(jacobian=jacobian, **parts)
 
 
 def _coordinate_rate(q: Array, v: Array) -> Array:
     """``(R u, ½ q (0, ω))`` in Pinocchio's order, R at the direction of q."""
-    *place, x, y, z, w = apart(q)
-    *linear, a, b, c = apart(v)
+    *place, x, y, z, w = q.tolist()
+    *linear, a, b, c = v.tolist()
     a, b, c = 0.5 * a, 0.5 * b, 0.5 * c
     if place:
-        size = length(w * w + x * x + y * y + z * z)
-        linear = [*rotated(w / size, x / size, y / size, z / size, *linear)]
+        lx, ly, lz = linear
+        linear = [*rotated(w, x, y, z, lx, ly, lz, 2 / (w * w + x * x + y * y + z * z))]
     turning = (
         w * a + y * c - z * b,
         w * b - x * c + z * a,
         w * c + x * b - y * a,
         -x * a - y * b - z * c,
     )
-    return together([*linear, *turning], v)
+    return np.array([*linear, *turning])

@@ -68,7 +68,9 @@ def solver_of_one_minus(matrix: Array) -> Callable[[Array], Array]:
     matrix: (..., n, m), the last m columns of M; the others are zero.
     """
     m = matrix.shape[-1]
-    inverse = _inverse(np.eye(m) - matrix[..., -m:, :])
+    inverse = _inverse(_eye(m) - matrix[..., -m:, :])
+    if matrix.shape == (m, m):
+        return inverse.__matmul__
     if matrix.shape[-2] == m:
         return lambda b: (inverse @ b[..., None])[..., 0]
     rest = matrix[..., :-m, :]
@@ -79,6 +81,11 @@ def solver_of_one_minus(matrix: Array) -> Callable[[Array], Array]:
         return np.concatenate((first, x[..., 0]), axis=-1)
 
     return solve
+
+
+@cache
+def _eye(count: int) -> Array:
+    return np.eye(count)
 
 
 def _inverse(a: Array) -> Array:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -28,16 +30,32 @@ def mean_velocity_of(
     that has not settled comes back as NaN: its step is too large.
     """
     v = v0 + solve(first)
-    eps, last = np.finfo(v.dtype).eps, np.inf
+    eps, last = _eps(v.dtype), np.inf
+    root = eps**0.5
     for _ in range(MOST_ITERATIONS):
         change = solve(v0 + push(v) - v)
         v = v + change
-        moved, spinning = change[..., spin], v[..., spin]
-        square = np.add.reduce(spinning * spinning, -1)
-        size = np.sqrt(np.add.reduce(moved * moved, -1) / np.maximum(square, 1e-300))
+        size = (_square(change[..., spin]) / (_square(v[..., spin]) + 1e-300)) ** 0.5
         # among rounding a change need not shrink each time; above it, slow is not yet settled
-        least = np.where(size <= np.sqrt(eps), 0.5 * last, last)
-        if np.all((size <= eps) | ~(size < least)):
+        shrinks = size < last * (1 - 0.5 * (size <= root))
+        if _all((size <= eps) | (shrinks ^ True)):
             break
         last = size
-    return np.where((size <= UNSETTLED)[..., None], v, np.nan)
+    settled = size <= UNSETTLED
+    return v if _all(settled) else np.where(np.asarray(settled)[..., None], v, np.nan)
+
+
+def _square(vector: Array) -> Any:
+    """``|v|²``, (...): a float of one vector, which is quicker to compare."""
+    if vector.ndim == 1:
+        return float(vector @ vector)
+    return np.add.reduce(vector * vector, -1)
+
+
+@cache
+def _eps(dtype: Any) -> float:
+    return float(np.finfo(dtype).eps)
+
+
+def _all(holds: Any) -> bool:
+    return holds if type(holds) is bool else bool(np.all(holds))
