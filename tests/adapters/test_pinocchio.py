@@ -12,12 +12,14 @@ from mujoco_cases import EPS, at, norm, states, system
 from omegadot.adapters.pinocchio.adapter import LOOPED, PREFIX, PinocchioAdapter
 from omegadot.adapters.pinocchio.joint import PinocchioJoint
 from omegadot.adapters.protocol import UnsupportedError
+from omegadot.reference_impl.body_motion import body_motion
+from omegadot.reference_impl.coordinates import to_coordinates
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, rotate_inverse
-from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes import SCHEMES, Motion
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Body, State, System
 
@@ -63,6 +65,24 @@ def test_loops_over_aba_are_the_references_loops(scheme: str, load: str) -> None
         (found.linear_velocity, expected.linear_velocity),
     ):
         assert np.max(norm(one - other)) <= allowed * np.max(norm(other))
+
+
+@pytest.mark.parametrize("scheme", LOOPED)
+def test_the_very_same_scheme_steps_the_reference_a_pendulum_and_pinocchio(scheme: str) -> None:
+    """Pinocchio's coordinates are the reference's but for the order of the quaternion."""
+    of, stepped = system("full", "all"), SCHEMES[scheme]
+    start = at(states(1, seed=28, far=1.0, fast=2.0), 0)
+    joint = PinocchioJoint(pinocchio, of)
+    q, v = to_coordinates(of, start, "body-spatial")
+    own = stepped.step(body_motion(of, "body-spatial"), q, v, 0.005)
+    found = stepped.step(joint.motion, *joint.coordinates(start), 0.005)
+    order = [0, 1, 2, 6, 3, 4, 5]
+    assert np.max(np.abs(found[0][order] - own[0])) <= 64 * EPS * np.max(np.abs(own[0]))
+    assert np.max(np.abs(found[1] - own[1])) <= 20 * 64 * EPS * np.max(np.abs(own[1]))
+    angle, speed = stepped.step(Motion(lambda q, v: -np.sin(q)), np.ones(1), np.zeros(1), 0.005)
+    fall = -0.005 * np.sin(1.0)
+    assert speed == pytest.approx(fall, rel=0.005)
+    assert angle - 1.0 == pytest.approx(0.005 * fall, rel=0.6)
 
 
 @pytest.mark.parametrize("load", ["all", "pivot_all"])

@@ -1,0 +1,133 @@
+"""One scheme steps whatever moves: vectors, one body, and motions that write over their memory."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from reference_cases import DRIVEN, EPS, TOP, start
+
+import omegadot
+from omegadot.reference_impl.body_motion import body_motion
+from omegadot.reference_impl.coordinates import to_coordinates
+from omegadot.reference_impl.schemes import SCHEMES, Motion
+from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.system import Array
+
+STIFFNESS = np.array(
+    [[3.0, -1.0, 0.0, 0.5], [-1.0, 2.0, -0.7, 0.0], [0, -0.7, 2.5, 0], [0.5, 0, 0, 1]]
+)
+DAMPING = np.diag([0.1, 0.2, 0.3, 0.4])
+PLACE, SPEED = np.array([1.0, -0.5, 0.3, 0.8]), np.array([0.2, 0.4, -1.0, 0.0])
+BODIES_ALONE = {"body-axes-midpoint"}  # it turns a body's velocity
+anything = pytest.mark.parametrize("name", sorted(set(SCHEMES) - BODIES_ALONE))
+
+
+def oscillator() -> Motion:
+    """Four masses on springs and dampers, ``v̇ = -K q - D v``: a vector space, nothing else."""
+    return Motion(lambda q, v: -(STIFFNESS @ q[..., None] + DAMPING @ v[..., None])[..., 0])
+
+
+def pendulum() -> Motion:
+    """``q̈ = -sin q`` of one angle."""
+    return Motion(lambda q, v: -np.sin(q))
+
+
+def exact_oscillation(time: float) -> Array:
+    generator = np.block([[np.zeros((4, 4)), np.eye(4)], [-STIFFNESS, -DAMPING]])
+    values, vectors = np.linalg.eig(generator)
+    start = np.linalg.solve(vectors, np.concatenate((PLACE, SPEED)))
+    return np.real(vectors @ (np.exp(values * time) * start))
+
+
+@anything
+def test_a_vector_space_is_stepped_at_the_schemes_order(name: str) -> None:
+    """The naive mean is of order 4 here, where there are no rotations to commute."""
+    scheme = SCHEMES[name]
+    order = 4 if "rk4" in name else scheme.orders["omega"]
+    exact, found = exact_oscillation(1.0), []
+    for steps in (40, 80, 160):
+        _, q, v = step_through(scheme, oscillator(), PLACE, SPEED, 1 / steps, steps, steps)
+        found.append(np.max(np.abs(np.concatenate((q[-1], v[-1])) - exact)))
+    slope = np.log2(found[1] / found[2])
+    assert abs(slope - order) <= 0.15, found
+
+
+def test_all_runge_kutta_methods_are_one_on_a_vector_space() -> None:
+    ends = [
+        step_through(SCHEMES[name], oscillator(), PLACE, SPEED, 0.05, 20, 20)[1:]
+        for name in sorted(SCHEMES)
+        if "rk4" in name
+    ]
+    assert len(ends) == 4
+    for q, v in ends[1:]:
+        assert np.max(np.abs(q - ends[0][0])) <= 20 * 16 * EPS
+        assert np.max(np.abs(v - ends[0][1])) <= 20 * 16 * EPS
+
+
+def test_linearly_implicit_euler_is_stable_where_damping_is_stiff() -> None:
+    """``v₁ = v₀ / (1 + h d)`` with d of 1e6 1/s and a step of 0.1 s."""
+    motion = Motion(lambda q, v: -1e6 * v)
+    _, _, v = step_through(
+        SCHEMES["linearly-implicit-euler"], motion, np.zeros(2), np.ones(2), 0.1, 1, 1
+    )
+    assert v[-1] == pytest.approx(np.full(2, 1 / (1 + 1e5)), rel=64 * 1e5 * EPS)
+
+
+def test_the_midpoint_rule_keeps_a_quadratic_energy() -> None:
+    motion = Motion(lambda q, v: -(STIFFNESS @ q[..., None])[..., 0])
+    _, q, v = step_through(SCHEMES["implicit-midpoint"], motion, PLACE, SPEED, 0.1, 200, 10)
+    energy = 0.5 * np.sum(v * v, -1) + 0.5 * np.einsum("ni,ij,nj->n", q, STIFFNESS, q)
+    assert np.max(np.abs(energy / energy[0] - 1)) <= 200 * 16 * EPS
+
+
+@anything
+def test_lanes_of_a_pendulum_are_single_pendulums(name: str) -> None:
+    angles, steps = np.array([[0.3], [1.5], [3.0]]), np.array([0.01, 0.02, 0.05])
+    still = np.zeros((3, 1))
+    _, q, v = step_through(SCHEMES[name], pendulum(), angles, still, steps, 20, 20)
+    for lane, dt in enumerate(steps):
+        how = (angles[lane], still[lane], float(dt), 20, 20)
+        _, alone, speed = step_through(SCHEMES[name], pendulum(), *how)
+        assert np.max(np.abs(q[-1, lane] - alone[-1])) <= 20 * 16 * EPS * 3
+        assert np.max(np.abs(v[-1, lane] - speed[-1])) <= 20 * 16 * EPS * 3
+
+
+@pytest.mark.parametrize("name", sorted(SCHEMES))
+@pytest.mark.parametrize("on", [DRIVEN, TOP], ids=["free", "pivoted"])
+def test_accelerations_may_be_written_over_by_the_next(name: str, on: object) -> None:
+    """As an engine's are: a scheme that keeps one without using it up goes astray."""
+    motion = body_motion(on)  # type: ignore[arg-type]
+    q, v = to_coordinates(on, start([1.0, 2.0, -1.5], [1, 2, 3, 4]), "com-world")  # type: ignore[arg-type]
+    memory = np.empty_like(v)
+
+    def acceleration(q: Array, v: Array) -> Array:
+        memory[...] = motion.acceleration(q, v)
+        return memory
+
+    reused = replace(motion, acceleration=acceleration)
+    kept = step_through(SCHEMES[name], motion, q, v, 0.02, 10, 5)[1:]
+    found = step_through(SCHEMES[name], reused, q, v, 0.02, 10, 5)[1:]
+    for one, other in zip(kept, found, strict=True):
+        assert np.array_equal(one, other)
+
+
+def test_only_schemes_step() -> None:
+    """What moves a configuration is called in `schemes` alone: there is no second copy of any."""
+    package = Path(omegadot.__file__).parent
+    moving = {"retract", "rate", "rate_to_second_order", "cayley", "coordinate_rate", "turned_by"}
+    found = []
+    for path in package.rglob("*.py"):
+        where = path.relative_to(package).as_posix()
+        if where.startswith("reference_impl/schemes/"):
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            called = node.func if isinstance(node, ast.Call) else None
+            name = getattr(called, "attr", getattr(called, "id", ""))
+            moves = isinstance(called, ast.Attribute) and name in moving
+            if moves or name in {"Scheme", "runge_kutta_4", "step_in_exponential"}:
+                found.append(f"{where}:{getattr(node, 'lineno', 0)} {name}")
+    assert found == []
