@@ -147,6 +147,17 @@ def galilean(motion: Motion, random: np.random.Generator) -> Retold:
     )
 
 
+def elsewhere(motion: Motion, random: np.random.Generator) -> Retold:
+    """Another place; of free bodies only."""
+    reach = float(np.max(np.abs(motion.states.position)))
+    place = reach * random.standard_normal(3)
+
+    def reported(state: State) -> State:
+        return replace(state, position=state.position + place)
+
+    return Retold(Motion(motion.system, reported(motion.states)), reported, lambda a: a)
+
+
 def scaled_units(motion: Motion, random: np.random.Generator) -> Retold:
     """Units of mass, length and time that are powers of two of the old ones: no digit changes."""
     mass, length, time = (2.0 ** int(n) for n in random.integers(-3, 4, 3))

@@ -21,7 +21,7 @@ from random_motions import (
     trajectory,
     trajectory_gap,
 )
-from relations import galilean, relabelled, rotated_body, rotated_world, scaled_units
+from relations import elsewhere, galilean, relabelled, rotated_body, rotated_world, scaled_units
 from test_metamorphic_equation import ENGINES, engine
 
 from omegadot.adapters.protocol import Adapter, Trajectory
@@ -57,11 +57,23 @@ class StopsWhenSlow(faults.Wrong):
         return Trajectory(found.time, replace(found.state, linear_velocity=kept))
 
 
+class StaysInABox(faults.Wrong):
+    """Holds the centre of mass within 5 m of the world's origin."""
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        found = super().run(initial, integrator, timestep, steps, every)
+        kept = np.clip(found.state.position, -5.0, 5.0)
+        return Trajectory(found.time, replace(found.state, position=kept))
+
+
 RELATIONS = [
     (rotated_world, Wanted(), TurnsInTheWorld),
     (rotated_body, Wanted(), faults.DiagonalInertia),
     (relabelled, Wanted(), faults.SortedMoments),
     (galilean, FREE, StopsWhenSlow),
+    (elsewhere, FREE, StaysInABox),
     (scaled_units, Wanted(), faults.FallsAsleep),
 ]
 NAMES = [f"{relation.__name__}-{fault.__name__}" for relation, _, fault in RELATIONS]
@@ -76,7 +88,9 @@ def gap(adapter: Adapter, relation, motion: Motion, integrator: str, seed: int) 
     expected = replace(expected, position=expected.position + moved)
     step *= retold.time
     found = trajectory(adapter, retold.motion, integrator, step)
-    return trajectory_gap(adapter, retold.motion, integrator, step, expected, found)
+    return trajectory_gap(
+        adapter, retold.motion, integrator, step, expected, found, relation.__name__
+    )
 
 
 @pytest.mark.parametrize("name", ENGINES)
