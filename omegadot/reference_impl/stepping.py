@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import repeat
+from time import perf_counter
+
 import numpy as np
 
 from omegadot.reference_impl.body_motion import body_motion
-from omegadot.reference_impl.coordinates import Coordinates, from_coordinates, to_coordinates
+from omegadot.reference_impl.coordinates import (
+    Coordinates,
+    canonical,
+    from_coordinates,
+    to_coordinates,
+)
 from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array, State, System
 
@@ -18,6 +27,19 @@ def kept_steps(steps: int, every: int) -> list[int]:
     return kept if kept[-1] == steps else [*kept, steps]
 
 
+@dataclass(frozen=True)
+class Stepped:
+    """The kept steps of a motion: time (samples, ...) s, q and v (samples, ..., k).
+
+    seconds: s that the steps took, with what is kept of them but nothing made of it.
+    """
+
+    time: Array
+    q: Array
+    v: Array
+    seconds: float
+
+
 def step_through(
     scheme: Scheme,
     motion: Motion,
@@ -26,13 +48,13 @@ def step_through(
     dt: float | Array,
     steps: int,
     every: int,
-) -> tuple[Array, Array, Array]:
-    """Times, q and v of a motion at step 0, each `every`-th and the last.
+) -> Stepped:
+    """A motion stepped, with step 0, each `every`-th and the last kept.
 
     dt: s, a float, or an array; the lanes are those of dt, of q and of v, broadcast against each
     other, and all take as many steps. Times are ``n * dt``, (samples,) or (samples, *dt.shape);
-    q and v have the samples in front, (samples, ..., k). A run that diverges goes on with
-    infinities and NaN, without warnings.
+    q and v have the samples in front. A run that diverges goes on with infinities and NaN, without
+    warnings.
     Raises ValueError for negative steps or `every` below one.
     """
     kept, step = kept_steps(steps, every), scheme.step
@@ -42,14 +64,16 @@ def step_through(
     h = float(dt) if plain else np.asarray(dt)[..., None]
     if lanes:
         q, v = (np.broadcast_to(x, (*lanes, x.shape[-1])) for x in (q, v))
-    logged, done = [(q, v)], 0
+    places, velocities = [q], [v]
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        for target in kept[1:]:
-            for _ in range(target - done):
+        began = perf_counter()
+        for count in np.diff(kept).tolist():
+            for _ in repeat(None, count):
                 q, v = step(motion, q, v, h)
-            logged.append((q, v))
-            done = target
-    return times, np.stack([q for q, _ in logged]), np.stack([v for _, v in logged])
+            places.append(q)
+            velocities.append(v)
+        seconds = perf_counter() - began
+    return Stepped(times, np.stack(places), np.stack(velocities), seconds)
 
 
 def step_body(
@@ -65,13 +89,16 @@ def step_body(
     """Times and states of one body, as `step_through`, stepped in these coordinates.
 
     motion: what is stepped in place of the reference's own `body_motion`. A pivoted body's
-    position and velocity follow from its attitude and ω.
+    position and velocity follow from its attitude and ω. Raises ValueError where the scheme cannot
+    be stepped in these coordinates.
     """
+    if canonical(system, coordinates) not in scheme.coordinates:
+        raise ValueError(f"{scheme.name} is not known in {coordinates} coordinates")
     q, v = to_coordinates(system, initial, coordinates)
     stepped = motion or body_motion(system, coordinates)
-    times, q, v = step_through(scheme, stepped, q, v, dt, steps, every)
+    found = step_through(scheme, stepped, q, v, dt, steps, every)
     with np.errstate(over="ignore", invalid="ignore"):
-        return times, from_coordinates(system, q, v, coordinates)
+        return found.time, from_coordinates(system, found.q, found.v, coordinates)
 
 
 def stack(states: list[State]) -> State:

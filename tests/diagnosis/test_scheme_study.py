@@ -192,7 +192,7 @@ def test_tables_are_printed_and_an_interpreter_is_taken(tmp_path: Path) -> None:
     result = omegadot("schemes", *terms, folder=tmp_path)
     assert result.code == 0, result.err
     assert "Schemes" in result.out
-    assert re.search(rf"{EXPLICIT} +{EXPLICIT} +centre of mass +to 0 over 1000 steps", result.out)
+    assert re.search(rf"{EXPLICIT} +{EXPLICIT} +com-world +to 0 over 1000 steps", result.out)
     assert "1 (1.0" in result.out
 
 

@@ -191,6 +191,12 @@ def test_steps_in_body_axes_do_not_depend_on_where_the_origin_is(name: str) -> N
         assert np.max(np.abs(here - there)) <= 20 * 64 * EPS * np.max(np.abs(there))
 
 
+def test_a_scheme_is_refused_in_coordinates_that_it_does_not_know() -> None:
+    with pytest.raises(ValueError, match="munthe-kaas-rk4 is not known in body-spatial"):
+        step_body(SCHEMES["munthe-kaas-rk4"], OFFSET, INITIAL, 0.01, 2, 1, "body-spatial")
+    step_body(SCHEMES["munthe-kaas-rk4"], TOP, INITIAL, 0.01, 2, 1, "body-spatial")
+
+
 def array_exponential(u: Array) -> Array:
     """The exponential of se(3) as a 4x4 matrix, by its series."""
     x, y, z, a, b, c = u

@@ -14,7 +14,7 @@ import omegadot
 from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import to_coordinates
 from omegadot.reference_impl.schemes import SCHEMES, Motion
-from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.stepping import step_through as step_and_time
 from omegadot.reference_impl.system import Array
 
 STIFFNESS = np.array(
@@ -24,6 +24,11 @@ DAMPING = np.diag([0.1, 0.2, 0.3, 0.4])
 PLACE, SPEED = np.array([1.0, -0.5, 0.3, 0.8]), np.array([0.2, 0.4, -1.0, 0.0])
 BODIES_ALONE = {"body-axes-midpoint"}  # it turns a body's velocity
 anything = pytest.mark.parametrize("name", sorted(set(SCHEMES) - BODIES_ALONE))
+
+
+def step_through(*how: object) -> tuple[Array, Array, Array]:
+    found = step_and_time(*how)  # type: ignore[arg-type]
+    return found.time, found.q, found.v
 
 
 def oscillator() -> Motion:
@@ -102,13 +107,18 @@ def test_accelerations_may_be_written_over_by_the_next(name: str, on: object) ->
     """As an engine's are: a scheme that keeps one without using it up goes astray."""
     motion = body_motion(on)  # type: ignore[arg-type]
     q, v = to_coordinates(on, start([1.0, 2.0, -1.5], [1, 2, 3, 4]), "com-world")  # type: ignore[arg-type]
-    memory = np.empty_like(v)
+    memory, slopes = np.empty_like(v), np.empty((len(v), 3))
 
     def acceleration(q: Array, v: Array) -> Array:
         memory[...] = motion.acceleration(q, v)
         return memory
 
-    reused = replace(motion, acceleration=acceleration)
+    def jacobian(q: Array, v: Array, size: Array | None) -> tuple[Array, Array]:
+        assert motion.jacobian is not None
+        memory[...], slopes[...] = motion.jacobian(q, v, size)
+        return memory, slopes
+
+    reused = replace(motion, acceleration=acceleration, jacobian=jacobian)
     kept = step_through(SCHEMES[name], motion, q, v, 0.02, 10, 5)[1:]
     found = step_through(SCHEMES[name], reused, q, v, 0.02, 10, 5)[1:]
     for one, other in zip(kept, found, strict=True):

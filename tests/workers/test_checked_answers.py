@@ -109,6 +109,10 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ({"integrators": (EULER, EULER)}, "has a name twice, of euler, euler"),
         ({"integrators": (replace(EULER, name=1),)}, "an integrator's name"),
         ({"integrators": (replace(EULER, scheme=1),)}, "the scheme of euler"),
+        (
+            {"integrators": (replace(EULER, coordinates="body"),)},
+            "of euler are 'body'; give one of",
+        ),
         ({"integrators": (replace(EULER, orders={"speed": 1}),)}, "'speed'; give one of omega_dot"),
         ({"integrators": (replace(EULER, orders={"omega": 1.5}),)}, "the order of euler in omega"),
     ],

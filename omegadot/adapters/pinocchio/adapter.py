@@ -148,8 +148,8 @@ class PinocchioAdapter:
         scheme = SCHEMES[name]
         joint = self._loaded()
         start = joint.coordinates(initial)
-        times, q, v = step_through(scheme, joint.motion, *start, timestep, steps, every)
-        return Trajectory(times, joint.states(q, v))
+        found = step_through(scheme, joint.motion, *start, timestep, steps, every)
+        return Trajectory(found.time, joint.states(found.q, found.v), found.seconds)
 
     def native(self) -> dict[str, dict[str, str]]:
         """Conventions as measured of the engine itself, and its defaults."""

@@ -26,19 +26,21 @@ def joint_torque(load: Load, count: int) -> Array | Torque:
 
     A couple has no linear part.
     """
-    constant, damping = np.zeros(count), np.zeros(count)
-    constant[-3:], damping[-3:] = load.torque_body, load.damping
-    in_world = [float(x) for x in load.torque_world]
-    if not any(in_world):
-        return constant if not damping.any() else lambda _, v: constant - damping * v
+    constant, drag = np.zeros(count), np.zeros(count)
+    constant[-3:], drag[-3:] = load.torque_body, -load.damping
+    x0, y0, z0 = (float(x) for x in load.torque_world)
+    if not (x0 or y0 or z0):
+        if not drag.any():
+            return constant
+        return (lambda _, v: constant + drag * v) if constant.any() else lambda _, v: drag * v
 
-    def torque(q: Array, v: Array) -> Array:
+    def in_world(q: Array, _: Array) -> Array:
         *_, x, y, z, w = q.tolist()
-        couple = constant - damping * v
-        couple[-3:] += rotated(-w, x, y, z, *in_world)
+        couple = constant.copy()
+        couple[-3:] += rotated(-w, x, y, z, x0, y0, z0)
         return couple
 
-    return torque
+    return (lambda q, v: in_world(q, v) + drag * v) if drag.any() else in_world
 
 
 def joint_motion(pin: Any, model: Any, load: Load) -> Motion:
@@ -50,24 +52,28 @@ def joint_motion(pin: Any, model: Any, load: Load) -> Motion:
     parts["coordinate_rate"] = _coordinate_rate
     aba, derivatives, damping = pin.aba, pin.computeABADerivatives, float(load.damping)
 
-    def acceleration(q: Array, v: Array) -> Array:
-        found: Array = aba(model, data, q, v, torque(q, v))  # type: ignore[operator]
-        return found
-
-    def steady_acceleration(q: Array, v: Array) -> Array:
+    def steady(q: Array, v: Array) -> Array:
         found: Array = aba(model, data, q, v, torque)
         return found
 
-    def jacobian(q: Array, v: Array, _: Array | None) -> tuple[Array, Array]:
-        tau = torque(q, v) if callable(torque) else torque
-        _, by_v, inverse_mass = derivatives(model, data, q, v, tau)
-        by_v = by_v.copy()  # Pinocchio's own memory, as are the others
-        if damping:
-            by_v[:, -3:] -= damping * inverse_mass[:, -3:]
-        return data.ddq.copy(), by_v
+    def steady_jacobian(q: Array, v: Array, _: Array | None) -> tuple[Array, Array]:
+        by_v: Array = derivatives(model, data, q, v, torque)[1]
+        return data.ddq, by_v
 
-    parts["acceleration"] = acceleration if callable(torque) else steady_acceleration
-    return Motion(jacobian=jacobian, **parts)
+    if not callable(torque):
+        return Motion(acceleration=steady, jacobian=steady_jacobian, **parts)
+
+    def acceleration(q: Array, v: Array) -> Array:
+        found: Array = aba(model, data, q, v, torque(q, v))
+        return found
+
+    def jacobian(q: Array, v: Array, _: Array | None) -> tuple[Array, Array]:
+        _, by_v, inverse_mass = derivatives(model, data, q, v, torque(q, v))
+        by_v = by_v.copy()
+        by_v[:, -3:] -= damping * inverse_mass[:, -3:]
+        return data.ddq, by_v
+
+    return Motion(acceleration=acceleration, jacobian=jacobian, **parts)
 
 
 def _coordinate_rate(q: Array, v: Array) -> Array:

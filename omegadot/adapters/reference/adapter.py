@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from omegadot import __version__
 from omegadot.adapters.protocol import Description, Integrator, Setup, Trajectory, UnsupportedError
+from omegadot.reference_impl.body_motion import body_motion
+from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 FEATURES = frozenset(
@@ -80,5 +82,8 @@ class ReferenceAdapter:
         """Step the scheme named `integrator`. Raises UnsupportedError where there is none."""
         if integrator not in SCHEMES:
             raise UnsupportedError(f"the reference has no scheme {integrator!r}.")
-        plan = (timestep, steps, every)
-        return Trajectory(*step_body(SCHEMES[integrator], self.system, initial, *plan))
+        start = to_coordinates(self.system, initial, "com-world")
+        motion = body_motion(self.system)
+        found = step_through(SCHEMES[integrator], motion, *start, timestep, steps, every)
+        states = from_coordinates(self.system, found.q, found.v, "com-world")
+        return Trajectory(found.time, states, found.seconds)

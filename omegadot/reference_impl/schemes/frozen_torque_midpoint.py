@@ -26,6 +26,7 @@ def mean_velocity(motion: Motion, q: Array, v: Array, h: float | Array) -> Array
     acceleration, half = motion.acceleration, 0.5 * h
     size = natural_size(motion, v, acceleration(q, v))
     ahead, jacobian = acceleration_and_jacobian(motion, q, v, size)
+    ahead, jacobian = ahead.copy(), jacobian.copy()
     back, jacobian_back = acceleration_and_jacobian(motion, q, -v, size)
     odd = 0.5 * (ahead - back)
     solve = solver_of_one_minus(per_matrix(half) * 0.5 * (jacobian - jacobian_back))

@@ -11,6 +11,8 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.schemes.motion import Motion, Velocity
 from omegadot.reference_impl.system import Array
 
+_DOUBLE = np.dtype(float)
+
 
 def acceleration_and_jacobian(
     motion: Motion, q: Array, v: Array, size: Array | None = None
@@ -62,6 +64,16 @@ def natural_size(motion: Motion, v: Array, a: Array) -> Array:
     return size
 
 
+def solve_one_minus(matrix: Array, right: Array) -> Array:
+    """The x with ``(1 - M) x = b``, (..., n), in any precision: see `solver_of_one_minus`."""
+    if matrix.ndim == 2 and matrix.shape[0] == matrix.shape[1] and matrix.dtype == _DOUBLE:
+        try:
+            return np.linalg.solve(_eye(len(matrix)) - matrix, right)
+        except np.linalg.LinAlgError:
+            return np.full_like(right, np.nan)
+    return solver_of_one_minus(matrix)(right)
+
+
 def solver_of_one_minus(matrix: Array) -> Callable[[Array], Array]:
     """What solves ``(1 - M) x = b`` for x, (..., n) to (..., n), in any precision.
 
@@ -95,7 +107,7 @@ def _inverse(a: Array) -> Array:
     it a matrix; lanes of 3x3 are inverted by cofactors, which are cross products of the columns,
     and what is longer than a double by one step of Newton's from a double's inverse.
     """
-    if a.shape[-1] == 3 and (a.ndim > 2 or a.dtype != np.dtype(float)):
+    if a.shape[-1] == 3 and (a.ndim > 2 or a.dtype != _DOUBLE):
         c0, c1, c2 = a[..., 0], a[..., 1], a[..., 2]
         c12 = cross(c1, c2)
         determinant = np.add.reduce(c0 * c12, -1)[..., None, None]

@@ -32,7 +32,8 @@ class Motion:
     given: what else there is defaults to that of a vector space, where q is a vector and ``q̇ = v``.
 
     acceleration: ``v̇(q, v)``, (..., n), of a unit q. The array may be memory that the next call
-    writes over, as that of an engine's may: a scheme uses it up before.
+    writes over, as that of an engine's may, and so may those of `jacobian`: a scheme uses them up
+    before.
     retract: ``q exp(u)``, (..., k): the exponential on the configuration space, u (..., n).
     rate: ``u̇(u, v)``, (..., n), for which ``q₀ exp(u)`` moves with v: the inverse of the
     exponential's differential, ``dexp⁻¹``, in closed form.

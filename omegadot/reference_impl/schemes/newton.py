@@ -35,7 +35,7 @@ def mean_velocity_of(
     for _ in range(MOST_ITERATIONS):
         change = solve(v0 + push(v) - v)
         v = v + change
-        size = (_square(change[..., spin]) / (_square(v[..., spin]) + 1e-300)) ** 0.5
+        size = (_square(change, spin) / (_square(v, spin) + 1e-300)) ** 0.5
         # among rounding a change need not shrink each time; above it, slow is not yet settled
         shrinks = size < last * (1 - 0.5 * (size <= root))
         if _all((size <= eps) | (shrinks ^ True)):
@@ -45,11 +45,13 @@ def mean_velocity_of(
     return v if _all(settled) else np.where(np.asarray(settled)[..., None], v, np.nan)
 
 
-def _square(vector: Array) -> Any:
-    """``|v|²``, (...): a float of one vector, which is quicker to compare."""
+def _square(vector: Array, spin: slice) -> Any:
+    """``|v|²`` of the velocities that are judged: a float of one vector, quicker to compare."""
     if vector.ndim == 1:
-        return float(vector @ vector)
-    return np.add.reduce(vector * vector, -1)
+        part = vector[spin]
+        return float(part @ part)
+    part = vector[..., spin]
+    return np.add.reduce(part * part, -1)
 
 
 @cache

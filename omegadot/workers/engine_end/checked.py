@@ -7,6 +7,7 @@ from typing import Any, get_args
 import numpy as np
 
 from omegadot.adapters.protocol import Channel, Description, Integrator, Trajectory
+from omegadot.reference_impl.coordinates import COORDINATES
 from omegadot.reference_impl.system import Acceleration, Array, Body, State
 
 Shape = tuple[int, ...]
@@ -130,6 +131,11 @@ def _check_integrator(integrator: Integrator) -> None:
     _expect("an integrator's name", integrator.name, str)
     if integrator.scheme is not None:
         _expect(f"the scheme of {integrator.name}", integrator.scheme, str)
+    if integrator.coordinates not in COORDINATES:
+        raise AnswerError(
+            f"the coordinates of {integrator.name} are {integrator.coordinates!r}; "
+            f"give one of {', '.join(COORDINATES)}"
+        )
     for channel, order in integrator.orders.items():
         if channel not in CHANNELS:
             known = ", ".join(CHANNELS)
