@@ -15,6 +15,7 @@ from omegadot.reference_impl.components import (
     arctan,
     cos_sin,
     cross3,
+    half_turn,
     length,
     rotated,
     together,
@@ -29,9 +30,7 @@ def _turned(
     w: Number, x: Number, y: Number, z: Number, rx: Number, ry: Number, rz: Number
 ) -> Quaternion:
     """``q exp(r)``, ``exp(r) = (cos |r|/2, sin(|r|/2) r/|r|)``: section 2.2."""
-    angle = length(rx * rx + ry * ry + rz * rz)
-    c, s = cos_sin(0.5 * angle)
-    s = s / angle
+    c, s = half_turn(rx * rx + ry * ry + rz * rz)
     a, b, d = s * rx, s * ry, s * rz
     return (
         w * c - x * a - y * b - z * d,
@@ -113,15 +112,16 @@ def rate(u: Array, v: Array) -> Array:
     dexp⁻¹ in attitude alone, (..., 3) or (..., 6). Towards zero c tends to ¹⁄₁₂ and is lost to
     rounding, which leaves no mark: it multiplies |r|².
     """
-    *_, rx, ry, rz = apart(u)
-    *linear, wx, wy, wz = apart(v)
+    moved = apart(v)
+    rx, ry, rz = apart(u)[-3:]
+    wx, wy, wz = moved[-3:]
     half = 0.5 * length(rx * rx + ry * ry + rz * rz + 1e-30)
     cosine, sine = cos_sin(half)
     c = (1 - half * cosine / sine) / (4 * half * half)
-    bx, by, bz = cross3(rx, ry, rz, wx, wy, wz)
-    cx, cy, cz = cross3(rx, ry, rz, bx, by, bz)
-    turning = (wx + 0.5 * bx + c * cx, wy + 0.5 * by + c * cy, wz + 0.5 * bz + c * cz)
-    return together([*linear, *turning], v)
+    bx, by, bz = ry * wz - rz * wy, rz * wx - rx * wz, rx * wy - ry * wx
+    cx, cy, cz = ry * bz - rz * by, rz * bx - rx * bz, rx * by - ry * bx
+    moved[-3:] = wx + 0.5 * bx + c * cx, wy + 0.5 * by + c * cy, wz + 0.5 * bz + c * cz
+    return together(moved, v)
 
 
 def cayley(u: Array) -> Array:
@@ -165,9 +165,11 @@ def _quaternion_rate(
 
 def coordinate_rate(q: Array, v: Array) -> Array:
     """``(ṗ, ½ q (0, ω))``, (..., 4) or (..., 7), with ṗ in v as it is."""
-    *linear, wx, wy, wz = apart(v)
-    *_, w, x, y, z = apart(q)
-    return together([*linear, *_quaternion_rate(w, x, y, z, wx, wy, wz)], v)
+    moved = apart(v)
+    w, x, y, z = apart(q)[-4:]
+    wx, wy, wz = moved[-3:]
+    moved[-3:] = _quaternion_rate(w, x, y, z, wx, wy, wz)
+    return together(moved, v)
 
 
 def spatial_coordinate_rate(q: Array, v: Array) -> Array:
@@ -180,9 +182,11 @@ def spatial_coordinate_rate(q: Array, v: Array) -> Array:
 
 def normalize(q: Array) -> Array:
     """Q with its quaternion made unit, (..., 4) or (..., 7)."""
-    *place, w, x, y, z = apart(q)
+    unit = apart(q)
+    w, x, y, z = unit[-4:]
     size = length(w * w + x * x + y * y + z * z)
-    return together([*place, w / size, x / size, y / size, z / size], q)
+    unit[-4:] = w / size, x / size, y / size, z / size
+    return together(unit, q)
 
 
 def turned_by(turn: Turn, q: Array, u: Array) -> Array:

@@ -41,7 +41,7 @@ def attitude_motion(system: System) -> Motion:
     angular = _angular(system)
 
     def acceleration(q: Array, v: Array) -> Array:
-        return together([*angular(*apart(q), *apart(v))], v)
+        return together([*angular(q, *apart(v))], v)
 
     jacobian = partial(_jacobian_by_omega, acceleration)
     return Motion(acceleration=acceleration, jacobian=jacobian, **ATTITUDE)
@@ -87,7 +87,7 @@ def _jacobian_by_all(
 
 
 def _angular(system: System) -> Angular:
-    """``ω̇ = I⁻¹ (τ - ω × I ω)``, equation (8), of the components of q and ω.
+    """``ω̇ = I⁻¹ (τ - ω × I ω)``, equation (8), of q and the components of ω.
 
     τ is the torque of `loads.torque_of`; what is zero is left out here, not at each step.
     """
@@ -103,9 +103,7 @@ def _angular(system: System) -> Angular:
     fx, fy, fz = constants(weight(system))
     rx, ry, rz = constants(lever(system))
 
-    def angular(
-        qw: Number, qx: Number, qy: Number, qz: Number, wx: Number, wy: Number, wz: Number
-    ) -> tuple[Number, Number, Number]:
+    def angular(q: Array, wx: Number, wy: Number, wz: Number) -> tuple[Number, Number, Number]:
         hx = ixx * wx + ixy * wy + ixz * wz
         hy = ixy * wx + iyy * wy + iyz * wz
         hz = ixz * wx + iyz * wy + izz * wz
@@ -114,6 +112,8 @@ def _angular(system: System) -> Angular:
             tx, ty, tz = tx + bx, ty + by, tz + bz
         if damped:
             tx, ty, tz = tx - d * wx, ty - d * wy, tz - d * wz
+        if in_world or hangs:
+            qw, qx, qy, qz = apart(q)[-4:]
         if in_world:
             ax, ay, az = rotated(-qw, qx, qy, qz, wx0, wy0, wz0)
             tx, ty, tz = tx + ax, ty + ay, tz + az
@@ -136,14 +136,13 @@ def _free_acceleration(system: System, coordinates: Coordinates) -> Velocity:
     cx, cy, cz = constants(system.body.center_of_mass)
 
     def of_center(q: Array, v: Array) -> Array:
-        _, _, _, qw, qx, qy, qz = apart(q)
         _, _, _, wx, wy, wz = apart(v)
-        return together([gx, gy, gz, *angular(qw, qx, qy, qz, wx, wy, wz)], v)
+        return together([gx, gy, gz, *angular(q, wx, wy, wz)], v)
 
     def of_origin(q: Array, v: Array) -> Array:
         _, _, _, qw, qx, qy, qz = apart(q)
         _, _, _, wx, wy, wz = apart(v)
-        ax, ay, az = angular(qw, qx, qy, qz, wx, wy, wz)
+        ax, ay, az = angular(q, wx, wy, wz)
         x, y, z = cross3(wx, wy, wz, *cross3(wx, wy, wz, cx, cy, cz))
         dx, dy, dz = cross3(ax, ay, az, cx, cy, cz)
         lx, ly, lz = rotated(qw, qx, qy, qz, x + dx, y + dy, z + dz)
@@ -152,7 +151,7 @@ def _free_acceleration(system: System, coordinates: Coordinates) -> Velocity:
     def spatial(q: Array, v: Array) -> Array:
         _, _, _, qw, qx, qy, qz = apart(q)
         ux, uy, uz, wx, wy, wz = apart(v)
-        ax, ay, az = angular(qw, qx, qy, qz, wx, wy, wz)
+        ax, ay, az = angular(q, wx, wy, wz)
         x, y, z = cross3(wx, wy, wz, cx, cy, cz)
         x, y, z = cross3(wx, wy, wz, ux + x, uy + y, uz + z)
         dx, dy, dz = cross3(ax, ay, az, cx, cy, cz)

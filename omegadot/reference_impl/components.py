@@ -53,6 +53,19 @@ def length(square: Number) -> Number:
     return np.sqrt(np.maximum(square, _LEAST * _LEAST))
 
 
+def half_turn(square: Number) -> tuple[Number, Number]:
+    """``cos(a/2)`` and ``sin(a/2)/a`` of an angle given as its square; NaN if it is not finite."""
+    if type(square) is float:
+        angle = _LEAST if square < _LEAST * _LEAST else math.sqrt(square)
+        try:
+            return math.cos(0.5 * angle), math.sin(0.5 * angle) / angle
+        except ValueError:
+            return math.nan, math.nan
+    angle = length(square)
+    half = 0.5 * angle
+    return np.cos(half), np.sin(half) / angle
+
+
 def cos_sin(angle: Number) -> tuple[Number, Number]:
     """Cosine and sine; NaN of what is not finite."""
     if type(angle) is not float:

@@ -59,7 +59,7 @@ def _top() -> Body:
 
 # m/s^2. Stepped in body axes, a slower fall hides the energy's error of order 4 behind its part of
 # order 5 until both are lost in rounding; a faster one rounds omega-dot by its m |v|^2.
-_GRAVITY = _vector(0.0, 0.5, -1.5)
+_GRAVITY = _vector(0.0, 0.4, -1.4)
 _HEAVY = _vector(0.0, 0.0, -9.81)
 _PIVOT = _vector(0.02, 0.01, -0.1)
 _FREE = _state((0.5, 0.1, -0.7, 0.4), (0.8, 2.0, -0.5))

@@ -15,14 +15,16 @@ def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, A
     """
     acceleration, unit, rate = motion.acceleration, motion.normalize, motion.coordinate_rate
     half = 0.5 * h
-    a, r1 = h * acceleration(q, v), rate(q, v)
-    q2, v2 = q + half * r1, v + 0.5 * a
-    b, r2 = h * acceleration(unit(q2), v2), rate(q2, v2)
-    q3, v3 = q + half * r2, v + 0.5 * b
+    a, r1 = half * acceleration(q, v), rate(q, v)
+    q2, v2 = q + half * r1, v + a
+    b, r2 = half * acceleration(unit(q2), v2), rate(q2, v2)
+    q3, v3 = q + half * r2, v + b
     c, r3 = h * acceleration(unit(q3), v3), rate(q3, v3)
     q4, v4 = q + h * r3, v + c
-    d, r4 = h * acceleration(unit(q4), v4), rate(q4, v4)
-    return unit(q + h / 6 * (r1 + 2 * (r2 + r3) + r4)), v + (a + 2 * (b + c) + d) / 6
+    d, r4 = half * acceleration(unit(q4), v4), rate(q4, v4)
+    middle = r2 + r3
+    end = q + h / 6 * (r1 + middle + middle + r4)
+    return unit(end), v + (a + b + b + c + d) / 3
 
 
 SCHEME = Scheme(

@@ -15,18 +15,19 @@ def step_in_exponential(
     """
     acceleration, retract = motion.acceleration, motion.retract
     half = 0.5 * h
-    a = h * acceleration(q, v)
-    v2 = v + 0.5 * a
+    a = half * acceleration(q, v)
+    v2 = v + a
     u = half * v
     u2 = rate(u, v2)
-    b = h * acceleration(retract(q, u), v2)
-    v3 = v + 0.5 * b
+    b = half * acceleration(retract(q, u), v2)
+    v3 = v + b
     u = half * u2
     u3 = rate(u, v3)
     c = h * acceleration(retract(q, u), v3)
     v4 = v + c
     u = h * u3
     u4 = rate(u, v4)
-    d = h * acceleration(retract(q, u), v4)
-    u = h / 6 * (v + 2 * (u2 + u3) + u4)
-    return retract(q, u), v + (a + 2 * (b + c) + d) / 6
+    d = half * acceleration(retract(q, u), v4)
+    middle = u2 + u3
+    u = h / 6 * (v + middle + middle + u4)
+    return retract(q, u), v + (a + b + b + c + d) / 3
