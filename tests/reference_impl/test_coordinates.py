@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from reference_cases import DAMPED, DRIVEN, EPS, TOP, start, states, system, systems, turned
+from reference_cases import (
+    DAMPED,
+    DRIVEN,
+    EPS,
+    TOP,
+    in_long_double,
+    start,
+    states,
+    system,
+    systems,
+    turned,
+)
 
 from omegadot.reference_impl.body_motion import body_motion, motion_over
 from omegadot.reference_impl.coordinates import (
@@ -23,7 +34,6 @@ from omegadot.reference_impl.coordinates import (
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import acceleration_of, forward_dynamics
-from omegadot.reference_impl.precision import extended
 from omegadot.reference_impl.rotations import attitude_angle, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.series import solve_series
@@ -159,8 +169,8 @@ def test_lanes_may_differ_in_the_system() -> None:
 
 
 def test_extended_precision_is_kept_in_components() -> None:
-    long = extended(OFFSET)
-    state = State(*(np.asarray(f, np.longdouble) for f in vars(INITIAL).values()))
+    long = replace(OFFSET, bodies=(in_long_double(OFFSET.body),), load=in_long_double(OFFSET.load))
+    state = in_long_double(INITIAL)
     for coordinates in COORDINATES:
         q, v = to_coordinates(long, state, coordinates)
         found = body_motion(long, coordinates).acceleration(q, v)

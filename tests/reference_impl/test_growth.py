@@ -11,7 +11,6 @@ from scipy.linalg import expm
 
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.growth import changes, growth_along
-from omegadot.reference_impl.precision import extended, extended_state
 from omegadot.reference_impl.rotations import turn_in_body
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.series import solve_series
@@ -97,11 +96,11 @@ def test_rounding_stays_within_its_bound(scheme: str, on: System) -> None:
     rate, dt, steps = 3.0, 0.01, 400
     initial = start([0.01, rate, 0.01], on=on)
     times, double = step_body(SCHEMES[scheme], on, initial, dt, steps, 20)
-    long = extended(on)
+    long = replace(on, bodies=(in_long_double(on.body),), load=in_long_double(on.load))
     _, spared = step_body(
         SCHEMES[scheme],
         long,
-        extended_state(initial),
+        in_long_double(initial),
         np.longdouble(dt),
         steps,
         20,

@@ -8,12 +8,22 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from reference_cases import DAMPED, DRIVEN, EPS, FREE, TOP, rows, start, system, turned
+from reference_cases import (
+    DAMPED,
+    DRIVEN,
+    EPS,
+    FREE,
+    TOP,
+    in_long_double,
+    rows,
+    start,
+    system,
+    turned,
+)
 
 from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
-from omegadot.reference_impl.precision import extended, extended_state
 from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.scheme import CHANNELS, kinds_of
@@ -107,16 +117,18 @@ def test_orders_in_other_coordinates_are_the_general_ones(
 
     In long double where there is one, and over two fine steps: an energy's next term is large.
     """
-    scheme, long = SCHEMES[name], extended(OFFSET)
+    scheme = SCHEMES[name]
+    loads = (in_long_double(OFFSET.body),), in_long_double(OFFSET.load)
+    long = System(*loads)
     initial = start([2.0, 1.5, 1.0], [1, 2, 3, 4], (1, 2, 3), (1, 2, 3))
-    true = solve_series(long, extended_state(initial), np.linspace(0, 1, 3, dtype=np.longdouble))
+    true = solve_series(OFFSET, initial, np.linspace(0, 1, 3))
     declared = {channel: scheme.order(channel, OFFSET, coordinates) for channel in CHANNELS}
     general = {channel: scheme.orders[channel] for channel in ("energy", "position")}
     assert {channel: declared[channel] for channel in general} == general
     found = []
     for steps in (128, 256):
         how = (np.longdouble(1) / steps, steps, steps // 2, coordinates)
-        _, states = step_body(scheme, long, extended_state(initial), *how)
+        _, states = step_body(scheme, long, in_long_double(initial), *how)
         found.append(errors(long, states, true))
     for channel, order in declared.items():
         slope = np.log2(found[0][channel] / found[1][channel])
