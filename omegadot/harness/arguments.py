@@ -21,6 +21,8 @@ T = TypeVar("T")
 
 def several(given: T | Sequence[T]) -> list[T]:
     """One argument, or a sequence of them, as a list; a text, a table or a class is one."""
+    if hasattr(given, "tolist"):  # a NumPy array or scalar
+        return several(given.tolist())
     if isinstance(given, str | PathLike | Mapping | type) or not isinstance(given, Sequence):
         return [given]
     return list(given)

@@ -8,6 +8,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from command_line import FAULTY, WRONG, omegadot, quick_scenario
 
@@ -37,7 +38,7 @@ def test_an_engine_is_a_class_a_file_or_a_name(toy: Any, quick: Path) -> None:
     checks = {check["id"]: check["verdict"] for check in typed.json["checks"]}
     assert {i: result.verdict for i, result in by_class.results.items()} == checks
     assert next(iter(by_class.results)) == "toy-quick-model"
-    found = api.run(quick, [toy, "mujoco:Euler"], timesteps=0.02)
+    found = api.run(quick, [toy, "mujoco:Euler"], timesteps=np.array([0.02]))
     assert {task.engine for task in found.record.tasks} == {"toy", "mujoco"}
 
 
