@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -12,17 +10,6 @@ from omegadot.reference_impl.system import Array
 
 CHUNK = 4096  # steps a rollout: the call's cost vanishes, and its buffer stays in the cache
 SPARSE = 8  # steps a sample from which a call for each sample costs less than logging every step
-
-
-@contextmanager
-def quietly(mujoco: Any) -> Iterator[None]:
-    """Keep MuJoCo from printing its warnings and writing them to a file in the current folder."""
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda text: None)
-    try:
-        yield
-    finally:
-        mujoco.set_mju_user_warning(before)
 
 
 class Stepper:
@@ -57,10 +44,9 @@ class Stepper:
         start = self._vector(self._physics)
         rows = np.empty((-(-steps // every) + 1, len(start)))
         rows[0] = start
-        with quietly(self._mujoco):
-            native = every < SPARSE and self._rollout is not None
-            done = self._run_native(steps, every, rows) if native else 0
-            self._run_from_sample_to_sample(done, steps, every, rows)
+        native = every < SPARSE and self._rollout is not None
+        done = self._run_native(steps, every, rows) if native else 0
+        self._run_from_sample_to_sample(done, steps, every, rows)
         return rows[:, self._kept]
 
     def _run_native(self, steps: int, every: int, rows: Array) -> int:
