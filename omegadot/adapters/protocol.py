@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from typing import Literal, Protocol, runtime_checkable
 
 from omegadot.reference_impl.coordinates import Coordinates
@@ -37,6 +37,8 @@ class Integrator:
     coordinates: those in which the engine steps a free body's translation, see `Coordinates`.
     one_step: a step depends on the state alone; False for a multistep method, which keeps earlier
     steps in mind.
+    steps_origin: True is the same as the coordinates "origin-world"; adapters written before
+    `coordinates` give it.
     """
 
     name: str
@@ -46,6 +48,11 @@ class Integrator:
     note: str = ""
     coordinates: Coordinates = "com-world"
     one_step: bool = True
+    steps_origin: InitVar[bool] = False
+
+    def __post_init__(self, steps_origin: bool) -> None:
+        if steps_origin:
+            object.__setattr__(self, "coordinates", "origin-world")
 
 
 @dataclass(frozen=True)

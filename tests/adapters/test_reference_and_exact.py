@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mujoco_cases import EPS, at, norm, parts, states, system
 
 from omegadot.adapters.exact.adapter import ExactAdapter
+from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.kinematics import place_on_pivot
@@ -104,3 +107,10 @@ def test_the_exact_solution_starts_at_the_start() -> None:
     assert attitude_angle(found.state.orientation[0], start.orientation) <= 8 * EPS
     for given, reported in zip(parts(start)[1:], parts(found.state)[1:], strict=True):
         assert norm(reported[0] - given) <= 8 * EPS * norm(given)
+
+
+def test_an_integrator_that_steps_the_origin_names_its_coordinates() -> None:
+    """Adapters written before `coordinates` keep their meaning, in the harness and on the wire."""
+    old = Integrator("euler", None, {"omega": 1}, steps_origin=True)
+    assert old == Integrator("euler", None, {"omega": 1}, coordinates="origin-world")
+    assert replace(old, note="as it is").coordinates == "origin-world"

@@ -1,5 +1,5 @@
 """The reference as an engine like any other."""
 
-from omegadot.adapters.reference.adapter import ReferenceAdapter
+from omegadot.adapters.reference.adapter import FEATURES, ReferenceAdapter
 
-__all__ = ["ReferenceAdapter"]
+__all__ = ["FEATURES", "ReferenceAdapter"]
