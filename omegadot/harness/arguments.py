@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from numbers import Real
 from os import PathLike
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from omegadot.adapters.protocol import Description
 from omegadot.adapters.registry import registered
@@ -20,12 +21,13 @@ T = TypeVar("T")
 
 
 def several(given: T | Sequence[T]) -> list[T]:
-    """One argument, or a sequence of them, as a list; a text, a table or a class is one."""
-    if hasattr(given, "tolist"):  # a NumPy array or scalar
-        return several(given.tolist())
-    if isinstance(given, str | PathLike | Mapping | type) or not isinstance(given, Sequence):
-        return [given]
-    return list(given)
+    """One argument, or several in any iterable, as a list; a text, a table or a class is one.
+
+    An array is taken for its plain numbers.
+    """
+    plain: Any = given.tolist() if hasattr(given, "tolist") else given
+    one = isinstance(plain, str | PathLike | Mapping | type | Scenario)
+    return [plain] if one or not isinstance(plain, Iterable) else list(plain)
 
 
 def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:
@@ -110,8 +112,9 @@ def case_of(scenario: Scenario, timesteps: Sequence[float]) -> Case:
     """The scenario made ready, with other time steps where some are given. Raises UsageError."""
     duration, sample = scenario.run.duration, scenario.run.sample
     for step in timesteps:
-        if not (math.isfinite(step) and step > 0.0):
-            raise UsageError(f"--timestep {step:g}: not a positive number of seconds; give one.")
+        if not (isinstance(step, Real) and math.isfinite(step) and step > 0.0):
+            shown = f"{step:g}" if isinstance(step, Real) else repr(step)
+            raise UsageError(f"--timestep {shown}: not a positive number of seconds; give one.")
         if step > duration:
             raise UsageError(
                 f"--timestep {step:g}: longer than the {duration:g} s of {scenario.name}; "

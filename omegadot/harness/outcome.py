@@ -14,6 +14,7 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.plan import Engine, EngineChoice
+from omegadot.harness.usage import check_count, check_number, check_setup
 from omegadot.workers.harness_end.process import Answer
 
 
@@ -32,6 +33,15 @@ class RunRequest:
     timeout: float = 60.0
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
     memory: float | None = None
+
+    def __post_init__(self) -> None:
+        """Raise UsageError for what the command line would refuse."""
+        check_setup(self.setup)
+        check_count("--seed", self.seed, 0)
+        check_number("--timeout", self.timeout, 0.0)
+        check_count("--jobs", self.jobs, 1)
+        if self.memory is not None:
+            check_number("--memory", self.memory, 0.1)
 
 
 @dataclass(frozen=True)

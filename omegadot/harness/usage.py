@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Iterable
+from numbers import Integral, Real
+from typing import get_args
+
+from omegadot.adapters.protocol import Setup
 
 
 class UsageError(ValueError):
@@ -15,3 +20,23 @@ def nearest(term: str, known: Iterable[str]) -> str:
     names = sorted(known)
     close = difflib.get_close_matches(term, names, 1)
     return f"write {close[0]}" if close else f"give one of {', '.join(names)}"
+
+
+def check_setup(setup: object) -> None:
+    """Raise UsageError unless it is a setup: any other name would leave shipped defaults on."""
+    if setup not in (known := get_args(Setup)):
+        raise UsageError(f"--setup {setup}: no such setup; {nearest(str(setup), known)}.")
+
+
+def check_number(option: str, value: object, least: float) -> None:
+    """Raise UsageError unless it is a finite number above 0 and from `least` on."""
+    number = float(value) if isinstance(value, Real) else math.nan
+    if not (math.isfinite(number) and number >= least and number > 0.0):
+        limit = f"of at least {least:g}" if least else "above 0"
+        raise UsageError(f"{option} {value}: give a number {limit}.")
+
+
+def check_count(option: str, value: object, least: int) -> None:
+    """Raise UsageError unless it is a whole number, from `least` on."""
+    if not isinstance(value, Integral) or int(value) < least:
+        raise UsageError(f"{option} {value}: give a whole number of at least {least}.")

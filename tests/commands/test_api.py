@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -161,3 +162,46 @@ def test_errors_are_the_commands(
         call()
     assert capsys.readouterr().err == f"omegadot: {raised.value}\n"
     assert isinstance(raised.value, api.UsageError | api.ScenarioError | api.RecordError)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"setup": "as_shipped"}, "--setup as_shipped: no such setup; write as-shipped"),
+        ({"jobs": 0}, "--jobs 0: give a whole number of at least 1"),
+        ({"jobs": 1.5}, "--jobs 1.5"),
+        ({"timeout": -1.0}, "--timeout -1.0: give a number above 0"),
+        ({"timeout": "3"}, "--timeout 3: give"),
+        ({"memory": "x"}, "--memory x: give a number of at least 0.1"),
+        ({"seed": -1}, "--seed -1"),
+        ({"timesteps": "0.01"}, "--timestep '0.01'"),
+        ({"exceptions": "none.toml"}, "none.toml: cannot be read"),
+    ],
+)
+def test_arguments_of_the_wrong_kind_are_one_sentence(arguments: Any, text: str) -> None:
+    with pytest.raises(api.UsageError, match=re.escape(text)):
+        api.run("sphere", ENGINE, **arguments)
+
+
+def test_one_or_several_are_taken_in_any_container(folder: Path) -> None:
+    quick = api.scenario(folder / "quick.toml")
+    for steps in (
+        np.array([0.02, 0.04]),
+        {0.02, 0.04},
+        iter([0.02, 0.04]),
+        pl.Series([0.02, 0.04]),
+    ):
+        tasks = api.run((quick,), {ENGINE}, timesteps=steps).record.tasks
+        assert sorted({task.timestep for task in tasks}) == [0.02, 0.04]
+    with pytest.raises(api.UsageError, match="no feature 'contact'"):
+        api.choose(quick, ENGINE, attitude="1deg", features="contact")
+    with pytest.raises(api.UsageError, match="--budget 0: give a number above 0"):
+        api.choose(quick, ENGINE, attitude="1deg", budget=0)
+    with pytest.raises(api.ScenarioError, match=r"none\.urdf is missing"):
+        api.choose(body=folder / "none.urdf", angular_velocity=[0, 0, 1], duration=1, omega=1.0)
+
+
+@pytest.mark.parametrize("scenario", ["sphere", "t-handle"])
+def test_exact_beyond_every_digit_is_refused(scenario: str) -> None:
+    with pytest.raises(api.UsageError, match="holds no digit"):
+        api.exact(scenario, 1e300)

@@ -63,7 +63,7 @@ def check(
     *,
     scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
     integrators: str | Sequence[str] = (),
-    exceptions: Sequence[str | Path] = (),
+    exceptions: str | Path | Sequence[str | Path] = (),
     baseline: str | Path | None = None,
     update_baseline: bool = False,
     timeout: float = 60.0,
@@ -79,7 +79,7 @@ def check(
     """
     names = Arguments(
         scenarios=several(scenarios),
-        exceptions=exceptions,
+        exceptions=several(exceptions),
         baseline=baseline,
         update=update_baseline,
         timeout=timeout,

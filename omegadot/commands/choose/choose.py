@@ -22,7 +22,7 @@ from omegadot.harness.arguments import engine_choices, several
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import EngineChoice
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage import UsageError, check_number
 from omegadot.reports.choice.files import check_choice_folder
 from omegadot.scenarios import ScenarioLike
 from omegadot.workers.machine import describe_machine, package_versions
@@ -35,7 +35,7 @@ def choose(
     scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
     engines: EngineLike | Sequence[EngineLike] = (),
     *,
-    body: str | None = None,
+    body: str | os.PathLike[str] | None = None,
     allow_impossible_inertia: bool = False,
     angular_velocity: Sequence[float] | None = None,
     orientation: Sequence[float] | None = None,
@@ -49,8 +49,8 @@ def choose(
     flip_time: Quantity | None = None,
     real_time_factor: Quantity | None = None,
     precision: str | None = None,
-    features: Sequence[str] = (),
-    licences: Sequence[str] = (),
+    features: str | Sequence[str] = (),
+    licences: str | Sequence[str] = (),
     python: str | None = None,
     adapters: EngineLike | Sequence[EngineLike] = (),
     budget: float = 2.0,
@@ -82,8 +82,8 @@ def choose(
         "flip-time": flip_time,
         "real-time-factor": real_time_factor,
         "precision": precision,
-        "feature": list(features),
-        "licence": list(licences),
+        "feature": several(features),
+        "licence": several(licences),
         "python": python,
         "duration": duration,
     }
@@ -91,14 +91,20 @@ def choose(
     wanted = merged(file, requested, str(requirements))
     given: list[ScenarioLike] = several(scenarios)
     motion = Motion(
-        given, body, angular_velocity, orientation, wanted.duration, allow_impossible_inertia
+        given,
+        None if body is None else os.fspath(body),
+        angular_velocity,
+        orientation,
+        wanted.duration,
+        allow_impossible_inertia,
     )
     request = RunRequest(
         cases_of(motion),
         _choices(several(engines), several(adapters)),
         timeout=timeout,
-        jobs=jobs or os.cpu_count() or 1,
+        jobs=(os.cpu_count() or 1) if jobs is None else jobs,
     )
+    check_number("--budget", budget, 0.0)
     if out is not None:
         check_choice_folder(Path(out))
     with reporting(progress) as report:

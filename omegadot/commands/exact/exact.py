@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -78,7 +79,13 @@ def exact(scenario: ScenarioLike, times: ArrayLike | None = None) -> ExactStates
     requested = case.sample_times if times is None else _checked(times, case)
     followed = _followed(case, requested)
     rows = np.searchsorted(followed, requested)
-    solution = exact_solution(case.system, case.initial, followed)
+    with np.errstate(all="ignore"):  # what overflows is refused below
+        solution = exact_solution(case.system, case.initial, followed)
+    if not all(np.isfinite(values).all() for values in vars(solution.state).values()):
+        raise UsageError(
+            f"exact solution of {case.name}: at {followed[-1]:g} s double precision holds no digit "
+            "of the motion; give earlier times."
+        )
     state = State(*(values[rows] for values in vars(solution.state).values()))
     return ExactStates(
         source=solution.source,
@@ -99,7 +106,9 @@ def _followed(case: Case, requested: Array) -> Array:
     What rounding comes to grows along the motion, so the floor needs the whole of it.
     """
     own = case.sample_times
-    further = np.arange(own[-1], requested[-1], own[-1] / (len(own) - 1))[:MOST_FURTHER]
+    interval = own[-1] / (len(own) - 1)
+    count = math.ceil(min((requested[-1] - own[-1]) / interval, MOST_FURTHER))
+    further = own[-1] + interval * np.arange(count)
     return np.union1d(np.concatenate((own, further)), requested)
 
 

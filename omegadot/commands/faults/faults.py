@@ -11,7 +11,7 @@ from omegadot.commands.faults.matrix_text import Settings
 from omegadot.commands.faults.prepared import Pool
 from omegadot.commands.progress import Count, Reporting, reporting
 from omegadot.harness.arguments import several
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import UsageError, check_count, nearest
 
 ENGINES = tuple(name for name in BUILT_IN if name != "exact")  # the truth cannot be wrong
 
@@ -52,6 +52,8 @@ def faults(
     bodies: random ones for each fault.  seed: theirs.
     Raises UsageError for an engine that is unknown or not installed.
     """
+    check_count("--bodies", bodies, 1)
+    check_count("--seed", seed, 0)
     named: list[str] = several(engines)
     settings = Settings(tuple(dict.fromkeys(named)) or ("reference",), bodies, seed)
     for name in settings.engines:

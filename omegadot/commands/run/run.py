@@ -30,7 +30,7 @@ def run(
     out: str | os.PathLike[str] | None = None,
     setup: Setup = "physics",
     adapters: EngineLike | Sequence[EngineLike] = (),
-    exceptions: Sequence[str | os.PathLike[str]] = (),
+    exceptions: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (),
     timeout: float = 60.0,
     jobs: int | None = None,
     memory: float | None = None,
@@ -52,10 +52,11 @@ def run(
     choices = engine_choices(several(engines), several(adapters))
     steps = several(timesteps)
     cases = [case_of(scenario, steps) for scenario in scenarios_of(several(scenarios))]
-    known = exceptions_of(choices, map(Path, exceptions))
+    files: list[str | os.PathLike[str]] = several(exceptions)
+    known = exceptions_of(choices, map(Path, files))
     if out is not None:
         check_folder(Path(out))
-    cores = jobs or os.cpu_count() or 1
+    cores = (os.cpu_count() or 1) if jobs is None else jobs
     request = RunRequest(cases, choices, setup, seed, timeout, cores, memory)
     started = time.perf_counter()
     with reporting(progress) as report:

@@ -21,7 +21,7 @@ from omegadot.commands.versions.record import record_of
 from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import several
 from omegadot.harness.engine_target import EngineLike, target_of
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage import UsageError, check_count, check_number, check_setup
 from omegadot.reports.versions.files import check_folder
 from omegadot.scenarios import ScenarioLike
 
@@ -60,6 +60,10 @@ def versions(
     product = product_of(engine, own, package or "")
     if package and not own:
         raise UsageError("--package: only an engine of your own has one; give --adapter too.")
+    check_setup(setup)
+    check_number("--timeout", timeout, 0.0)
+    if jobs is not None:
+        check_count("--jobs", jobs, 1)
     aims = aims_of(several(scenarios), several(integrators), timestep)
     if out is not None:
         check_folder(Path(out))
@@ -72,7 +76,7 @@ def versions(
             seen = _seen(report, None)
             portraits, found = bisect_metric(bisect, product, gallery, requested.versions, seen)
         else:
-            cores = jobs or os.cpu_count() or 1
+            cores = (os.cpu_count() or 1) if jobs is None else jobs
             portraits = _measured(gallery, requested, aims, product, cores, report)
             found = None
             if speed:
