@@ -186,6 +186,19 @@ def test_no_width_scrolls_sideways(browser, path, width):
     assert browser.evaluate(f"{root}.scrollWidth - {root}.clientWidth") == 0
 
 
+@pytest.mark.parametrize("width", [360, 1280])
+def test_long_names_do_not_widen_the_page(browser, tmp_path, width):
+    steps = {"RK4": 4}
+    record = build(engines={"a" * 300: steps, " ".join(["abc"] * 60): steps})
+    file = tmp_path / "report.html"
+    file.write_text(draw_page(record), encoding="utf-8")
+    browser.open(file, width=width, height=12000)
+    browser.wait("document.documentElement.dataset.drawn")
+    browser.evaluate("document.querySelectorAll('details').forEach((part) => (part.open = true))")
+    root = "document.documentElement"
+    assert browser.evaluate(f"{root}.scrollWidth - {root}.clientWidth") == 0
+
+
 def test_charts_wait_until_they_come_near(browser, path):
     browser.open(path, height=500)
     assert browser.evaluate("document.querySelectorAll('.chart svg').length") == 0
