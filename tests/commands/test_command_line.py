@@ -8,7 +8,7 @@ from pathlib import Path
 import polars as pl
 import pyarrow.parquet as pq
 import pytest
-from command_line import FAULTY, QUICK, Result, omegadot, quick_scenario
+from command_line import FAULTY, PROGRAM, QUICK, Result, omegadot, quick_scenario
 
 from omegadot.reports.record import schema
 from omegadot.scenarios import builtin_names
@@ -217,3 +217,23 @@ def test_help_and_version_are_quick_to_ask(tmp_path: Path) -> None:
     assert "0.1.0" in omegadot("--version", folder=tmp_path).out
     assert "scenarios" in omegadot("--help", folder=tmp_path).out
     assert "--timestep" in omegadot("run", "--help", folder=tmp_path).out
+
+
+def test_files_of_the_current_folder_stand_in_for_no_module(tmp_path: Path) -> None:
+    for name in ("json", "inspect", "numpy", "mujoco"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('not this one')")
+    own = Path(__file__).parents[2] / "docs" / "examples" / "toy_engine.py"
+    (tmp_path / "my_engine.py").write_text(own.read_text(encoding="utf-8"), encoding="utf-8")
+    (tmp_path / "a.xml").write_text(
+        "<mujoco><worldbody><body name='a'><geom size='1'/></body></worldbody></mujoco>"
+    )
+    before = {path.name for path in tmp_path.iterdir()}
+    program = [sys.executable, "-P", *PROGRAM[1:]]  # as the installed command: without the folder
+    for line in (
+        "run sphere --engine mujoco:RK4 --adapter my_engine:ToyAdapter --timestep 0.02 --out o",
+        "choose sphere --body a.xml#a --engine mujoco:RK4 --attitude 1deg --budget 0.05",
+    ):
+        command = [*program, *line.split()]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+    assert {path.name for path in tmp_path.iterdir()} - before - {"__pycache__"} == {"o"}

@@ -34,7 +34,7 @@ def bodies_of_mjcf(path: Path, file: str) -> list[Link]:
 
     Raises ScenarioError where MuJoCo is not installed or refuses the file.
     """
-    command = [sys.executable, "-m", __name__, str(path)]
+    command = [sys.executable, "-P", "-m", __name__, str(path)]
     try:
         ended = subprocess.run(
             command, capture_output=True, stdin=subprocess.DEVNULL, timeout=SECONDS, check=False

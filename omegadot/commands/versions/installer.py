@@ -91,16 +91,16 @@ class Pip:
 
     def create(self, folder: Path) -> None:
         """Without a pip of its own: this one fills it."""
-        _run([sys.executable, "-m", "venv", "--without-pip", str(folder)])
+        _run([sys.executable, "-P", "-m", "venv", "--without-pip", str(folder)])
 
     def install(self, folder: Path, requirements: Sequence[str]) -> None:
         """``pip --python``."""
-        to = [sys.executable, "-m", "pip", "--python", str(python_of(folder))]
+        to = [sys.executable, "-P", "-m", "pip", "--python", str(python_of(folder))]
         _run([*to, "install", "--no-input", "--only-binary=:all:", *requirements])
 
     def releases(self, package: str, span: Span) -> list[str]:
         """``pip index versions``; its text is read where it cannot answer in JSON."""
-        command = [sys.executable, "-m", "pip", "index", "versions", package, "--no-input"]
+        command = [sys.executable, "-P", "-m", "pip", "index", "versions", package, "--no-input"]
         try:
             return span.of(json.loads(_run([*command, "--json"]))["versions"])
         except InstallError as error:
@@ -166,7 +166,7 @@ def installer_named(name: str) -> Installer:
         if program:
             return Uv([program])
         if importlib.util.find_spec("uv") is not None:
-            return Uv([sys.executable, "-m", "uv"])
+            return Uv([sys.executable, "-P", "-m", "uv"])
     if name == "uv":
         raise InstallError("there is no uv, neither as a program nor as a package of this Python")
     if importlib.util.find_spec("pip") is None:

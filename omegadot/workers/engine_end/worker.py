@@ -17,7 +17,7 @@ from functools import partial
 from typing import Any, BinaryIO, cast
 
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
-from omegadot.adapters.registry import build_adapter
+from omegadot.adapters.registry import BUILT_IN, build_adapter
 from omegadot.workers.engine_end.checked import checked_description
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
@@ -110,7 +110,12 @@ def _private_channels() -> tuple[BinaryIO, BinaryIO]:
 
 
 def main() -> None:
-    """Serve the adapter that the command line names."""
+    """Serve the adapter that the command line names.
+
+    The module of an engine of one's own may stand in the current folder, which comes last.
+    """
+    if sys.argv[1] not in BUILT_IN.values():
+        sys.path.append(os.getcwd())
     setup = cast(Setup, sys.argv[2] if len(sys.argv) > 2 else "physics")
     memory = os.environ.get(MEMORY_VARIABLE)
     if memory:

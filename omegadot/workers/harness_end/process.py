@@ -44,7 +44,9 @@ def _worker_environment(memory: int | None) -> dict[str, str]:
     # One thread an engine: the workers run side by side, and timings must not share cores.
     single = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
     limit = {MEMORY_VARIABLE: str(memory)} if memory else {}
-    return {**os.environ, **single, "PYTHONUNBUFFERED": "1", **limit}
+    # A json.py or mujoco.py of the current folder must not stand in for the real one.
+    safe = {"PYTHONSAFEPATH": "1", "PYTHONUNBUFFERED": "1"}
+    return {**os.environ, **single, **safe, **limit}
 
 
 class WorkerProcess:
