@@ -1,6 +1,7 @@
 """The house: imports run downwards between the rooms, and in no circle between the files."""
 
 import ast
+import re
 import sys
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -125,3 +126,15 @@ def test_engines_are_imported_in_functions_only(engine: str) -> None:
 def test_no_module_is_called_after_nothing() -> None:
     for file in ROOT.rglob("*.py"):
         assert file.stem not in {"utils", "helpers", "common", "misc"}
+
+
+def test_every_place_that_contributing_names_is_there() -> None:
+    """The right column of its questions: a file of the package, one a line or several."""
+    page = (ROOT.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    questions = page.split("| question | place |")[1].split("\n\n")[0]
+    places = re.findall(r"`((?:\w+/)+[\w.]*)`", questions)
+    assert len(places) > 10
+    for place in places:
+        engines = ["mujoco", "pinocchio", "dart"] if "ENGINE" in place else [""]
+        for engine in engines:
+            assert (ROOT / place.replace("ENGINE", engine)).exists(), place

@@ -17,7 +17,7 @@ class UsageError(ValueError):
 
 def nearest(term: str, known: Iterable[str]) -> str:
     """Advice: the nearest valid name, or, where none is near, all of them."""
-    names = sorted(known)
+    names = sorted(set(known))
     close = difflib.get_close_matches(term, names, 1)
     return f"write {close[0]}" if close else f"give one of {', '.join(names)}"
 
