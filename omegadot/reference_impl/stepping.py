@@ -1,4 +1,4 @@
-"""A scheme stepped from a start to an end, with the steps kept that were asked for."""
+"""A scheme stepped from a start to an end, with the steps kept that were requested."""
 
 from __future__ import annotations
 

@@ -73,7 +73,9 @@ def start_session(config: pytest.Config) -> None:
         suite = Suite(selection, registry)
     except (AdapterError, ScenarioError, UsageError) as problem:
         raise pytest.UsageError(f"omegadot: {problem}") from None
-    config.pluginmanager.register(PytestSession(config, selection, suite, named), "omegadot-door")
+    config.pluginmanager.register(
+        PytestSession(config, selection, suite, named), "omegadot-session"
+    )
 
 
 class PytestSession:
