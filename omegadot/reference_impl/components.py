@@ -29,7 +29,7 @@ def apart(vector: Array) -> list[Number]:
 def together(parts: list[Number], like: Array) -> Array:
     """The vector (..., n) of n components, with the lanes and the number format of `like`.
 
-    The last of them tells floats from arrays; others may be constants of the system.
+    The last of them distinguishes floats from arrays; others may be constants of the system.
     """
     if type(parts[-1]) is float:
         return np.array(parts)
