@@ -23,7 +23,7 @@ ROOMS = {
     "diagnosis": {"harness", "gates", "workers", "adapters", "reference_impl", "scenarios"},
 }
 ROOMS["commands"] = set(ROOMS)
-# What a worker that serves one old engine has beside it.
+# What a worker that serves one old engine has with it.
 THIRD_PARTY = {
     "scenarios": {"numpy", "scipy", "pydantic", "pydantic_core", "defusedxml"},
     "reference_impl": {"numpy", "scipy"},

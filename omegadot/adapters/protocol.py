@@ -60,7 +60,7 @@ class Description:
     """What an engine is.
 
     conventions: how the engine itself keeps states (frames, orders), one clause each.
-    switched_off: defaults that spoil physics and were turned off for the ``physics`` setup.
+    switched_off: defaults that disturb the motion and were turned off for the ``physics`` setup.
     features: what it can do, of "free", "pivot", "gravity", "damping", "torque", "full_inertia",
     "offset_com", "forward_dynamics", "inverse_dynamics", "batch".
     """

@@ -22,7 +22,7 @@ class PageFormat(StrEnum):
 
 
 class Setup(StrEnum):
-    """Engines with what spoils physics switched off, or as they come."""
+    """Engines with the defaults that disturb the motion switched off, or as shipped."""
 
     physics = "physics"
     as_shipped = "as-shipped"

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import omegadot
 from omegadot.harness.usage import UsageError, nearest
 
-# The package alone is lent. Were its parent put on the path, the engine that is installed beside
+# The package alone is lent. Were its parent put on the path, the engine that is installed next to
 # it could be taken for the other one's.
 _SERVE = """\
 import importlib.util, sys
@@ -25,13 +25,13 @@ def worker_command(python: str) -> list[str]:
     return [python, "-c", _SERVE.format(init=omegadot.__file__)]
 
 
-def interpreters(arguments: Sequence[str]) -> dict[str, str]:
+def interpreters(pairs: Sequence[str]) -> dict[str, str]:
     """The interpreters of ``NAME=PATH`` arguments, by engine. Raises UsageError."""
     found: dict[str, str] = {}
-    for argument in arguments:
-        name, separator, path = argument.partition("=")
+    for pair in pairs:
+        name, separator, path = pair.partition("=")
         if not separator or not path:
-            raise UsageError(f"--python {argument}: give NAME=PATH, an engine and its interpreter.")
+            raise UsageError(f"--python {pair}: give NAME=PATH, an engine and its interpreter.")
         found[name] = path
     return found
 

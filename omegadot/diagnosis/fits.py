@@ -51,10 +51,10 @@ def _fit(match: Match, term: Acceleration) -> float | None:
     return k if match.fits(added, SLACK) else None
 
 
-def _as_text(what: str, factor: float, words: dict[int, str]) -> str:
+def _as_text(what: str, factor: float, phrases: dict[int, str]) -> str:
     nearest = round(factor)
-    if abs(factor - nearest) < 1e-9 and nearest in words:
-        return f"{what} {words[nearest]}"
+    if abs(factor - nearest) < 1e-9 and nearest in phrases:
+        return f"{what} {phrases[nearest]}"
     return f"{what} is scaled by {factor:.6g}"
 
 
@@ -70,12 +70,12 @@ def scaled_terms(match: Match) -> str:
         "the damping": (damping_torque(system, states), 0.0),
         "the torque of all loads": (torque(system, states), 0.0),
     }
-    words = {0: "is missing", -1: "has the wrong sign", 2: "counts twice"}
+    phrases = {0: "is missing", -1: "has the wrong sign", 2: "counts twice"}
     for what, (moment, gravity) in terms.items():
         k = _fit(match, _term(match, moment, gravity))
         if k is not None:
             over_mass = abs((1.0 + k) * float(system.body.mass) - 1.0) < 1e-9
-            text = _as_text(what, 1.0 + k, words)
+            text = _as_text(what, 1.0 + k, phrases)
             return f"{text}: it is divided by the mass" if over_mass else text
     k = _fit(match, _term(match, -w, 0.0))
     if k is not None:

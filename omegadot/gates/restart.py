@@ -20,7 +20,7 @@ from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.system import Array, State
 
 GATE = "scheme"
-METRIC = "begun_anew"
+METRIC = "restarted"
 
 
 def restart_of(sweep: Sweep) -> tuple[int, Sweep] | None:
@@ -40,7 +40,7 @@ def refused(reason: str) -> Row:
 
 
 def row(
-    truth: Truth, integrator: Integrator, sweep: Sweep, state: State, sample: int, anew: State
+    truth: Truth, integrator: Integrator, sweep: Sweep, state: State, sample: int, restarted: State
 ) -> Row:
     """The largest distance between the two runs, in parts of what rounding allows.
 
@@ -49,7 +49,7 @@ def row(
     """
     yardstick = truth.yardstick
     rest = State(*(values[sample:] for values in vars(state).values()))
-    apart = {c: yardstick.distance(c, rest, anew) for c in CHANNELS}
+    apart = {c: yardstick.distance(c, rest, restarted) for c in CHANNELS}
 
     def alike(growth: Array) -> Likeness:
         bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth)

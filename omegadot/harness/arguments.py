@@ -45,12 +45,12 @@ def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:
 
 
 def engine_choices(
-    wanted: Sequence[EngineLike], extra: Sequence[EngineLike] = ()
+    wanted: Sequence[EngineLike], extra: Sequence[EngineLike] = (), option: str = "--engine"
 ) -> list[EngineChoice]:
     """The engines given, by ``NAME[:INTEGRATOR]`` or by class; every one registered without any.
 
-    extra: engines of one's own, by class.  The same name may come several times with different
-    integrators. Raises UsageError.
+    extra: engines of one's own, by class.  option: by which they were given, for errors.  The same
+    name may come several times with different integrators. Raises UsageError.
     """
     known = registered()
     names = [e for e in wanted if isinstance(e, str) and not is_target(e, known)]
@@ -63,9 +63,7 @@ def engine_choices(
     for term in names:
         name, _, integrator = term.partition(":")
         if name not in known:
-            raise UsageError(
-                f"--engine {term}: there is no engine {name!r}; {nearest(name, known)}."
-            )
+            raise UsageError(f"{option} {term}: no such engine; {nearest(name, known)}.")
         picked.setdefault(name, []).append(integrator)
     picked |= {name: [""] for name in added if name not in picked}
     return [

@@ -77,7 +77,7 @@ class Engines:
             if choice.name in TRUTH:
                 raise NoTruthError(
                     f"worker of {choice.name}: {answer.outcome} ({answer.reason}), and without it "
-                    "nothing can be judged; give it more memory or time (--memory, --timeout)."
+                    f"nothing can be judged; {_advice(answer)}."
                 )
 
     def submit(self, name: str, call: Callable[[], Result]) -> Future[Result]:
@@ -95,3 +95,17 @@ class Engines:
     def deaths(self) -> list[tuple[str, str]]:
         """Which workers died, and how."""
         return self._pool.deaths()
+
+
+def _advice(answer: Answer) -> str:
+    """What to do about a worker that did not start, by how it ended."""
+    if answer.outcome == "timeout":
+        return "give it more time (--timeout)"
+    if "MemoryError" in answer.reason or "SIGKILL" in answer.reason:
+        return "give it more memory (--memory)"
+    if "ImportError" in answer.reason or "ModuleNotFoundError" in answer.reason:
+        return (
+            "a file in the current folder may hide a package of the same name: rename it, or run "
+            "in another folder"
+        )
+    return "correct what this message names"

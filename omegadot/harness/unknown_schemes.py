@@ -61,14 +61,14 @@ def rows_of_unknown(
     probe, steps = result.first_steps.get(integrator.name, (None, None))
     if probe is not None and steps is not None and steps.ok:
         found += vanishing_step.rows(system, probe, state_from(steps.result))
-    sample, anew = result.restarts.get((integrator.name, sweep.timestep), (0, None))
-    if anew is not None and anew.ok:
+    sample, restarted = result.restarts.get((integrator.name, sweep.timestep), (0, None))
+    if restarted is not None and restarted.ok:
         state = state_from(result.runs[integrator.name, sweep.timestep].result["state"])
-        rest = state_from(anew.result["state"])
+        rest = state_from(restarted.result["state"])
         if len(rest.angular_velocity) == len(sweep.times) - sample:
             found.append(restart.row(truth, integrator, sweep, state, sample, rest))
         else:
             found.append(restart.refused("it has another number of samples"))
-    elif anew is not None and anew.outcome == "raised":
-        found.append(restart.refused(anew.reason))
+    elif restarted is not None and restarted.outcome == "raised":
+        found.append(restart.refused(restarted.reason))
     return found

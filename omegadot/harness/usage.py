@@ -19,7 +19,10 @@ def nearest(term: str, known: Iterable[str]) -> str:
     """Advice: the nearest valid name, or, where none is near, all of them."""
     names = sorted(set(known))
     close = difflib.get_close_matches(term, names, 1)
-    return f"write {close[0]}" if close else f"give one of {', '.join(names)}"
+    if close:
+        return f"write {close[0]}"
+    *first, last = names
+    return f"choose {', '.join(first)} or {last}" if first else f"choose {last}"
 
 
 def check_setup(setup: object) -> None:

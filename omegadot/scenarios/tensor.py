@@ -24,7 +24,7 @@ Matrix = tuple[Row, Row, Row]
 def read_inertia(value: object, info: ValidationInfo) -> Matrix:
     """A 3x3 tensor in kg m^2: symmetric, positive definite, within the triangle inequality.
 
-    The last is not required beside ``allow_impossible_inertia = true``. Three numbers are the
+    The last is not required with ``allow_impossible_inertia = true``. Three numbers are the
     principal moments along the body axes. A tensor may be off symmetric by the rounding of
     ``R diag(I) R^T``; the two sides are then averaged.
     """

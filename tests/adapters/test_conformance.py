@@ -95,7 +95,7 @@ def cases(count: int, of: System, seed: int, fast: float) -> State:
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_answers_the_protocol_and_says_what_it_is(name: str) -> None:
+def test_answers_the_protocol_and_describes_itself(name: str) -> None:
     adapter = engine(name)
     reported = adapter.description
     assert isinstance(adapter, Adapter)
@@ -262,7 +262,7 @@ def test_a_run_logs_the_start_each_kth_step_and_the_last(name: str) -> None:
         assert np.array_equal(third.time, np.array([0, 3, 6, 7]) * 0.01)
         for first, second in zip(parts(every.state), parts(third.state), strict=True):
             assert len(second) == 4
-            # the exact solution's own steps depend on the times that are asked for
+            # the exact solution's own steps depend on the times that are requested
             assert np.max(np.abs(first[[0, 3, 6, 7]] - second)) <= 1e-13 * np.max(np.abs(first))
         assert attitude_angle(third.state.orientation[0], start.orientation) <= FEW * EPS
         for given, found in zip(parts(start)[1:], parts(third.state)[1:], strict=True):

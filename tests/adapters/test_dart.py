@@ -160,7 +160,7 @@ def test_dynamics_of_a_state_that_is_not_finite_are_nan() -> None:
 
 
 def test_the_force_of_inverse_dynamics_is_newtons() -> None:
-    """``F = m (a - g)``: the joint acceleration that is set is, in every version, the one asked."""
+    """``F = m (a - g)``: the joint acceleration set is, in all versions, the one requested."""
     of = system("full", "all")
     many, adapter = states(10, seed=17, fast=2.0), dart(of)
     wanted = np.random.default_rng(18).normal(size=(10, 2, 3))
@@ -183,7 +183,7 @@ def momentum_drift(found: State) -> float:
 
 
 def test_the_flip_at_a_millisecond_drifts_as_first_order_does() -> None:
-    """|H| grows by 2.3e-3 in 20 s: three equal first-order loops are not three votes."""
+    """|H| grows by 2.3e-3 in 20 s: three equal first-order loops are not independent."""
     start = spinning([0.01, 2.0, 0.01])
     found = dart(T_HANDLE).run(start, "semi-implicit", 0.001, 20_000, 500).state
     assert momentum_drift(found) == pytest.approx(2.3e-3, abs=0.05e-3)

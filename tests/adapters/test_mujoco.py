@@ -66,7 +66,7 @@ def test_description_names_engine_and_what_was_switched_off() -> None:
     assert MujocoAdapter("as-shipped").description.switched_off == ()
 
 
-def test_setups_set_the_flags_they_say() -> None:
+def test_setups_set_the_flags_they_declare() -> None:
     physics, shipped = MujocoAdapter("physics"), MujocoAdapter("as-shipped")
     for adapter in (physics, shipped):
         adapter.load(system())
@@ -92,7 +92,7 @@ def test_physics_holds_off_what_a_version_might_turn_on() -> None:
 
 @pytest.mark.parametrize("inertia", INERTIAS)
 @pytest.mark.parametrize("load", ["none", "pivot"])
-def test_model_is_read_back_as_it_was_asked(inertia: str, load: str) -> None:
+def test_model_is_read_back_as_it_was_requested(inertia: str, load: str) -> None:
     requested = system(inertia, load)
     (found,) = loaded(requested).model()
     assert found.mass == requested.body.mass
@@ -175,7 +175,7 @@ def test_states_come_back(seed: int, load: str) -> None:
         assert np.abs(back - sent).max() <= 8 * EPS * size
 
 
-def test_setting_a_state_starts_the_clock_anew() -> None:
+def test_setting_a_state_restarts_the_clock() -> None:
     adapter, many = loaded(system()), states(1)
     adapter.run(at(many, 0), "Euler", 0.1, 10, 1)
     adapter.set_state(at(many, 0))

@@ -275,7 +275,7 @@ def test_a_compiler_that_takes_long_or_dies_is_reported(
         bodies_of_mjcf(Path("it.xml"), "it.xml")
 
 
-def test_without_mujoco_an_mjcf_says_how_to_install_it(
+def test_without_mujoco_an_mjcf_states_how_to_install_it(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)

@@ -308,7 +308,7 @@ def energy_ratio(name: str) -> float:
     return float(energy[-1] / energy[0])
 
 
-def test_box_energy_tells_the_version() -> None:
+def test_box_energy_shows_the_version() -> None:
     explicit, midpoint, implicit = "1.0869", "1.0000", "0.9260"
     assert f"{energy_ratio('Euler'):.4f}" == explicit
     assert f"{energy_ratio('RK4'):.4f}" == "1.0000"
@@ -320,7 +320,7 @@ def test_box_energy_tells_the_version() -> None:
         assert f"{energy_ratio('discrete'):.4f}" == implicit
 
 
-def test_box_momentum_in_the_world_tells_the_order_of_rk4() -> None:
+def test_box_momentum_in_the_world_shows_the_order_of_rk4() -> None:
     """The energy cannot see it: it is the same in both."""
     of, initial = box()
     coarse, fine = (

@@ -1,4 +1,4 @@
-"""The reference and the exact solution, asked as engines are."""
+"""The reference and the exact solution, run as engines are."""
 
 from __future__ import annotations
 

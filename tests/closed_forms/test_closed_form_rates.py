@@ -118,7 +118,7 @@ def test_rates_refuse_what_they_do_not_hold_for() -> None:
 
 
 def test_no_top_without_symmetry() -> None:
-    """A lever beside the axis, or two moments an eps apart, leave the motion to the series."""
+    """A lever off the axis, or two moments an eps apart, leave the motion to the series."""
     gravity, lever = np.array([0.0, 0.0, -9.81]), np.array([0.0, 0.0, 0.3])
     initial = _named("top").initial
     for inertia, center in (

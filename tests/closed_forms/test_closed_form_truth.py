@@ -137,7 +137,7 @@ def test_every_case_has_the_form_it_should() -> None:
 
 
 def test_momentum_stays_over_a_thousand_periods() -> None:
-    """|H| in the world to rounding at once: catches a phase of ω that parts from the attitude's."""
+    """|H| in the world to rounding at once: catches an ω out of phase with the attitude."""
     case = next(case for case in FREE if case.name == "near-middle")
     period = free_rotation_rates(case.system, case.initial).period
     state = closed_form_of(case.system, case.initial)(np.linspace(-1000, 1000, 4001) * period)

@@ -78,7 +78,7 @@ class Result:
 
 
 def run_score(capsys: pytest.CaptureFixture[str], *arguments: object) -> Result:
-    """``omegadot score`` with these words, in this process."""
+    """``omegadot score`` with these arguments, in this process."""
     before = sys.argv
     sys.argv = ["omegadot", "score", *map(str, arguments)]
     try:

@@ -102,14 +102,16 @@ def test_a_figure_that_is_lost_is_a_change(now: Figures) -> None:
 def test_a_change_names_figure_size_versions_and_meaning() -> None:
     result = compare(CHECK, {"sphere": STORED}, moved(omega=1e-3), "4.0.0")
     assert result.verdict == "fail"
-    said = "mujoco 3.17.0 -> 4.0.0: omega error_max went from 2.50e-3 to 2.50e-6 (1.00e3 times less"
-    assert result.message.startswith(said)
+    stated = (
+        "mujoco 3.17.0 -> 4.0.0: omega error_max went from 2.50e-3 to 2.50e-6 (1.00e3 times less"
+    )
+    assert result.message.startswith(stated)
     assert "omega error shrank 1.0e3x: the integrator changed" in result.message
     assert compare(CHECK, {"sphere": STORED}, moved(), "4.0.0").verdict == "pass"
 
 
 @pytest.mark.parametrize(
-    ("now", "said"),
+    ("now", "stated"),
     [
         (moved("lie-rk4", attitude=1e-3), "declared lie-rk4-naive then, lie-rk4 now"),
         (moved(attitude=1e-3), "the update of the attitude changed"),
@@ -117,10 +119,10 @@ def test_a_change_names_figure_size_versions_and_meaning() -> None:
         (moved(omega=math.nan), "diverges"),
     ],
 )
-def test_what_a_change_probably_means(now: ScenarioFigures, said: str) -> None:
+def test_what_a_change_probably_means(now: ScenarioFigures, stated: str) -> None:
     was = STORED.runs[RUN]
     found = changes(was, now.runs[RUN])
-    assert said in meaning(was, now.runs[RUN], found, same_version=False)
+    assert stated in meaning(was, now.runs[RUN], found, same_version=False)
     assert "the version is the same" in meaning(was, now.runs[RUN], found, same_version=True)
 
 

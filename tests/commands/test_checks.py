@@ -1,4 +1,4 @@
-"""The checks: what they are called, what they say, and `omegadot check`."""
+"""The checks: what they are called, what they report, and `omegadot check`."""
 
 import json
 from dataclasses import replace
@@ -54,7 +54,7 @@ def test_coverage_counts_scenarios_gates_and_checks() -> None:
     assert coverage([MUJOCO.whole], checks)[0].startswith("mujoco 4.0.0: ")
 
 
-def test_a_roster_survives_the_way_to_another_process() -> None:
+def test_a_registry_survives_the_way_to_another_process() -> None:
     registry = Registry((MUJOCO,), {"dart": ("not-installed", "No module named 'dartpy'")})
     assert Registry.from_json(registry.to_json()) == registry
 
@@ -130,7 +130,7 @@ def test_a_sound_engine_passes_every_check(tmp_path: Path) -> None:
     assert "mujoco-RK4-quick-0.005-trajectory" in ids
 
 
-def test_a_wrong_engine_fails_and_is_told_why(tmp_path: Path) -> None:
+def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
     terms = (f"{WRONG}:NoGyroscopic", "--scenario", quick_scenario(tmp_path))
     result = omegadot("check", *terms, folder=tmp_path)
     assert result.code == 1, result.err

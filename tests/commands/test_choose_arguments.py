@@ -14,7 +14,6 @@ from omegadot.commands.choose.requirements import Requirements, merged
 from omegadot.commands.choose.requirements_file import read_requirements
 from omegadot.commands.units import quantity
 from omegadot.harness.usage import UsageError
-from omegadot.scenarios import ScenarioError
 
 QUANTITIES = [
     ("0.1deg", "angle", 0.1 * math.pi / 180),
@@ -37,7 +36,7 @@ def test_quantities(text: object, kind: str, expected: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "kind", "statement"),
+    ("text", "kind", "message"),
     [
         ("0.1dge", "angle", "write deg"),
         ("0.1DEG", "angle", "write deg"),
@@ -52,10 +51,10 @@ def test_quantities(text: object, kind: str, expected: float) -> None:
         ([1], "angle", "write it as"),
     ],
 )
-def test_bad_quantities_are_told_in_one_sentence(text: object, kind: str, statement: str) -> None:
+def test_bad_quantities_are_refused_in_one_sentence(text: object, kind: str, message: str) -> None:
     with pytest.raises(UsageError) as caught:
         quantity(text, kind, "--it")
-    assert statement in str(caught.value)
+    assert message in str(caught.value)
     assert str(caught.value).startswith("--it")
     assert "\n" not in str(caught.value)
 
@@ -73,7 +72,7 @@ def test_the_line_wins_over_the_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "statement"),
+    ("text", "message"),
     [
         ("atitude = 1", "write attitude"),
         ("attitude = 1\nspeed = 2", "no requirement 'speed'"),
@@ -89,12 +88,12 @@ def test_the_line_wins_over_the_file(tmp_path: Path) -> None:
         ("attitude = 1\n[attitude.x]\ny=1", "not valid TOML"),
     ],
 )
-def test_bad_files_are_told_in_one_sentence(tmp_path: Path, text: str, statement: str) -> None:
+def test_bad_files_are_refused_in_one_sentence(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "need.toml"
     path.write_text(text)
     with pytest.raises(UsageError) as caught:
         merged(read_requirements(path), {}, str(path))
-    assert statement in str(caught.value)
+    assert message in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
@@ -104,20 +103,20 @@ def engine(**fields: object) -> Description:
 
 
 @pytest.mark.parametrize(
-    ("wanted", "statement"),
+    ("wanted", "message"),
     [
         ({"precision": "single"}, "double"),
         ({"features": ("inverse-dynamics",)}, "inverse dynamics"),
         ({"licences": ("Apache-2.0", "BSD-2-Clause")}, "MIT"),
     ],
 )
-def test_engines_are_refused_by_what_they_are(wanted: dict[str, object], statement: str) -> None:
+def test_engines_are_refused_by_what_they_are(wanted: dict[str, object], message: str) -> None:
     requested = Requirements({"attitude": 1.0}, {"attitude": "1"}, **wanted)  # type: ignore[arg-type]
     (clause,) = unmet(engine(), requested)
-    assert statement in clause
+    assert message in clause
 
 
-def test_engines_that_are_as_asked_are_not_refused() -> None:
+def test_engines_that_are_as_required_are_not_refused() -> None:
     requested = Requirements(
         {"attitude": 1.0}, {"attitude": "1"}, precision="double", features=("pivot",),
         licences=("mit",), python="3.12",
@@ -160,7 +159,7 @@ def test_a_minor_version_is_admitted_where_a_release_of_it_is(
 
 
 @pytest.mark.parametrize("name", ["mujoco", "pinocchio", "dart"])
-def test_what_the_packages_say_of_python_is_found(name: str) -> None:
+def test_what_the_packages_state_of_python_is_found(name: str) -> None:
     old = Requirements({"attitude": 1.0}, {"attitude": "1"}, python="3.1")
     found = Description(name, "1", ())
     assert "its package requires" in unmet(found, old)[0]
@@ -190,8 +189,12 @@ def test_a_body_takes_a_scenarios_motion_and_the_horizon_is_the_users(tmp_path: 
     assert all(sweep.timestep <= 0.015 for sweep in case.sweeps)
 
 
-def test_nothing_to_simulate_is_told() -> None:
+def test_nothing_to_simulate_is_an_error() -> None:
     with pytest.raises(UsageError, match="--body"):
         cases_of(Motion())
-    with pytest.raises(ScenarioError, match="duration"):
-        cases_of(Motion(["t-handle"], duration=1e99))
+    with pytest.raises(UsageError, match=r"^--duration 1e\+12 needs 5e\+13 steps of 0.02 s; the"):
+        cases_of(Motion(["t-handle"], duration=1e12))
+    with pytest.raises(
+        UsageError, match=r"needs 2.5e\+07 samples of 0.04 s; the limit is 10,000,000"
+    ):
+        cases_of(Motion(["t-handle"], duration=1e6))

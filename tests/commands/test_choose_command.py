@@ -76,7 +76,7 @@ def test_what_is_recommended_holds_and_a_tenth_more_does_not(chosen: tuple[Path,
         assert not row["larger"]["passes"]
 
 
-def test_those_that_are_out_say_by_how_much(chosen: tuple[Path, Result]) -> None:
+def test_those_that_are_out_show_by_how_much(chosen: tuple[Path, Result]) -> None:
     folder, result = chosen
     scenario = load_scenario(folder / "quick.toml")
     out = rows(result, "out")
@@ -125,7 +125,7 @@ def test_axe_finds_nothing_on_the_page(
         assert violations(browser, chosen[0] / "out" / "choice.html", **look) == []
 
 
-def test_a_choice_beside_a_run_is_a_section_of_its_report(tmp_path: Path) -> None:
+def test_a_choice_in_the_folder_of_a_run_is_a_section_of_its_report(tmp_path: Path) -> None:
     scenario = quick_scenario(tmp_path)
     assert omegadot("run", scenario, "--engine", "mujoco:RK4", folder=tmp_path).code == 0
     run = tmp_path / "omegadot-run"
@@ -195,7 +195,7 @@ def test_nothing_qualifies(tmp_path: Path) -> None:
     assert "double precision cannot verify the requested attitude error" in result.out
 
 
-def test_a_crash_is_told_from_a_miss(tmp_path: Path) -> None:
+def test_a_crash_is_distinguished_from_a_miss(tmp_path: Path) -> None:
     quick_scenario(tmp_path)
     arguments = ["quick.toml", "--adapter", f"{FAULTY}:Killed", "--engine", "killed"]
     arguments += ["--attitude", "1e-3", "--budget", "0.2"]
@@ -206,7 +206,7 @@ def test_a_crash_is_told_from_a_miss(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "statement"),
+    ("arguments", "message"),
     [
         ([], "no accuracy is required"),
         (["--attitude", "1"], "nothing to simulate"),
@@ -225,14 +225,14 @@ def test_bad_input_is_one_sentence(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
     arguments: list[str],
-    statement: str,
+    message: str,
 ) -> None:
     monkeypatch.setattr("sys.argv", ["omegadot", "choose", *arguments])
     with pytest.raises(SystemExit) as left:
         main()
     assert left.value.code == 2
     text = capsys.readouterr().err
-    assert statement in text
+    assert message in text
     assert text.count("\n") == 1
 
 

@@ -76,7 +76,7 @@ def test_trajectories_stand_at_the_engines_own_steps(small_run: Path) -> None:
     assert set(table["time"]) <= set(exact["time"])
 
 
-def test_all_gates_hold_and_say_why(small_run: Path) -> None:
+def test_all_gates_hold_with_a_reason(small_run: Path) -> None:
     run = json.loads((small_run / "run.json").read_text())
     for task in run["tasks"]:
         assert set(task["gates"].values()) <= {"pass", "info"}, task
@@ -213,7 +213,7 @@ def test_a_memory_limit_that_is_not_kept_is_reported(tmp_path: Path) -> None:
     assert "--memory is ignored" in done.stderr
 
 
-def test_help_and_version_are_quick_to_ask(tmp_path: Path) -> None:
+def test_help_and_version_are_quick(tmp_path: Path) -> None:
     assert "0.1.0" in omegadot("--version", folder=tmp_path).out
     assert "scenarios" in omegadot("--help", folder=tmp_path).out
     assert "--timestep" in omegadot("run", "--help", folder=tmp_path).out

@@ -110,7 +110,7 @@ def test_a_step_that_is_wrong_is_a_regression(run_of, tmp_path: Path) -> None:
     assert text.out.splitlines()[-1].startswith("Worse: fly ")
 
 
-def test_a_step_that_is_mended_is_none(run_of) -> None:
+def test_a_step_that_is_fixed_is_no_regression(run_of) -> None:
     """The scheme of first order may lose by it: two errors that made up for each other."""
     found = compared(run_of(version="2.0", late=1.001), run_of())
     assert all((c["was"], c["now"]) != ("pass", "fail") for c in found["worse"])
@@ -123,9 +123,9 @@ def test_an_engine_that_raises_where_it_ran_is_a_regression(run_of) -> None:
     assert {(c["was"], c["now"]) for c in found["worse"]} == {("ok", "raised")}
     assert len(found["worse"]) == 6
     assert "the solver gave up" in found["worse"][0]["why"]
-    mended = compare(run_of(crash=True), run_of())
-    assert as_markdown(mended).startswith("### Better: fly ")
-    assert not mended.regressed
+    fixed = compare(run_of(crash=True), run_of())
+    assert as_markdown(fixed).startswith("### Better: fly ")
+    assert not fixed.regressed
 
 
 def test_bands_are_those_of_the_baselines(run_of) -> None:

@@ -116,15 +116,15 @@ def test_two_columns_of_one_name_matter_where_one_is_used():
 
 
 @pytest.mark.parametrize(
-    ("text", "statement"),
+    ("text", "message"),
     [
         ("t;wx\n0;1,5\n1;2.5\n", "line 2: 'wx' is '1,5'; write it with a decimal point"),
         ("t;wx\n" + "0,5;1,5\n" * 60 + "1,5;2.5\n", "line 62: 'wx' is '2.5'; write it with a dec"),
         ("t;wx\n1,000;1,500\n2,000;3,000\n", "'1,000' may be 1.000 or 1000; write it with a"),
     ],
 )
-def test_decimal_signs_that_disagree_are_refused(text, statement):
-    with pytest.raises(TraceError, match=statement):
+def test_decimal_signs_that_disagree_are_refused(text, message):
+    with pytest.raises(TraceError, match=message):
         csv_table("trace", text.encode()).column("wx")
 
 

@@ -91,7 +91,7 @@ def test_only_failures_are_excused() -> None:
     assert with_exceptions(Check("mujoco", "sphere", "model"), PASSED, known) == PASSED
 
 
-def test_they_stand_beside_an_adapter(tmp_path: Path) -> None:
+def test_they_stand_next_to_an_adapter(tmp_path: Path) -> None:
     (tmp_path / "mine.exceptions.toml").write_text(declaration("mine-*", engine="mine"))
     target = f"{tmp_path / 'mine.py'}:MineAdapter"
     (found,) = exceptions_of([EngineChoice("mine", target)], [])
@@ -99,7 +99,7 @@ def test_they_stand_beside_an_adapter(tmp_path: Path) -> None:
     assert exceptions_of([EngineChoice("other", target)], []) == []
 
 
-def test_they_stand_beside_a_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_they_stand_next_to_a_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "an_engine_with_exceptions"
     package.mkdir()
     # Importing it would fail: it is the worker's to import, not ours.

@@ -91,7 +91,7 @@ def test_sound_engines_are_not_accused(pool: Pool, engine: str) -> None:
         assert sentences(prepared, judged) == []
 
 
-def test_there_are_enough_faults_and_each_has_its_words() -> None:
+def test_there_are_enough_faults_and_each_has_its_phrases() -> None:
     assert len(ORDERED) >= 38
     assert {fault.kind for fault in ORDERED} == {
         *("model", "convention", "equation", "stepping", "logging", "state")

@@ -62,7 +62,7 @@ def test_a_row_of_the_matrix() -> None:
     assert row.published["MuJoCo"] is None
 
 
-def test_the_page_has_a_line_for_every_fault_and_says_how_it_was_made() -> None:
+def test_the_page_has_a_line_for_every_fault_and_states_how_it_was_made() -> None:
     row = detection(FAULTS["MassSlightlyOff"], "reference", Pool(3), 1)
     matrix = EngineMatrix("reference", "1", ("rk4-quaternion",), 2, 0, 0, ("Left",), (), (row,))
     page = markdown(Settings(("reference",), 1, 3), [matrix])
@@ -86,7 +86,7 @@ def test_the_kept_page_is_of_all_the_faults() -> None:
 def test_the_command_refuses_other_engines(tmp_path: Path) -> None:
     result = omegadot("faults", "--engine", "exact", folder=tmp_path)
     assert result.code == 2
-    assert "--engine exact: faults go over" in result.err
+    assert "--engine exact: no such engine; choose dart" in result.err
 
 
 @pytest.mark.parametrize("form", ["json", "text"])

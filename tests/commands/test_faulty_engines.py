@@ -57,7 +57,7 @@ def test_a_failing_run_costs_only_its_own_tasks(
     assert set(whole.group_by("integrator").len()["len"]) == {51}
 
 
-def test_the_last_words_of_a_dead_worker_are_kept(tmp_path: Path) -> None:
+def test_the_last_output_of_a_dead_worker_are_kept(tmp_path: Path) -> None:
     run_faulty("Killed", tmp_path)
     run = json.loads((tmp_path / "out" / "run.json").read_text())
     reasons = {t["reason"] for t in run["tasks"] if t["outcome"] == "crashed"}
@@ -88,7 +88,7 @@ def test_unsupported_is_neither_a_pass_nor_a_failure(tmp_path: Path) -> None:
     ("name", "outcome", "reason"),
     [("Unstartable", "raised", "no licence found"), ("Missing", "not-installed", "No module")],
 )
-def test_an_engine_that_does_not_start_is_said_so(
+def test_an_engine_that_does_not_start_is_reported(
     name: str, outcome: str, reason: str, tmp_path: Path
 ) -> None:
     result = run_faulty(name, tmp_path)

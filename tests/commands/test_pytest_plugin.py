@@ -109,7 +109,7 @@ def test_baselines_are_gathered_from_all_workers(folder: Path) -> None:
     assert "2 scenarios x 6 gates, 26 checks" in again.out
 
 
-def test_checks_stand_beside_tests_where_these_are_named(folder: Path) -> None:
+def test_checks_stand_next_to_tests_where_these_are_named(folder: Path) -> None:
     (folder / "test_mine.py").write_text("def test_mine(): pass\n")
     arguments = quick("--engine", "reference:lie-rk4", "--co", "-q")
     assert "11 tests collected" in run_pytest(*arguments, folder=folder).out

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from score_line import run_score
 
-from omegadot.commands.score.beside import exact_trajectory
 from omegadot.commands.score.convention import axes_of
+from omegadot.commands.score.exact_trajectory import exact_trajectory
 from omegadot.commands.score.judged import Making, judge_trace
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.score import case_given
@@ -65,7 +65,7 @@ class Written:
     offset: float
 
     def options(self):
-        judgement = {
+        settings = {
             "time-unit": self.time,
             "angle-unit": self.angle,
             "rate-unit": self.rate,
@@ -78,10 +78,10 @@ class Written:
             "time-offset": self.offset,
         }
         if self.attitude in ("wxyz", "xyzw"):
-            judgement["quaternion"] = self.attitude
+            settings["quaternion"] = self.attitude
         elif self.attitude != "matrix":
-            judgement["euler"] = self.attitude
-        return judgement
+            settings["euler"] = self.attitude
+        return settings
 
     def columns(self):
         group = {"wxyz": "q=A1,A2,A3,A4", "xyzw": "q=A1,A2,A3,A4"}
@@ -203,7 +203,7 @@ def test_a_wrong_declaration_is_not_at_the_floor(thrown, tmp_path, part):
     assert any(np.max(e) > 1e-3 for e in found.measured.error.values())
 
 
-def test_a_map_says_what_the_options_say_and_they_come_first(thrown, tmp_path, capsys):
+def test_a_map_equals_the_options_and_these_come_first(thrown, tmp_path, capsys):
     scenario, case, exact = thrown
     path, mapped = tmp_path / "written.csv", tmp_path / "map.toml"
     write(path, RIGHT, case, exact)

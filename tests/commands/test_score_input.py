@@ -1,4 +1,4 @@
-"""What is wrong with a trace or its words is one sentence, exit code 2, and nothing is written."""
+"""A fault of a trace or an option is one sentence, exit code 2, and nothing is written."""
 
 import numpy as np
 import polars as pl
@@ -38,7 +38,7 @@ def edited(line, cell, text):
 
 
 @pytest.mark.parametrize(
-    ("edit", "judgement"),
+    ("edit", "message"),
     [
         (edited(4, 2, "nan"), "line 5: 'q' is nan"),
         (edited(4, 2, "-inf"), "line 5: 'q' is -inf"),
@@ -59,14 +59,14 @@ def edited(line, cell, text):
         (lambda rows: [r.replace(".", ",").replace(",", ";", 0) for r in rows], "columns"),
     ],
 )
-def test_bad_rows_are_named(tmp_path, capsys, edit, judgement):
+def test_bad_rows_are_named(tmp_path, capsys, edit, message):
     path, rows = lines(tmp_path)
     path.write_text("\n".join(edit(rows)) + "\n")
-    assert judgement in refused(tmp_path, capsys, path)
+    assert message in refused(tmp_path, capsys, path)
 
 
 @pytest.mark.parametrize(
-    ("content", "judgement"),
+    ("content", "message"),
     [
         (b"", "is empty"),
         (b" \n\n", "is empty"),
@@ -77,10 +77,10 @@ def test_bad_rows_are_named(tmp_path, capsys, edit, judgement):
         (b"hello world\nthis is no table\n", "no line of numbers"),
     ],
 )
-def test_what_is_no_table_is_said(tmp_path, capsys, content, judgement):
+def test_what_is_no_table_is_refused(tmp_path, capsys, content, message):
     path = tmp_path / "trace.csv"
     path.write_bytes(content)
-    assert judgement in refused(tmp_path, capsys, path)
+    assert message in refused(tmp_path, capsys, path)
 
 
 def test_a_truncated_parquet_and_one_of_texts(tmp_path, capsys):
@@ -106,7 +106,7 @@ W = ("--scenario", BRICK, "--column", "w=p,q,r")
 
 
 @pytest.mark.parametrize(
-    ("arguments", "judgement"),
+    ("arguments", "message"),
     [
         ((*W, "--angle-unit", "deg"), "looks like deg/s; give --rate-unit deg/s"),
         ((*W, "--rate-unit", "deg/s"), "looks like deg; give --angle-unit deg"),
@@ -129,33 +129,34 @@ W = ("--scenario", BRICK, "--column", "w=p,q,r")
         ((*MAPPED, "--integrator-scheme", "rk4"), "there is no such scheme"),
         ((*MAPPED, "--timestep", "0.3"), "stands at no whole number of steps"),
         ((*MAPPED, "--timestep", "-1"), "not a positive number"),
-        ((*MAPPED, "--name", "exact"), "an engine is called so"),
-        ((*MAPPED, "--with", "bullet3"), "there is no engine"),
+        ((*MAPPED, "--name", ""), "--name is empty"),
+        ((*MAPPED, "--name", "exact"), "an engine has this name"),
+        ((*MAPPED, "--with", "bullet3"), "--with bullet3: no such engine; choose dart"),
         (("--scenario", "nesc-checkcase-3"), "nesc-checkcase-2"),
         (("--scenario", BRICK, "--column", "q=p,q,r,yaw"), "|q| is"),
         ((*MAPPED, "--map", "none.toml"), "--map none.toml: not readable"),
     ],
 )
-def test_wrong_words_are_told(tmp_path, capsys, arguments, judgement):
+def test_wrong_options_are_refused(tmp_path, capsys, arguments, message):
     path, _ = lines(tmp_path)
-    assert judgement in refused(tmp_path, capsys, path, *arguments)
+    assert message in refused(tmp_path, capsys, path, *arguments)
 
 
 @pytest.mark.parametrize(
-    ("text", "judgement"),
+    ("text", "message"),
     [
-        ("angle-unit = 3", "angle-unit is 3, a text was expected"),
+        ("angle-unit = 3", "angle-unit is 3; give a text"),
         ("angle_unit = 'deg'", "write angle-unit"),
         ("columns = 3", "columns must be a table"),
         ("[columns]\nw = [1, 2]", "give a column's name"),
         ("a = ", "not valid TOML"),
     ],
 )
-def test_a_wrong_map_is_told(tmp_path, capsys, text, judgement):
+def test_a_wrong_map_is_refused(tmp_path, capsys, text, message):
     path, _ = lines(tmp_path)
     mapped = tmp_path / "map.toml"
     mapped.write_text(text)
-    assert judgement in refused(tmp_path, capsys, path, "--scenario", BRICK, "--map", mapped)
+    assert message in refused(tmp_path, capsys, path, "--scenario", BRICK, "--map", mapped)
 
 
 def test_a_folder_of_something_else_is_left_alone(tmp_path, capsys):

@@ -54,7 +54,7 @@ def test_errors_of_a_scheme_are_those_of_an_independent_computation(score, step)
 
 
 @pytest.mark.parametrize("shift", [0.00032, -0.002, 0.4])
-def test_a_late_trace_is_told_late(score, shift):
+def test_a_late_trace_is_reported_late(score, shift):
     late = tumble(np.clip(TIMES - shift, 0.0, None))
     start = 0 if shift < 0 else int(np.ceil(shift / 0.1)) + 1
     found = score(TIMES[start:], late[start:]).json["shift"]
@@ -64,12 +64,12 @@ def test_a_late_trace_is_told_late(score, shift):
     assert found["after"] < 1e-10 < 1e-6 < found["before"]
 
 
-def test_an_integrator_s_error_is_not_told_late(score):
+def test_an_integrator_s_error_is_not_reported_late(score):
     found = score(TIMES, runge_kutta(0.1, 300)).json["shift"]
     assert not found["explains"]
 
 
-def test_noise_is_told_noise_and_not_late(score):
+def test_noise_is_reported_as_noise_and_not_late(score):
     states = tumble(TIMES)
     noise = 1e-5 * np.random.default_rng(3).standard_normal((301, 3))
     states[:, :3] += noise
@@ -79,7 +79,7 @@ def test_noise_is_told_noise_and_not_late(score):
     )
     assert not found["shift"]["explains"]
     assert found["shift"]["noise"] == pytest.approx(1e-5, rel=0.1)
-    assert any("not the scenario's state" in judgement for judgement in found["sentences"])
+    assert any("not the scenario's state" in line for line in found["sentences"])
 
 
 @pytest.mark.parametrize("form", ["%.4f", "%.8f", "%.7g", "%.3e"])
@@ -119,13 +119,13 @@ def test_another_scheme_than_declared_fails_and_is_named(score):
     arguments = ("--integrator-scheme", "lie-rk4", "--timestep", "0.1")
     result = score(TIMES, runge_kutta(0.1, 300), *arguments)
     assert result.code == 1
-    assert any("equals rk4-quaternion" in judgement for judgement in result.json["sentences"])
+    assert any("equals rk4-quaternion" in line for line in result.json["sentences"])
 
 
 def test_a_step_alone_has_the_scheme_named_but_nothing_green(score):
     result = score(TIMES, runge_kutta(0.1, 300), "--timestep", "0.1")
     assert result.code == 0
-    assert any("equals rk4-quaternion" in judgement for judgement in result.json["sentences"])
+    assert any("equals rk4-quaternion" in line for line in result.json["sentences"])
     assert {c["verdict"] for c in result.json["channels"].values()} == {"info"}
 
 
@@ -178,7 +178,7 @@ def test_omega_dot_is_held_against_the_equation(tmp_path, capsys):
     assert verdicts == ["pass", "info"]
 
 
-def test_an_engine_stands_beside_the_trace(score, tmp_path):
+def test_an_engine_runs_with_the_trace(score, tmp_path):
     arguments = ("--with", "reference:rk4-quaternion", "--name", "elsewhere")
     result = score(TIMES, runge_kutta(0.1, 300), *arguments)
     engines = {task["engine"] for task in result.json["tasks"]}
@@ -195,7 +195,7 @@ def test_a_scheme_from_a_rounded_start_is_explained_but_not_green(score):
     assert result.code == 0
     found = result.json["channels"]
     assert {(c["kind"], c["verdict"]) for c in found.values()} == {("explained", "info")}
-    assert any("not the scenario's state" in judgement for judgement in result.json["sentences"])
+    assert any("not the scenario's state" in line for line in result.json["sentences"])
     # Noise starts elsewhere as well, and no start explains it.
     states[:, :3] += 1e-6 * np.random.default_rng(3).standard_normal((301, 3))
     assert score(TIMES, states, *arguments).code == 1

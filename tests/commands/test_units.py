@@ -72,7 +72,7 @@ def test_a_unit_of_something_else_is_refused_in_a_sentence(named, kind):
         assert unit_named(unit, kind, "--it") == unit
         return
     with pytest.raises(
-        UsageError, match=r"^--it: .* is no unit of an? [a-z ]+; (write|give one of) "
+        UsageError, match=r"^--it: .* is no unit of an? [a-z ]+; (write|choose) "
     ) as caught:
         unit_named(unit, kind, "--it")
     assert str(caught.value).count(". ") == 0

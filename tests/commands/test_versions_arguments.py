@@ -72,7 +72,7 @@ def test_ranges_have_both_ends_and_no_trial_releases() -> None:
     assert Span("6.18.0", "").of(RELEASES) == ["6.18.0", "6.18.0.post1", "7.0"]
 
 
-def test_words_are_versions_ranges_and_interpreters() -> None:
+def test_arguments_are_versions_ranges_and_interpreters() -> None:
     python = sys.executable
     requested = requested_releases(
         ["7.0", "6.16.2..6.17.0", f"6.17.1={python}", "6.17.0"], releases
@@ -97,7 +97,7 @@ def test_words_are_versions_ranges_and_interpreters() -> None:
         (["", "2.0"], "an empty version"),
     ],
 )
-def test_wrong_words_are_one_sentence(names: list[str], text: str) -> None:
+def test_wrong_arguments_are_one_sentence(names: list[str], text: str) -> None:
     with pytest.raises(UsageError) as caught:
         requested_releases(names, releases)
     assert text in str(caught.value)
@@ -172,10 +172,10 @@ NAMES = [
         ("", []),
     ],
 )
-def test_metrics_are_meant_by_their_words_in_any_order(names: str, found: list[int]) -> None:
+def test_metrics_are_found_by_their_terms_in_any_order(names: str, found: list[int]) -> None:
     assert matching(names, NAMES, "mujoco") == [NAMES[n] for n in found]
 
 
-def test_the_word_that_no_metric_has_is_named() -> None:
+def test_the_term_that_no_metric_has_is_named() -> None:
     assert unknown_metric("order attitude RK5", NAMES) == ["rk5"]
     assert unknown_metric("orders attitude", NAMES) == []

@@ -83,7 +83,7 @@ def test_what_is_found_is_there(values: list[str]) -> None:
         assert found.steps
 
 
-def test_of_an_integrator_that_appears_nothing_else_is_told() -> None:
+def test_of_an_integrator_that_appears_no_other_change_is_reported() -> None:
     there = ("integrator", "discrete")
     own = {("scheme", "discrete", "free"): Figure("unknown"), there: Figure("there")}
     one = Portrait("1.0", integrators=["RK4"])
@@ -93,9 +93,9 @@ def test_of_an_integrator_that_appears_nothing_else_is_told() -> None:
     assert [(change.name, change.after) for change in vanished] == [(there, None)]
 
 
-def test_what_was_asked_in_vain_says_nothing_of_a_change() -> None:
+def test_what_is_not_reported_is_no_change() -> None:
     frame = ("convention", "velocity frame")
-    one = Portrait("1.0", untold=frozenset({"convention"}))
+    one = Portrait("1.0", unreported=frozenset({"convention"}))
     other = Portrait("1.1", figures={frame: Figure("body axes")})
     assert changes_between(one, other) == []
     assert len(changes_between(Portrait("1.0"), other)) == 1
@@ -114,7 +114,7 @@ def test_paces_are_apart_where_their_spreads_do_not_touch() -> None:
     assert pace_of([]) is None
 
 
-def test_a_word_that_no_metric_has_is_taught() -> None:
+def test_a_term_that_no_metric_has_is_named() -> None:
     names = [NAME, ("convention", "velocity frame")]
     text = _no_such("convention attitude", names)
     assert "no metric has all of these terms in its name" in text

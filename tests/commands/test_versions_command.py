@@ -1,4 +1,4 @@
-"""``omegadot versions`` finds what changed between releases, and says what it cannot tell."""
+"""``omegadot versions`` finds what changed between releases, and what it cannot determine."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def seen(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Any]:
     return folder / "out", result.json
 
 
-def test_a_bisection_in_which_nothing_runs_says_so(tmp_path: Path) -> None:
+def test_a_bisection_in_which_nothing_runs_reports_it(tmp_path: Path) -> None:
     result = versions(
         tmp_path, *arguments(tmp_path, *FAULTY[:2]), "--bisect", "order", "--out", "out"
     )
@@ -105,7 +105,7 @@ def test_changes_are_found_where_they_are(seen: tuple[Path, Any]) -> None:
     assert not any(":second:" in metric for metric in at_4)
 
 
-def test_versions_that_cannot_be_asked_are_outcomes(seen: tuple[Path, Any]) -> None:
+def test_versions_that_cannot_be_measured_are_outcomes(seen: tuple[Path, Any]) -> None:
     _, record = seen
     outcomes = {v["version"]: (v["outcome"], v["reason"]) for v in record["versions"]}
     assert all(outcomes[version][0] == "ok" for version in ALL[1:])
@@ -127,7 +127,7 @@ def test_the_page_and_the_record_are_written(seen: tuple[Path, Any]) -> None:
     assert not list(folder.glob(".*"))
 
 
-def test_text_and_markdown_say_the_same(
+def test_text_and_markdown_agree(
     seen: tuple[Path, Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
     sheet = sheet_of(seen[1])
@@ -196,7 +196,9 @@ def test_bisect_names_the_releases(
     assert all(step["changes"] for step in found)
 
 
-def test_bisect_of_what_stays_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bisect_of_what_stays_reports_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     requested = looked(tmp_path, *ALL, bisect="default timestep")
     assert printed("text", **requested, out=tmp_path / "out") == 1
     message = capsys.readouterr().out
@@ -245,15 +247,15 @@ def test_wrong_usage_is_one_sentence(tmp_path: Path, more: dict[str, Any], messa
     assert "\n" not in str(caught.value)
 
 
-def test_a_wrong_word_ends_the_command_with_2(tmp_path: Path) -> None:
+def test_a_wrong_argument_ends_the_command_with_2(tmp_path: Path) -> None:
     result = omegadot("versions", "mujoco", "1.0", "2.0", "--scenario", "t-handel", folder=tmp_path)
     assert result.code == 2
     assert "t-handle" in result.err
     assert result.err.count("\n") == 1
 
 
-def test_mujoco_4_steps_runge_kutta_anew(tmp_path: Path) -> None:
-    """Two real releases: found without being asked for, and nothing sound is accused."""
+def test_mujoco_4_steps_runge_kutta_differently(tmp_path: Path) -> None:
+    """Two real releases: found without a request, and nothing sound is accused."""
     python = os.environ.get(OLD_MUJOCO)
     if python is None:
         pytest.skip(f"{OLD_MUJOCO} names no interpreter that has MuJoCo 3.17.0, NumPy and SciPy")

@@ -77,7 +77,7 @@ def test_what_was_broken_off_is_not_there(tmp_path: Path) -> None:
     assert fake.made == 1
 
 
-def test_an_environment_whose_python_is_gone_is_made_anew(tmp_path: Path) -> None:
+def test_an_environment_whose_python_is_gone_is_made_again(tmp_path: Path) -> None:
     fake = Fake()
     place = Environments(tmp_path, MUJOCO, fake).place("3.6.0")
     assert isinstance(place, Place)
@@ -136,8 +136,8 @@ def test_releases_that_cannot_be_listed_are_one_sentence(tmp_path: Path) -> None
 
 FAKE_UV = """
 import re, sys
-words = sys.argv[1:]
-if words[:2] != ["pip", "compile"]:
+arguments = sys.argv[1:]
+if arguments[:2] != ["pip", "compile"]:
     sys.exit("unexpected")
 requested = sys.stdin.read()
 there = [(1, 0), (1, 1), (1, 2), (2, 0)]
@@ -153,7 +153,7 @@ print("own==" + ".".join(map(str, there[-1])))
 """
 
 
-def test_uv_is_asked_for_one_release_after_the_other(tmp_path: Path) -> None:
+def test_uv_is_called_for_one_release_after_the_other(tmp_path: Path) -> None:
     program = tmp_path / "uv.py"
     program.write_text(FAKE_UV)
     uv = Uv([sys.executable, str(program)])

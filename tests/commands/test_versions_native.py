@@ -1,4 +1,4 @@
-"""What engines themselves do is measured past their adapters, and reported in the same words."""
+"""What engines themselves do is measured past their adapters, and reported in the same terms."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_conventions_are_those_of_the_installed_release(engine: str) -> None:
             assert reported["conventions"][f"FreeJoint {what}"] == f"{frame} axes"
 
 
-def test_axes_are_told_from_what_is_seen() -> None:
+def test_axes_are_determined_from_what_is_seen() -> None:
     assert axes_observed(GIVEN) == "world axes"
     assert axes_observed(TURNED @ GIVEN) == "body axes"
     assert "(0, 0, 1)" in axes_observed(np.array([0.0, 0.0, 1.0]))
@@ -72,7 +72,7 @@ def test_settings_are_the_same_text_where_they_are_the_same() -> None:
     assert described(np.int32(3)) == "3"
 
 
-def test_an_adapter_without_the_question_says_so() -> None:
+def test_an_adapter_without_the_request_reports_it() -> None:
     with pytest.raises(UnsupportedError):
         OPERATIONS["native"](ReferenceAdapter(), {})
 

@@ -38,7 +38,7 @@ def interpreter(folder: Path, version: str) -> Path:
 
 
 def arguments(folder: Path, *versions: str) -> list[str]:
-    """The words that give each release its interpreter."""
+    """The arguments that give each release its interpreter."""
     return [f"{version}={interpreter(folder, version)}" for version in versions]
 
 

@@ -44,7 +44,7 @@ def test_one_scheme_in_three_engines_is_one_cluster(case, truth):
         }
 
 
-def test_what_is_declared_has_no_say(case, truth):
+def test_what_is_declared_is_not_used(case, truth):
     engines = [
         engine_case(case, truth, "honest", (declared("Euler", EULER), EULER)),
         engine_case(case, truth, "boaster", (declared("Euler", EULER), IMPLICIT)),
@@ -61,7 +61,7 @@ def test_who_equals_nothing_is_alone_and_nameless(case, truth):
     assert members(clusters_of(case, truth, engines), 0.01) == {("odd:own",): None}
 
 
-def test_the_yardsticks_have_no_vote(case, truth):
+def test_the_yardsticks_do_not_count(case, truth):
     engines = [
         engine_case(case, truth, "reference", (declared(EULER, EULER), EULER)),
         engine_case(case, truth, "one", (declared("Euler", EULER), EULER)),
@@ -69,7 +69,7 @@ def test_the_yardsticks_have_no_vote(case, truth):
     assert members(clusters_of(case, truth, engines), 0.01) == {("one:Euler",): EULER}
 
 
-def test_a_motion_that_tells_nothing_apart_says_which_it_may_be():
+def test_a_motion_that_distinguishes_nothing_lists_which_it_may_be():
     sphere = builtin("sphere", 0.02)
     truth = truth_of(sphere, (EULER, RK4))
     mine = [

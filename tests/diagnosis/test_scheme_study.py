@@ -69,7 +69,7 @@ def order(integrator: Any, channel: str, kind: str = "free") -> float:
     return float(integrator["probes"][kind]["orders"][channel]["order"])
 
 
-def test_the_three_engines_are_named_and_the_page_says_so(tmp_path: Path) -> None:
+def test_the_three_engines_are_named_and_the_page_states_it(tmp_path: Path) -> None:
     record = studied(tmp_path)
     found = integrators(record)
     assert {who: names(integrator) for who, integrator in found.items()} == NAMED

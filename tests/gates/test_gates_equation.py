@@ -136,7 +136,7 @@ def test_random_states_are_about_the_scenarios_own() -> None:
     assert np.all(np.abs(np.mean(states.orientation, axis=0)) < 0.1)
 
 
-def test_a_body_at_rest_is_asked_at_rates_of_its_own() -> None:
+def test_a_body_at_rest_is_evaluated_at_rates_of_its_own() -> None:
     states = random_states(case(FREE, 0.0, 0.0, 0.0), 2000, SEED)
     gyration = np.sqrt(5.5 / 2.0)
     assert np.median(norm(states.angular_velocity)) == pytest.approx(1.538, rel=0.15)
@@ -146,7 +146,7 @@ def test_a_body_at_rest_is_asked_at_rates_of_its_own() -> None:
     assert np.median(norm(faster.linear_velocity)) == pytest.approx(3 * gyration * 1.538, rel=0.05)
 
 
-def test_the_same_seed_asks_the_same_states() -> None:
+def test_the_same_seed_evaluates_the_same_states() -> None:
     one, other = random_states(case(PIVOTED), 5, SEED), random_states(case(PIVOTED), 5, SEED)
     np.testing.assert_array_equal(one.orientation, other.orientation)
     placed = place_on_pivot(PIVOTED, one)
@@ -154,7 +154,7 @@ def test_the_same_seed_asks_the_same_states() -> None:
     assert not np.array_equal(one.orientation, random_states(case(PIVOTED), 5, (1,)).orientation)
 
 
-def test_inverse_dynamics_is_asked_for_what_no_load_gives() -> None:
+def test_inverse_dynamics_is_evaluated_for_what_no_load_gives() -> None:
     states = random_states(case(FREE), 500, SEED)
     requested, free = random_acceleration(FREE, states, SEED), forward_dynamics(FREE, states)
     rate = norm(states.angular_velocity) ** 2
@@ -170,7 +170,7 @@ def test_inverse_dynamics_is_asked_for_what_no_load_gives() -> None:
 
 
 @pytest.mark.parametrize("system", [FREE, PIVOTED])
-def test_what_a_run_tells_of_omega_dot_has_the_same_bound(system: System) -> None:
+def test_what_a_run_reports_of_omega_dot_has_the_same_bound(system: System) -> None:
     states = random_states(case(system), 6, SEED)
     (row,) = reported_rows(system, states, forward_dynamics(system, states).angular)
     (same, _) = forward_rows(system, states, forward_dynamics(system, states), "residual")

@@ -109,7 +109,7 @@ def test_evidence_holds_what_was_measured() -> None:
     assert found.round_off is runs[0].round_off["omega"]
     assert found.floor is runs[0].floor["omega"]
     assert len(found.orders) == 2
-    assert found.orders[1] is None  # only one of the two has a scheme beside it
+    assert found.orders[1] is None  # only one of the two has a scheme to compare with
     alone = evidence_of(runs[1], runs, "energy")
     assert (alone.left, alone.floor, len(alone.orders)) == (None, None, 1)
 
@@ -136,23 +136,23 @@ def states(size: float) -> State:
     return State(q, spin, np.zeros((3, 3)), np.zeros((3, 3)))
 
 
-def test_a_course_is_measured_by_the_growth_of_its_own_scheme() -> None:
+def test_a_trajectory_is_measured_by_the_growth_of_its_own_scheme() -> None:
     plan, times = Sweep(0.5, 2, 1), np.array([0.0, 0.5, 1.0])
     yardstick = Yardstick(FREE, times, states(0.0))
     floor = {"omega": np.full(3, 1e-9)}
     exact = ExactSamples(states(0.0), np.array([1.0, 2.0, 3.0]), floor)
     own = Companion(states(1e-3), np.array([1.0, 20.0, 30.0]), np.zeros((3, 3)))
     alone = measure(yardstick, plan, exact, states(3e-3), None)
-    beside = measure(yardstick, plan, exact, states(3e-3), own)
+    compared = measure(yardstick, plan, exact, states(3e-3), own)
     assert alone.error["omega"] == pytest.approx(np.full(3, 1.5e-3))
     assert alone.against_scheme == {}
-    assert beside.against_scheme["omega"] == pytest.approx(np.full(3, 1e-3))
-    assert set(alone.error) == set(beside.against_scheme) == set(CHANNELS)
-    np.testing.assert_allclose(beside.round_off["omega"] / alone.round_off["omega"], [1, 10, 10])
+    assert compared.against_scheme["omega"] == pytest.approx(np.full(3, 1e-3))
+    assert set(alone.error) == set(compared.against_scheme) == set(CHANNELS)
+    np.testing.assert_allclose(compared.round_off["omega"] / alone.round_off["omega"], [1, 10, 10])
     steps = np.array([0, 1, 2])
     expected = yardstick.round_off(0.5, steps, exact.growth)["omega"]
     np.testing.assert_array_equal(alone.round_off["omega"], expected)
-    assert alone.floor is beside.floor is floor
+    assert alone.floor is compared.floor is floor
 
 
 def test_which_run_of_the_reference_an_integrator_equals() -> None:

@@ -117,7 +117,7 @@ def test_rounding_grows_with_steps_and_growth() -> None:
     np.testing.assert_allclose(found["linear_momentum"], 2.0 * speed / 10.0, **close)
 
 
-def test_rounding_of_a_hung_body_takes_its_lever_along() -> None:
+def test_rounding_of_a_pivoted_body_takes_its_lever_along() -> None:
     system = System((BODY,), Load(gravity=GRAVITY, pivot=np.array([0.0, 0.0, 0.5])))
     states = place_on_pivot(system, STATES)
     yardstick, found, amount, theta = bounds(system, states)

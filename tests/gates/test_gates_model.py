@@ -26,7 +26,7 @@ def by_metric(rows: list[Row]) -> dict[str, Row]:
     return {row.metric if row.channel == "model" else row.channel: row for row in rows}
 
 
-def test_what_was_asked_passes() -> None:
+def test_what_was_requested_passes() -> None:
     rows = by_metric(body_rows(CASE, BODY))
     assert list(rows) == ["mass", "center_of_mass", "inertia"]
     assert [row.unit for row in rows.values()] == ["1", "m", "1"]

@@ -53,7 +53,7 @@ def rows_of(prepared: Prepared, adapter: ReferenceAdapter) -> dict[str, Row]:
     return {row.metric: row for row in run.rows if row.metric in METRICS}
 
 
-def test_a_sound_run_tells_all_of_it(prepared: Prepared) -> None:
+def test_a_sound_run_reports_all_of_it(prepared: Prepared) -> None:
     found = rows_of(prepared, Reported())
     assert {metric: row.verdict for metric, row in found.items()} == {
         "start": "pass",
@@ -90,7 +90,7 @@ def test_the_start_is_held_to_the_floor_of_the_start() -> None:
     assert _first(None) == 0.0
 
 
-def test_the_length_told_is_that_of_the_worst_sample(prepared: Prepared) -> None:
+def test_the_length_reported_is_that_of_the_worst_sample(prepared: Prepared) -> None:
     q = np.tile([1.0, 0.0, 0.0, 0.0], (4, 1))
     q[2] *= 1.0 + 40 * EPS
     q[3] *= 1.0 + 44 * EPS  # farther off, and less so for the steps it took
@@ -116,7 +116,7 @@ def test_every_quaternion_is_of_unit_length(sample: int, prepared: Prepared) -> 
 
 
 @pytest.mark.parametrize("field", ["orientation", "angular_velocity"])
-def test_single_precision_is_told_from_double(field: str, prepared: Prepared) -> None:
+def test_single_precision_is_distinguished_from_double(field: str, prepared: Prepared) -> None:
     class Single(Reported):
         def reports_found(self, state: State) -> State:
             values = getattr(state, field).copy()
@@ -136,7 +136,7 @@ def test_a_constant_omega_may_be_a_single_by_chance(prepared: Prepared) -> None:
     assert "precision" not in rows_of(prepared, Still())
 
 
-def test_the_omega_dot_told_is_that_of_the_states_told(prepared: Prepared) -> None:
+def test_the_omega_dot_reported_is_that_of_the_states_reported(prepared: Prepared) -> None:
     class Late(Reported):
         def forward_dynamics(self, states: State) -> Acceleration:
             found = super().forward_dynamics(states)

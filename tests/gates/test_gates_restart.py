@@ -44,10 +44,10 @@ def start(prepared: Prepared) -> tuple[Sweep, State, int, State]:
 
 def reported(prepared: Prepared, off: float, integrator: Integrator = ONE_STEP) -> Row:
     """What is reported where omega's last sample is off by so many rad/s."""
-    sweep, state, sample, anew = start(prepared)
-    w = anew.angular_velocity.copy()
+    sweep, state, sample, restarted = start(prepared)
+    w = restarted.angular_velocity.copy()
     w[-1, 0] += off
-    moved = replace(anew, angular_velocity=w)
+    moved = replace(restarted, angular_velocity=w)
     return row(prepared.truth, integrator, sweep, state, sample, moved)
 
 

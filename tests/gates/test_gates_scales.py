@@ -46,7 +46,7 @@ def test_a_free_body_is_measured_about_its_origin() -> None:
     assert scale.smallest == pytest.approx(2.0, rel=4 * EPS)
 
 
-def test_a_hung_body_is_measured_about_both_points() -> None:
+def test_a_pivoted_body_is_measured_about_both_points() -> None:
     scale = body_scale(PIVOTED)
     assert scale.lever == 2.0 + 3.0
     assert scale.largest == pytest.approx(4.0 + 2.0 * 5.0**2, rel=4 * EPS)
@@ -62,7 +62,7 @@ def test_the_terms_of_the_equation_add_up_by_size() -> None:
     assert angular_size(FREE, STATE, ACCELERATION) == pytest.approx(expected / 2.0, rel=8 * EPS)
 
 
-def test_a_hung_body_has_no_bias_of_translation() -> None:
+def test_a_pivoted_body_has_no_bias_of_translation() -> None:
     weight = np.linalg.norm(
         np.cross([0.0, -3.0, 2.0], [0.0, 0.0, -20.0]) - 0.5 * np.array([0, 0, 2])
     )

@@ -1,6 +1,6 @@
 """Steps made ever smaller: where the states and steps come from, the limit, and its notes.
 
-What these tests catch: an extrapolant of the wrong level, whose difference from the best would tell
+What these tests catch: an extrapolant of the wrong level, whose difference from the best would show
 nothing; steps that are long against the motion; a fault of one channel reported as one of all.
 """
 
@@ -82,7 +82,7 @@ def test_the_nearer_of_two_ranges_counts() -> None:
 def reported(
     on: System, requested: Probe, stretch: float = 1.0, omega: float = 1.0
 ) -> dict[str, str]:
-    """The notes of failing channels where steps and omega's changes are longer than they say."""
+    """The notes of failing channels where steps and omega's changes are longer than requested."""
 
     def lane(k: int) -> State:
         dt = stretch * h[:, k]
@@ -104,7 +104,7 @@ def reported(
     return {row.channel: row.note for row in rows(on, requested, stepped) if row.verdict == "fail"}
 
 
-def test_what_is_said_of_the_limit() -> None:
+def test_what_is_reported_of_the_limit() -> None:
     on = system(1.0, 2.0, 3.5)
     requested = probe(on, [0.4, -1.0, 0.7], [1.2, 0.3, -0.5])
     assert reported(on, requested) == {}

@@ -19,9 +19,9 @@ SLOW = ObservedOrder(0.1, True)
 
 
 def evidence(error: object, left: object = None, floor: object = None, *orders: object) -> Evidence:
-    beside = None if left is None else np.array(left, float)
+    compared = None if left is None else np.array(left, float)
     below = None if floor is None else np.array(floor, float)
-    return Evidence(np.array(error, float), BOUND, beside, orders or (SLOW,), below)  # type: ignore[arg-type]
+    return Evidence(np.array(error, float), BOUND, compared, orders or (SLOW,), below)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

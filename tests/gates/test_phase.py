@@ -25,8 +25,8 @@ def exact_at(case, times):
 
 def measured(case, truth, state):
     sweep = case.sweeps[0]
-    course = measure(truth.yardstick, sweep, truth.samples(sweep), state, None)
-    return {row.metric: row for row in phase.rows(truth, course, state)}
+    run = measure(truth.yardstick, sweep, truth.samples(sweep), state, None)
+    return {row.metric: row for row in phase.rows(truth, run, state)}
 
 
 @pytest.fixture(scope="module")
@@ -94,13 +94,13 @@ def motion(case):
     return case.system, case.initial
 
 
-def test_flips_come_as_often_as_the_closed_form_says(handle):
+def test_flips_come_as_often_as_the_closed_form_gives(handle):
     case, truth = handle
     period = free_rotation_rates(*motion(case)).flip_period
     assert np.diff(flips_of(truth, case)) == pytest.approx(period, abs=1e-5)
 
 
-def test_flips_that_are_missing_are_told(handle):
+def test_flips_that_are_missing_are_reported(handle):
     case, truth = handle
     exact = truth.at(case.sweeps[0])
     still = np.broadcast_to(exact.angular_velocity[0], exact.angular_velocity.shape)
@@ -145,7 +145,7 @@ def test_a_period_more_is_not_taken_for_the_shift():
     assert phase.best_shift(exact, circling(times - 0.45)).shift == pytest.approx(-0.45, abs=1e-3)
 
 
-def test_the_attitude_has_no_say_in_the_shift(brick):
+def test_the_attitude_is_not_used_in_the_shift(brick):
     case, truth = brick
     exact = truth.at(case.sweeps[0])
     turned = turn_in_body(exact.orientation, exact.angular_velocity, 0.1)

@@ -65,7 +65,7 @@ def test_an_energy_that_is_made_to_look_right_is_not_the_declared_scheme(case, t
     assert "steps otherwise" in first.note
 
 
-def test_who_declares_no_scheme_is_told_and_held_to_its_orders_alone(case, truth):
+def test_without_a_declared_scheme_the_orders_alone_are_judged(case, truth):
     runs = judged(case, truth, declared("own", None, 2), steps="implicit-midpoint")
     assert gates(runs) == {"scheme": "pass", "trajectory": "pass"}
     found = rows_of(runs, "match")
@@ -81,7 +81,7 @@ def test_an_order_that_is_declared_too_high_fails(case, truth):
     assert gates(runs)["scheme"] == "fail"
 
 
-def test_a_scheme_that_nobody_stepped_is_no_verdict(case):
+def test_a_scheme_that_was_not_stepped_is_no_verdict(case):
     alone = truth_of(case, ())
     for integrator in (declared("lie-rk4", "lie-rk4"), declared("lie-rk4", None, 4)):
         found = rows_of(judged(case, alone, integrator), "match")

@@ -49,7 +49,7 @@ def builtin(name: str, *timesteps: float) -> Case:
 
 
 def truth_of(case: Case, schemes: tuple[str, ...] = tuple(SCHEMES)) -> Truth:
-    """The truth with these schemes stepped beside it."""
+    """The truth with these schemes stepped in addition."""
     local: Any = Local(ReferenceAdapter())
     truth = case_truth(local, case)
     assert isinstance(truth, Truth), truth

@@ -34,7 +34,7 @@ timesteps = [0.01]
 sample = 0.01
 """
 
-# In the runs of one scheme: the outcome, and what the reason must say.
+# In the runs of one scheme: the outcome, and what the reason must contain.
 BROKEN = {
     "KillNine": ("crashed", "ended by signal 9 (SIGKILL)"),
     "Segfault": ("crashed", "ended by signal 11 (SIGSEGV)"),
@@ -172,7 +172,7 @@ def test_a_fault_in_a_run_costs_that_run_alone(name: str, broken: Run) -> None:
 
 
 @pytest.mark.parametrize("name", ELSEWHERE)
-def test_a_fault_elsewhere_is_told_with_every_task(name: str, broken: Run) -> None:
+def test_a_fault_elsewhere_is_reported_with_every_task(name: str, broken: Run) -> None:
     outcome, reason = ELSEWHERE[name]
     tasks = broken.tasks(name)
     assert [task["outcome"] for task in tasks] == [outcome, outcome]
@@ -182,7 +182,7 @@ def test_a_fault_elsewhere_is_told_with_every_task(name: str, broken: Run) -> No
 
 
 @pytest.mark.parametrize("name", NOT_STARTING)
-def test_an_engine_that_does_not_start_says_why(name: str, broken: Run) -> None:
+def test_an_engine_that_does_not_start_reports_why(name: str, broken: Run) -> None:
     outcome, reason = NOT_STARTING[name]
     (task,) = broken.tasks(name)
     assert task["outcome"] == outcome

@@ -16,8 +16,8 @@ def test_a_truth_that_does_not_start_ends_the_run_in_one_sentence(
     lost = {**engines.BUILT_IN, "exact": "omegadot.adapters.exact.adapter:NoSuchAdapter"}
     monkeypatch.setattr(engines, "BUILT_IN", lost)
     out = tmp_path / "run"
-    terms = ["omegadot", "run", "sphere", "--engine", "reference:lie-rk4", "--out", str(out)]
-    monkeypatch.setattr(sys, "argv", terms)
+    arguments = ["omegadot", "run", "sphere", "--engine", "reference:lie-rk4", "--out", str(out)]
+    monkeypatch.setattr(sys, "argv", arguments)
     with pytest.raises(SystemExit) as ended:
         cli.main()
     assert ended.value.code == 3

@@ -29,7 +29,7 @@ from omegadot.reference_impl.system import Array, State, System
 
 SEED = 31
 EULER = without_scheme(Integrator("semi-implicit-euler", None, every_channel(1)))
-# Beside what a first-order error hides: what no order, and no conservation, would show.
+# Next to what a first-order error hides: what no order, and no conservation, would show.
 HIDDEN = (
     *("SecretDamping", "StepSlightlyLong", "QuaternionDrifts", "SinglePrecision", "OmegaJitters"),
     *("EnergyCorrected", "MomentumCorrected", "LogsOneStepLate", "LastStepMissing", "StaleState"),
@@ -118,7 +118,7 @@ class Projected(OwnScheme):
 
 
 class TwoStep(OwnScheme):
-    """Adams and Bashforth's method of order 2, begun by a step of order 2."""
+    """Adams and Bashforth's method of order 2, started by a step of order 2."""
 
     one_step, order = False, 2
 
@@ -156,17 +156,17 @@ def test_a_conserving_method_of_its_own_is_not_accused(pool: Pool) -> None:
     assert {row.note for row in energy} == {"within round-off"}
 
 
-def test_a_method_that_keeps_earlier_steps_in_mind_says_so(pool: Pool) -> None:
+def test_a_method_that_uses_earlier_steps_declares_it(pool: Pool) -> None:
     assert failures(judged(pool, TwoStep(), {"torque-free", "asymmetric"})) == []
     reported = judged(pool, TwoStepUntold(), {"torque-free", "asymmetric"})
-    assert {(row.gate, row.metric) for row in failures(reported)} == {("scheme", "begun_anew")}  # type: ignore[attr-defined]
+    assert {(row.gate, row.metric) for row in failures(reported)} == {("scheme", "restarted")}  # type: ignore[attr-defined]
 
 
 def rows_of(found: Judgement, metric: str) -> list[str]:
     return [row.note for run in found.runs for row in run.rows if row.metric == metric]
 
 
-def test_the_rate_at_no_step_says_how_long_the_steps_are(pool: Pool) -> None:
+def test_the_rate_at_no_step_shows_how_long_the_steps_are(pool: Pool) -> None:
     adapter = Nameless(FAULTS["StepSlightlyLong"].wrap(ReferenceAdapter()))
     found = judge(pool, pool.prepare(0), "unnamed", adapter, (EULER,))
     assert set(rows_of(found, "rate_at_no_step")) - {""} == {"steps are 0.1 % too long"}
@@ -175,20 +175,20 @@ def test_the_rate_at_no_step_says_how_long_the_steps_are(pool: Pool) -> None:
     assert set(rows_of(found, "rate_at_no_step")) - {""} == {"a run of one step does not move"}
 
 
-def test_a_known_scheme_is_asked_nothing_more(pool: Pool) -> None:
+def test_a_known_scheme_needs_no_further_runs(pool: Pool) -> None:
     named = ReferenceAdapter()
     own = tuple(i for i in named.description.integrators if i.name == "lie-rk4")
     found = judge(pool, pool.prepare(0), "named", named, own)
     assert (found.result.first_steps, found.result.restarts) == ({}, {})
 
 
-def test_a_run_is_begun_anew_at_its_middle() -> None:
+def test_a_run_is_restarted_at_its_middle() -> None:
     assert restart_of(Sweep(0.1, 10, 3)) == (2, Sweep(0.1, 4, 3))  # samples 0 3 6 9 10
     assert restart_of(Sweep(0.1, 3, 2)) == (1, Sweep(0.1, 1, 2))
     assert restart_of(Sweep(0.1, 2, 5)) is None
 
 
-def test_a_run_that_cannot_be_begun_anew_fails(pool: Pool) -> None:
+def test_a_run_that_cannot_be_restarted_fails(pool: Pool) -> None:
     class OnlyFromTheStart(Nameless):
         start: Array | None = None
 
@@ -204,18 +204,18 @@ def test_a_run_that_cannot_be_begun_anew_fails(pool: Pool) -> None:
     prepared = pool.prepare(pool.having({"asymmetric"}, 1)[0])
     found = judge(pool, prepared, "own", OnlyFromTheStart(ReferenceAdapter()), (EULER,))
     text = "a run cannot be restarted at its own sample: ValueError: not from here"
-    assert set(rows_of(found, "begun_anew")) == {text}
+    assert set(rows_of(found, "restarted")) == {text}
 
 
 def test_loads_are_no_time(pool: Pool) -> None:
     """A body that is driven, damped and pivoted is autonomous too: restarted, it goes on alike."""
     for needs in ({"torque", "damping"}, {"pivot", "gravity"}):
         found = judged(pool, TwoStepUntold(), needs)
-        assert rows_of(found, "begun_anew")
+        assert rows_of(found, "restarted")
         single = Nameless(ReferenceAdapter())
         prepared = pool.prepare(pool.having(needs, 1)[0])
         sound = judge(pool, prepared, "unnamed", single, (EULER,))
-        assert {row.value for row in sound.rows if row.metric == "begun_anew"} == {0.0}
+        assert {row.value for row in sound.rows if row.metric == "restarted"} == {0.0}
 
 
 def test_the_system_is_that_of_the_case(pool: Pool) -> None:

@@ -1,4 +1,4 @@
-"""omega-dot and the centre of mass's acceleration do not depend on the words of the question.
+"""omega-dot and the centre of mass's acceleration do not depend on the frame of the request.
 
 Each property names the wrong code that it catches, and is shown to catch it.
 """
@@ -60,7 +60,7 @@ def gap(adapter: Adapter, relation, motion: Motion, seed: int) -> float:
 @pytest.mark.parametrize("name", ENGINES)
 @pytest.mark.parametrize(("relation", "wanted", "fault"), RELATIONS[1:], ids=NAMES[1:])
 @given(seed=st.integers(0, 2**32 - 1))
-def test_the_equation_is_the_same_in_other_words(name, relation, wanted, fault, seed: int) -> None:
+def test_the_equation_is_the_same_in_other_frames(name, relation, wanted, fault, seed: int) -> None:
     assert gap(engine(name), relation, random_motion(seed, wanted), seed) <= 1.0
 
 

@@ -66,7 +66,7 @@ FLOORS = 16
 
 @few
 @given(SEEDS)
-def test_the_exact_course_comes_back(seed: int) -> None:
+def test_the_exact_trajectory_comes_back(seed: int) -> None:
     assert exact_gap(random_motion(seed, FRICTIONLESS)) <= 1.0
 
 

@@ -40,7 +40,7 @@ def test_every_term_has_two_sentences_and_a_formula_or_unit():
         ("scheme-bound order", ["order"]),  # no part of a compound
     ],
 )
-def test_terms_are_found_as_whole_words(heading, names):
+def test_terms_are_found_as_whole_terms(heading, names):
     assert [term.name for term in terms_in(heading)] == names
 
 

@@ -18,14 +18,14 @@ MARKS = list("ab1 @#<>&|`*_[]()!~\\:/.-+=$\n\r\x1b\u2028\ud800")
 
 def test_the_verdict_the_failures_and_what_did_not_run_are_there(record) -> None:
     broken = record.run["tasks"][-1]
-    broken |= {"gates": {"trajectory": "fail"}, "why": "it parts from its scheme"}
+    broken |= {"gates": {"trajectory": "fail"}, "why": "it diverges from its scheme"}
     lost = {"outcome": "not-installed", "reason": "No module named 'dartpy'", "gates": {}}
     record.run["tasks"].append(task("sphere", "other", "", None, **lost))
     message = markdown_of(record)
     first = message.splitlines()[0]
     assert first.startswith("### omegadot: 1 of ")
     assert "dart, on spun-again" in first
-    assert "it parts from its scheme" in message
+    assert "it diverges from its scheme" in message
     assert "| other | not-installed | 1 | No module named 'dartpy' |" in message
     assert "✗" in message
     assert "`omegadot run --out 'a folder'`" in message

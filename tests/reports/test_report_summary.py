@@ -126,7 +126,7 @@ def test_the_headline_of_a_sound_run(record):
     assert "1.5e-9 rad (mujoco RK4" in spread
 
 
-def test_a_body_that_cannot_be_is_named_beside_the_headline(record):
+def test_a_body_that_cannot_be_is_named_next_to_the_headline(record):
     inertia = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.5]]
     body = {"mass": 1.0, "inertia": inertia, "allow_impossible_inertia": True}
     first, *others = record.run["scenarios"]
@@ -164,7 +164,7 @@ def test_a_partial_and_an_empty_record():
     assert remarks(summary) == ["Partial record: the run was interrupted."]
 
 
-def test_yardsticks_alone_speak_for_themselves():
+def test_yardsticks_alone_are_reported():
     alone = build(engines={"reference": INTEGRATORS["reference"]})
     assert headline(summarise(alone)).startswith("reference agrees")
 

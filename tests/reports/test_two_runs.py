@@ -153,13 +153,13 @@ def test_a_gate_that_fails_without_a_figure_is_reported(base) -> None:
     def failing(entry):
         if (entry["engine"], entry["integrator"], entry["timestep"]) == ("mujoco", "RK4", 0.01):
             entry["gates"] = {**entry["gates"], "trajectory": "fail"}
-            entry["why"] = "it parts from its scheme"
+            entry["why"] = "it diverges from its scheme"
         return entry
 
     found = compare_records(base, with_tasks(base, failing))
     assert {(c.gate, c.was, c.now) for c in found.worse} == {("trajectory", "pass", "fail")}
     assert len(found.worse) == 2  # on both scenarios
-    assert "it parts from its scheme" in as_text(found)
+    assert "it diverges from its scheme" in as_text(found)
 
 
 def test_a_figure_and_its_gate_are_one_change(base) -> None:

@@ -97,9 +97,9 @@ def test_a_run_diverges_at_its_first_stored_sample_beyond_a_degree(record):
         names = ["qw", "qx", "qy", "qz"]
         stored = column(record, engine, integrator, step, names)
         exact = column(record, "exact", "closed-form", None, names)
-        beside = exact[np.isin(exact[:, 0], stored[:, 0])]
+        same_times = exact[np.isin(exact[:, 0], stored[:, 0])]
         angle = 2 * np.arccos(
-            np.minimum(1.0, np.abs(np.sum(stored * beside, axis=1) - stored[:, 0] ** 2))
+            np.minimum(1.0, np.abs(np.sum(stored * same_times, axis=1) - stored[:, 0] ** 2))
         )
         far = stored[angle > DIVERGED, 0]
         assert run.diverges == (far[0] if len(far) else None)
@@ -154,7 +154,7 @@ def test_the_closed_form_is_preferred_to_the_series(record):
     assert attitudes_of(alone)["sphere"].truth == "series"
 
 
-def test_a_body_that_turns_far_between_samples_is_said_to(record):
+def test_a_body_that_turns_far_between_samples_is_reported(record):
     assert not attitudes_of(record.trajectories)["sphere"].coarse
     fast = with_rows(record, {"wz": pl.lit(20.0)}, engine="exact")
     assert attitudes_of(fast.trajectories)["sphere"].coarse

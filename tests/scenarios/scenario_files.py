@@ -1,4 +1,4 @@
-"""Scenario files to bend: one sound file, and ways to write others beside it."""
+"""Scenario files to bend: one sound file, and ways to write others from it."""
 
 from __future__ import annotations
 

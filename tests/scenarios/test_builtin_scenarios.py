@@ -77,7 +77,7 @@ def test_the_builtins_are_these() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(NAMES))
-def test_it_says_what_it_is_and_keeps_the_budget(name: str) -> None:
+def test_it_states_what_it_is_and_keeps_the_budget(name: str) -> None:
     scenario = load_builtin(name)
     assert scenario.name == name
     assert scenario.title != name

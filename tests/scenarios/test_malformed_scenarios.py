@@ -20,7 +20,7 @@ SAMPLE = "sample = 0.02"
 LOADED = SOUND + "[load]\n"
 LINE = 'shape = "point"\nmass = 1.0\nposition = [{0}.1, {0}.2, {0}.3]\n'
 
-# text of the file, key, value as found, words that the advice must have
+# text of the file, key, value as found, text that the advice must have
 MALFORMED: list[tuple[str, str, str, str]] = [
     (with_line("schema = 1", ""), "schema", "missing", "schema = 1"),
     (with_line("schema = 1", "schema = 2"), "schema", "2", "schema = 1"),
@@ -267,16 +267,18 @@ def test_one_sentence_names_file_key_and_value(
     assert error.key == key
     assert found in error.found
     assert advice in error.advice
-    assert all(terms in str(error) for terms in (str(path), key, found, advice))
+    assert all(part in str(error) for part in (str(path), key, found, advice))
     assert os.listdir(tmp_path) == ["case.toml"]
 
 
-def test_an_unknown_key_is_told_before_what_its_misspelling_leaves_missing(tmp_path: Path) -> None:
+def test_an_unknown_key_is_reported_before_what_its_misspelling_leaves_missing(
+    tmp_path: Path,
+) -> None:
     text = with_line(MASS, "").replace(OMEGA, "omega = [1, 2, 3]")
     assert refusal(write(tmp_path, text)).key == "initial.omega"
 
 
-def test_a_newer_schema_is_told_before_the_keys_it_may_bring(tmp_path: Path) -> None:
+def test_a_newer_schema_is_reported_before_the_keys_it_may_bring(tmp_path: Path) -> None:
     text = with_line("schema = 1", "schema = 2\nfriction = 1")
     assert refusal(write(tmp_path, text)).key == "schema"
 

@@ -141,7 +141,7 @@ def test_a_mistyped_builtin_is_offered_the_nearest(requested: str, near: str) ->
             find(requested)
 
 
-def test_a_word_like_no_builtin_is_told_what_to_give() -> None:
+def test_a_name_like_no_builtin_gets_advice() -> None:
     with pytest.raises(
         ScenarioError, match="'zzz' is neither a built-in scenario nor a file; give"
     ):

@@ -70,7 +70,9 @@ def test_single_precision_and_whole_numbers_are_numbers() -> None:
         (checked_acceleration, Acceleration(np.ones((1, 3)), np.ones((2, 3))), "angular has the"),
     ],
 )
-def test_what_is_asked_of_two_states_is_answered_for_two(check: Any, value: Any, text: str) -> None:
+def test_what_is_requested_of_two_states_is_answered_for_two(
+    check: Any, value: Any, text: str
+) -> None:
     with pytest.raises(AnswerError, match=text):
         check(value, (2,))
 
@@ -117,12 +119,12 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ({"integrators": (replace(EULER, orders={"omega": 1.5}),)}, "the order of euler in omega"),
     ],
 )
-def test_a_description_is_what_it_says(fields: dict[str, Any], text: str) -> None:
+def test_a_description_is_checked(fields: dict[str, Any], text: str) -> None:
     with pytest.raises(AnswerError, match=text):
         checked_description(replace(ENGINE, **fields))
 
 
-def test_words_become_one_printable_line() -> None:
+def test_texts_become_one_printable_line() -> None:
     assert one_line("two\nlines\tand  \x1b\x00 spaces\ud800") == "two lines and spaces"
     assert one_line("a" * 500) == "a" * 500
     assert one_line("a" * 501) == "a" * 496 + " ..."

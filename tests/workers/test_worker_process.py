@@ -1,4 +1,4 @@
-"""The harness's side of a worker, beside workers that are none."""
+"""The harness's side of a worker, against programs that are no workers."""
 
 import os
 import sys
@@ -28,7 +28,7 @@ def worker_of(code: str, timeout: float = 1.0, memory: int | None = None) -> Wor
     return WorkerProcess("none", "physics", timeout, command, memory)
 
 
-def test_a_worker_that_does_not_read_blocks_nobody() -> None:
+def test_a_worker_that_does_not_read_blocks_no_thread() -> None:
     worker = worker_of(PRINT.format(text=WELCOME) + "time.sleep(3600)")
     assert worker.start().ok
     started = time.monotonic()
@@ -71,13 +71,13 @@ def test_what_is_no_frame_is_a_crash(text: bytes, reason: str) -> None:
     assert len(worker.deaths) == 1
 
 
-def test_a_program_that_is_not_there_is_said_so() -> None:
+def test_a_program_that_is_not_there_is_reported() -> None:
     answer = WorkerProcess("none", "physics", 1.0, ["/nowhere/python"]).start()
     assert answer.outcome == "crashed"
     assert "could not be started" in answer.reason
 
 
-def test_who_is_not_running_is_not_asked() -> None:
+def test_a_worker_that_is_not_running_gets_no_request() -> None:
     assert worker_of("").request("model").reason == "the worker is not running"
 
 

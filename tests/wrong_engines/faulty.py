@@ -38,7 +38,7 @@ class Faulty(ReferenceAdapter):
 
 
 class Killed(Faulty):
-    """Dies as if by kill -9, with a last word."""
+    """Dies as if by kill -9, with a last output."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         print("assertion failed: mass > 0", file=sys.stderr, flush=True)

@@ -1,6 +1,6 @@
 """Faults of a worker, one a class: each strikes where its docstring states and nowhere else.
 
-Those over `Unwell` strike in the runs of its first scheme; its second scheme stays well.
+Those over `Faulty` strike in the runs of its first scheme; its second scheme stays well.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Segfault(Faulty):
 
 
 class Aborts(Faulty):
-    """What a failed assertion in native code does, with a last word full of escape codes."""
+    """What a failed assertion in native code does, with a last output full of escape codes."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         os.write(2, b"\x1b[31mAssertion `inertia > 0' failed.\x1b[0m\x00\xff\n")
@@ -157,7 +157,7 @@ class EatsMemory(Faulty):
 
 
 class LongMessage(Faulty):
-    """An exception with 10 MB to say."""
+    """An exception with 10 MB of text."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         raise ValueError("no convergence, residuals: " + "0.1 " * (10 * MEGABYTE // 4))
@@ -277,7 +277,7 @@ class Twin(Faulty):
 
 
 class Reads(Faulty):
-    """Asks the user for advice."""
+    """Reads from the terminal."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         assert sys.stdin.readline() == ""

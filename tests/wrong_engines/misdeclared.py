@@ -1,4 +1,4 @@
-"""Engines that step another scheme than they say, or one that no one knows."""
+"""Engines that step another scheme than they declare, or an unknown one."""
 
 from __future__ import annotations
 

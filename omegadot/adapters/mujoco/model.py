@@ -110,7 +110,7 @@ def build_model(mujoco: Any, system: System) -> Any:
 
 
 def apply_setup(mujoco: Any, model: Any, setup: Setup) -> None:
-    """Turn off what spoils physics, or leave every default of MuJoCo as it is."""
+    """Turn off the defaults that disturb the motion, or leave every default of MuJoCo as it is."""
     if setup == "as-shipped":
         return
     for name in _DISABLED:

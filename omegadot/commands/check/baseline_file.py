@@ -53,8 +53,8 @@ class ScenarioFigures:
 Baseline = dict[str, ScenarioFigures]
 
 
-def _quoted(argument: str) -> str:
-    return json.dumps(argument, ensure_ascii=False)
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
 
 
 def _number(value: float) -> str:
@@ -134,5 +134,6 @@ def read_baseline(folder: Path, engine: str) -> Baseline | None:
     try:
         return from_text(path.read_text(encoding="utf-8"))
     except (ValueError, TypeError, KeyError, AttributeError) as problem:
-        message = f"{path}: not a baseline: {problem}; write it again with --update-baseline."
-        raise UsageError(message) from None
+        raise UsageError(
+            f"{path}: not a baseline: {problem}; delete the file, then run with --update-baseline."
+        ) from None

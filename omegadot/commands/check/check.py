@@ -125,7 +125,7 @@ def arguments_of(engine: EngineLike, integrators: Sequence[str], names: Argument
         name = next(iter(adapters_named(adapters)))
     else:
         raise UsageError(
-            f"{engine}: there is no engine {engine!r}; {nearest(engine, known)}, or give "
+            f"{engine}: no such engine; {nearest(engine, known)}, or give "
             "FILE.py:Class or module:Class."
         )
     engines = [f"{name}:{integrator}" for integrator in integrators] or [name]

@@ -72,7 +72,7 @@ def read_exceptions(path: Path) -> list[DeclaredException]:
 
 
 def _next_to(target: str) -> Path | None:
-    """Where an adapter's own exceptions stand: module.exceptions.toml beside module.py."""
+    """Where an adapter's own exceptions stand: module.exceptions.toml next to module.py."""
     module = target.rpartition(":")[0]
     if module.endswith(".py"):
         return Path(module).with_suffix(SUFFIX)
@@ -87,7 +87,7 @@ def _next_to(target: str) -> Path | None:
 def exceptions_of(
     choices: Iterable[EngineChoice], files: Iterable[Path]
 ) -> list[DeclaredException]:
-    """The exceptions of some engines: the project's own, those beside an adapter, those of files.
+    """The exceptions of some engines: the project's own, those next to an adapter, those of files.
 
     Raises UsageError.
     """

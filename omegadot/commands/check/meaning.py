@@ -1,4 +1,4 @@
-"""What a change of figures probably means. Words for a reader; nothing is judged by them."""
+"""What a change of figures probably means: text for a reader, which no verdict depends on."""
 
 from __future__ import annotations
 

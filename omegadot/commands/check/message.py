@@ -12,7 +12,7 @@ from omegadot.reports.text.numbers import listed, short
 NOTE_ALONE = ("match", "observed_order", "sample_times")
 
 # For these the note is clearer than the figure, a fraction of its bound.
-NOTE_BEFORE_FIGURE = ("begun_anew", "rate_at_no_step", "start", "precision")
+NOTE_BEFORE_FIGURE = ("restarted", "rate_at_no_step", "start", "precision")
 
 
 def _excess(row: Row) -> float:

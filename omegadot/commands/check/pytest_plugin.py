@@ -35,7 +35,7 @@ def _is_free(option: str, parser: pytest.Parser) -> bool:
     """Whether no one has taken an option: it is then unknown to the parser."""
     try:
         return option in parser.parse_known_and_unknown_args([option, "0"])[1]
-    except pytest.UsageError:  # somebody knows it, and does not like its value
+    except pytest.UsageError:  # the option is known, and its value is refused
         return False
 
 

@@ -27,7 +27,7 @@ SEED = 0
 class Suite:
     """The checks of a selection and their results; each scenario is run once, when first requested.
 
-    registry: what the engines reported when they started; given where somebody else has started
+    registry: what the engines reported when they started; given where another process has started
     them before, so that all who share the work have the same checks.
     """
 
@@ -123,7 +123,7 @@ class Suite:
             raise
 
     def _run(self, case: Case) -> None:
-        """Run one scenario on every engine and keep what its checks say, not the trajectories."""
+        """Run one scenario on every engine; keep its checks' results, not the trajectories."""
         with warnings.catch_warnings():
             # An engine that diverges overflows on its way; the gates state so.
             warnings.simplefilter("ignore", RuntimeWarning)

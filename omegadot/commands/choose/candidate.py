@@ -29,7 +29,7 @@ MOST_RECHECKS = 8
 
 
 class BrokenError(Exception):
-    """The engine failed to answer. outcome: one of the record's words; the message: the reason."""
+    """The engine failed to answer. outcome: one of the record's; the message: the reason."""
 
     def __init__(self, outcome: str, reason: str) -> None:
         super().__init__(reason)

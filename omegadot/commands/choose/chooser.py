@@ -62,7 +62,7 @@ class Choice:
 class Chooser:
     """One choice. budget: s that one run of the search may take.
 
-    on_start and on_advance tell a progress bar what has been planned and done.
+    on_start and on_advance report to a progress bar what is planned and done.
     """
 
     request: RunRequest
@@ -122,7 +122,7 @@ class Chooser:
 
         def solve(times: Array) -> Answer:
             fields = {"system": case.system, "initial": case.initial, "times": times}
-            with self._one_at_a_time:  # every engine's thread asks the one worker that knows
+            with self._one_at_a_time:  # every engine's thread sends requests to the same worker
                 return driver.request(case, "solve", **fields)
 
         try:

@@ -14,7 +14,7 @@ SCHEMA = 1
 
 
 def requirements_row(wanted: Requirements) -> Row:
-    """What was requested, limits in SI next to the words they were given in."""
+    """What was requested, limits in SI next to their text as given."""
     limits = [
         {
             "requirement": key,

@@ -66,7 +66,7 @@ def _admits(required: str, python: str) -> bool:
 
 
 def python_note(engine: str, python: str | None) -> str:
-    """What is not known about this Python, of the package's own words; empty where it is known."""
+    """What the package's metadata leave unknown about this Python; empty where it is known."""
     if python is None or python == _running():
         return ""
     required = _required(engine)

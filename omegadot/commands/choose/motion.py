@@ -12,6 +12,7 @@ from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
 from omegadot.scenarios import Scenario, ScenarioLike, scenario_of
 from omegadot.scenarios.links import body_of_argument
+from omegadot.scenarios.model import MOST_SAMPLES, MOST_STEPS
 from omegadot.scenarios.tensor import ALLOWED
 
 STEPS_TO_BEGIN = (500, 1000, 2000)  # a horizon, where no scenario states which steps are usual
@@ -84,9 +85,20 @@ def _changed(data: dict[str, Any], motion: Motion) -> Scenario:
 
 
 def _run_of(run: dict[str, Any], duration: float) -> dict[str, Any]:
+    """The run over another horizon, with those of its steps that fit. Raises UsageError."""
     steps = [step for step in run.get("timesteps", ()) if step <= duration]
-    return {
-        "duration": duration,
-        "timesteps": steps or [duration / count for count in STEPS_TO_BEGIN],
-        "sample": min(run.get("sample", duration / STEPS_TO_BEGIN[0]), duration),
-    }
+    steps = steps or [duration / count for count in STEPS_TO_BEGIN]
+    fitting = [step for step in steps if duration / step <= MOST_STEPS]
+    if not fitting:
+        raise _too_long(duration, "steps", max(steps), MOST_STEPS)
+    sample = min(run.get("sample", duration / STEPS_TO_BEGIN[0]), duration)
+    if duration / max(sample, min(fitting)) > MOST_SAMPLES:
+        raise _too_long(duration, "samples", max(sample, min(fitting)), MOST_SAMPLES)
+    return {"duration": duration, "timesteps": fitting, "sample": sample}
+
+
+def _too_long(duration: float, what: str, gap: float, most: int) -> UsageError:
+    return UsageError(
+        f"--duration {duration:g} needs {duration / gap:.3g} {what} of {gap:g} s; "
+        f"the limit is {most:,}."
+    )

@@ -22,7 +22,7 @@ class Place(Generic[Key]):
 
 
 def dearer(one: Spread, other: Spread) -> bool:
-    """Whether `one` costs more than `other`, beyond what the measurement leaves open.
+    """Whether `one` costs more than `other`, beyond the resolution of the measurement.
 
     In three quarters of the rounds at least it took longer by more than EDGE: a step is known no
     better than that, so neither is its cost.

@@ -73,7 +73,7 @@ class ChooseResult:
         return self.best is not None
 
     def page(self) -> str:
-        """The page: one HTML text that needs nothing beside it."""
+        """The page: one HTML text that needs no other file."""
         return draw_choice(self.document)
 
     def save(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:

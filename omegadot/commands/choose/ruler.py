@@ -39,7 +39,7 @@ class NoTruthError(Exception):
 
 @dataclass(frozen=True)
 class Exact:
-    """The exact motion at some times, and what doubles leave open of it."""
+    """The exact motion at some times, and its resolution in doubles."""
 
     source: str
     state: State
@@ -106,7 +106,7 @@ class Ruler:
         return Sweep(self.duration / steps, steps, max(1, math.ceil(steps / samples)))
 
     def _open(self, key: str, exact: Exact) -> float:
-        """SI: what doubles leave open of an error, at its largest over the horizon."""
+        """SI: the resolution of an error in doubles, at its largest over the horizon."""
         if key == "attitude":
             return float(np.max(exact.floor["attitude"]))
         if key == "omega":

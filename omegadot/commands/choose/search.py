@@ -1,6 +1,6 @@
 """The largest step that meets the limits, sought over whole numbers of steps a horizon.
 
-Observed orders state where to look next; only runs decide. With `steps` counting the steps of the
+Observed orders predict where to look next; only runs decide. With `steps` counting the steps of the
 horizon, more of them are a smaller step. An error need not rise with the step, so what is found is
 the largest step of which this holds: it passes, every smaller one that was tried passes, and the
 next larger one that was tried fails.
@@ -22,7 +22,7 @@ WORTH = 1.25  # how much finer a last run must be that shows the nearest an inte
 SATURATED = 0.5  # an error of lower order than this has nothing to do with the step
 STEEPEST = 8.0
 MOST_RUNS = 32
-CONFIRMED = (1 / 1.1, 1.1, 1.5)  # steps a horizon, over those found, that are tried besides
+CONFIRMED = (1 / 1.1, 1.1, 1.5)  # steps a horizon, over those found, that are tried in addition
 
 
 @dataclass(frozen=True)
@@ -152,9 +152,9 @@ def confirmed(
         found = edge.passing
         if found is None:
             break
-        beside = [math.floor(found.steps * f) if f < 1 else math.ceil(found.steps * f)
+        counts = [math.floor(found.steps * f) if f < 1 else math.ceil(found.steps * f)
                   for f in CONFIRMED]  # fmt: skip
-        inside = [n for n in beside if among.fewest <= n <= max(among.most(), found.steps)]
+        inside = [n for n in counts if among.fewest <= n <= max(among.most(), found.steps)]
         for steps in inside:
             if steps not in trials:
                 trials[steps] = evaluate(steps)

@@ -44,7 +44,7 @@ class Trial:
         return max((r if math.isfinite(r) else math.inf) for r in found)
 
     def passes(self, limits: Mapping[str, float]) -> bool:
-        """Whether every limit is met, whatever the truth leaves open."""
+        """Whether every limit is met, to the resolution of the truth."""
         return self.ratio(limits) <= 1.0
 
     def missed(self, limits: Mapping[str, float]) -> list[str]:

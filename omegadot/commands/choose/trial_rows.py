@@ -78,7 +78,7 @@ def predicted_row(candidate: Candidate, limits: dict[str, float]) -> Row | None:
         order = candidate.declared_order(limits)
     declared = candidate.declared_order(limits)
     if order is None or not LIKE[0] * declared <= order <= LIKE[1] * declared:
-        return None  # the errors do not shrink as they should yet: they tell nothing of the rest
+        return None  # the errors do not shrink at their order yet: the rest cannot be predicted
     finest = trials[-1]
     steps = finest.steps * finest.ratio(limits) ** (1.0 / order)
     timestep = finest.timestep * finest.steps / steps

@@ -58,7 +58,7 @@ def faults(
     settings = Settings(tuple(dict.fromkeys(named)) or ("reference",), bodies, seed)
     for name in settings.engines:
         if name not in ENGINES:
-            raise UsageError(f"--engine {name}: faults go over {nearest(name, ENGINES)}.")
+            raise UsageError(f"--engine {name}: no such engine; {nearest(name, ENGINES)}.")
     pool, matrices = Pool(seed), []
     with reporting(progress) as report, quiet_engines():
         count = Count(report, "putting wrong engines through the gates", len(settings.engines))

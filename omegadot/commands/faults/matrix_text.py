@@ -133,7 +133,7 @@ of the reference to hold them against; a fault that makes another scheme of the 
 then (`PositionByFirstVelocity` of an engine of order 1). Each engine runs with one integrator of
 order 1 and, where it has one, one of order 4.
 
-**The published checks** beside them are tests that engines ship with, put to the same faulty
+**The published checks** next to them are tests that engines ship with, put to the same faulty
 engines as they stand: the same body, rates, step, length and bounds, from {bodies} random
 attitudes. A dash states that the check's scenarios, or the engine's integrators, lack what the
 fault

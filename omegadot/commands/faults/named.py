@@ -1,4 +1,4 @@
-"""The words by which a diagnosis names each fault's true cause."""
+"""The phrases by which a diagnosis names each fault's true cause."""
 
 from __future__ import annotations
 
@@ -106,4 +106,4 @@ NAMES: dict[str, tuple[str, ...]] = {
 
 def is_named(fault: str, sentences: Iterable[str]) -> bool:
     """Whether one of the sentences names this fault's cause."""
-    return any(arguments in text for text in sentences for arguments in NAMES.get(fault, ()))
+    return any(phrase in text for text in sentences for phrase in NAMES.get(fault, ()))

@@ -34,7 +34,7 @@ def redraw(folder: Path, out: Path | None = None) -> Path:
     A choice of engine that was written into the run's folder is a section of it.
     """
     if folder.is_dir():
-        packed_library()  # begun before anything else is imported or read: it has a core to itself
+        packed_library()  # started first: it has a core to itself
     collecting = gc.isenabled()
     gc.disable()  # nothing that is made here is garbage before the page is whole
     try:

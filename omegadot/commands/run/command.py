@@ -34,7 +34,10 @@ def run(
         Path, typer.Option(metavar="DIR", help="Folder for the record and its report.")
     ] = Path("omegadot-run"),
     setup: Annotated[
-        Setup, typer.Option(help="Defaults that spoil physics switched off, or left as shipped.")
+        Setup,
+        typer.Option(
+            help="physics: defaults that disturb the motion are off; as-shipped: all defaults."
+        ),
     ] = Setup.physics,
     adapter: Annotated[
         list[str] | None,

@@ -1,4 +1,4 @@
-"""The cells of a study's tables: figures over several probes in few words."""
+"""The cells of a study's tables: figures over several probes, in short."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from omegadot.reference_impl.system import Array
 # Farther from a rotation than this it was misread; nearer, it has drifted, and that is measured.
 MOST_OFF = 0.1
 Angles = tuple[Array, Array]
-"""(n, 4) quaternions as the trace has them, and (n,) rad, what its digits leave open."""
+"""(n, 4) quaternions as the trace has them, and (n,) rad, the resolution by their digits."""
 
 
 def _wxyz(rotation: Rotation) -> Array:

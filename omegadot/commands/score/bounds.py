@@ -25,7 +25,7 @@ def _slope(times: Array, values: Array) -> Array:
 
 
 def digits_open(truth: Truth, trace: Trace) -> Rounding:
-    """(n,) by channel, in its units: what the digits of values and of time stamps leave open.
+    """(n,) by channel, in its units: the resolution by the digits of values and of time stamps.
 
     To first order, each in its worst direction; a stamp's part is the exact rate of change times
     what is open of the time.

@@ -1,4 +1,4 @@
-"""Which column holds what: from words like ``wx=omega_x`` or ``q=q1,q2,q3,q0``."""
+"""Which column holds what: from texts like ``wx=omega_x`` or ``q=q1,q2,q3,q0``."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _turn_role(argument: str, euler: str) -> str:
 
 
 def _roles_of(argument: str, count: int, order: str, euler: str) -> tuple[str, ...]:
-    """The roles that one word of the user's stands for. Raises UsageError."""
+    """The roles that one name of a ROLE=NAME pair stands for. Raises UsageError."""
     key = argument.lower()
     if key == "time":
         key = "t"
@@ -68,21 +68,23 @@ def _roles_of(argument: str, count: int, order: str, euler: str) -> tuple[str, .
 
 
 def columns_of(
-    table: Table, arguments: Sequence[tuple[str, Sequence[str]]], order: str, euler: str
+    table: Table, assigned: Sequence[tuple[str, Sequence[str]]], order: str, euler: str
 ) -> Columns:
     """Every role that is mapped, or named so in the file, with its column.
 
-    words: pairs of a role, or a group of roles, and the names of its columns.
+    assigned: pairs of a role, or a group of roles, and the names of its columns.
     order: wxyz or xyzw, of a quaternion's four columns.
     Raises UsageError for unknown roles, TraceError for missing columns and half groups.
     """
     if order not in QUATERNIONS:
         raise UsageError(f"--quaternion {order}: no such order; {nearest(order, QUATERNIONS)}.")
     found: Columns = {}
-    for argument, names in arguments:
-        for role, name in zip(_roles_of(argument, len(names), order, euler), names, strict=True):
+    for role_or_group, names in assigned:
+        for role, name in zip(
+            _roles_of(role_or_group, len(names), order, euler), names, strict=True
+        ):
             if role in found:
-                raise UsageError(f"--column {argument}: {role} is given twice; give it once.")
+                raise UsageError(f"--column {role_or_group}: {role} is given twice; give it once.")
             found[role] = find_column(table, name, role)
     named = {group for group, roles in GROUPS.items() if any(role in found for role in roles)}
     attitude = named & {"q", "e", "r"}
@@ -95,7 +97,7 @@ def columns_of(
             if group in "qer" and attitude:
                 continue
             found[role] = name
-    return _whole(table, found, bool(arguments))
+    return _whole(table, found, bool(assigned))
 
 
 def _whole(table: Table, found: Columns, mapped: bool) -> Columns:
@@ -127,7 +129,7 @@ def _whole(table: Table, found: Columns, mapped: bool) -> Columns:
     return found
 
 
-def arguments_of(options: Sequence[str]) -> list[tuple[str, list[str]]]:
+def assignments_of(options: Sequence[str]) -> list[tuple[str, list[str]]]:
     """``ROLE=NAME`` and ``GROUP=NAME,NAME,...`` taken apart. Raises UsageError."""
     found = []
     for option in options:

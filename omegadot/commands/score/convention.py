@@ -124,8 +124,8 @@ def _from_quaternion(parts: list[str], text: str, option: str, advice: str) -> A
 
 def axes_text(matrix: Array) -> str:
     """The text that `axes_of` reads this matrix from, for one of signed axes."""
-    arguments = []
+    axes = []
     for row in matrix:
         place = int(np.argmax(np.abs(row)))
-        arguments.append(("-" if row[place] < 0 else "") + "xyz"[place])
-    return ",".join(arguments)
+        axes.append(("-" if row[place] < 0 else "") + "xyz"[place])
+    return ",".join(axes)

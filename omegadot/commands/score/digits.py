@@ -1,4 +1,4 @@
-"""What the digits that a number is printed in leave open: half a unit of the last one.
+"""The resolution of a printed number: half a unit of the last one.
 
 Two ways of printing are common: so many decimals, or so many significant digits. A column is
 taken for the coarser of what its most decimals and its most significant digits would leave, which
@@ -19,7 +19,7 @@ from omegadot.reference_impl.system import Array
 EPS = float(np.finfo(float).eps)
 # Enough to have met the longest number of a column, few enough to look at one by one.
 MOST_LOOKED_AT = 4000
-# A double has this many digits that tell it from every other: it was printed whole.
+# A double has this many digits, enough to identify it: it was printed whole.
 ALL_DIGITS = 16
 _NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eEdD]([+-]?\d+))?$")
 
@@ -42,7 +42,7 @@ def _longest(cells: Sequence[str]) -> tuple[int, int]:
 def open_of(cells: Sequence[str], values: Array) -> Array:
     """(n,): half a unit of the last digit, a double's own rounding at least.
 
-    A column that never changes is taken at its word, and so is zero in one printed whole.
+    A column that never changes is taken as exact, and so is zero in one printed whole.
     """
     own: Array = 0.5 * EPS * np.abs(values)
     if np.all(values == values[0]):

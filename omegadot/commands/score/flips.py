@@ -1,11 +1,11 @@
-"""When the trace flips about its middle axis, beside when the exact motion does."""
+"""When the trace flips about its middle axis, compared with the exact motion."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from omegadot.commands.score.beside import ExactTrajectory
 from omegadot.commands.score.bounds import Rounding
+from omegadot.commands.score.exact_trajectory import ExactTrajectory
 from omegadot.commands.score.measured import Measured
 from omegadot.commands.score.trace import Trace
 from omegadot.gates.interpolation import Hermite

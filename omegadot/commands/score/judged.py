@@ -5,16 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from omegadot.commands.score.beside import ExactTrajectory, exact_trajectory, truth_at
 from omegadot.commands.score.bounds import Rounding, digits_open, joined, reading_bound
 from omegadot.commands.score.columns import Columns
 from omegadot.commands.score.convention import Convention
+from omegadot.commands.score.exact_trajectory import ExactTrajectory, exact_trajectory, truth_at
 from omegadot.commands.score.flips import flips_of
 from omegadot.commands.score.measured import Measured, measure_trace
 from omegadot.commands.score.plausible import check_duration, check_units
 from omegadot.commands.score.require import Requirement
 from omegadot.commands.score.shift import Shift, best_shift
-from omegadot.commands.score.steps import Compared, Comparison, Declared, beside, declared_of
+from omegadot.commands.score.steps import (
+    Compared,
+    Comparison,
+    Declared,
+    compare_schemes,
+    declared_of,
+)
 from omegadot.commands.score.table import Table
 from omegadot.commands.score.trace import Trace, trace_of
 from omegadot.commands.score.verdicts import Judgement, judgement_of
@@ -74,7 +80,7 @@ def judge_trace(case: Case, reading: Reading, making: Making) -> Judged:
     schemes = []
     if declared is not None:
         held = Compared(truth, case.initial, trace, measured, digits, bound, declared)
-        schemes = beside(held)
+        schemes = compare_schemes(held)
     trajectory = exact_trajectory(system, case.initial)
     shift = _shift(truth, trajectory, trace, bound)
     judgement = judgement_of(measured, bound, declared, schemes)

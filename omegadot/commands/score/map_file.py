@@ -1,4 +1,4 @@
-"""The same words as on the command line, in a TOML file."""
+"""The options that describe a trace, in a TOML file."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def read_map(path: Path) -> MapFile:
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if not (number if key == "time-offset" else isinstance(value, str)):
             expected = "a number" if key == "time-offset" else "a text"
-            raise UsageError(f"--map {path}: {key} is {value!r}, {expected} was expected.")
+            raise UsageError(f"--map {path}: {key} is {value!r}; give {expected}.")
     return MapFile([(role, _names(path, role, value)) for role, value in columns.items()], data)
 
 

@@ -41,9 +41,9 @@ class ParquetTable:
         if len(bad):
             more = f", and {len(bad) - 1} more" if len(bad) > 1 else ""
             found = column[int(bad[0])]
-            judgement = "is empty" if found is None else f"is {found}"
+            fault = "is empty" if found is None else f"is {found}"
             raise TraceError(
-                f"{self.file}: {self.place(int(bad[0]))}: {name!r} {judgement}, a finite number of "
+                f"{self.file}: {self.place(int(bad[0]))}: {name!r} {fault}, a finite number of "
                 f"sensible size was expected{more}."
             )
         eps = EPS_SINGLE if column.dtype == pl.Float32 else EPS_DOUBLE

@@ -41,10 +41,10 @@ def check_duration(table: Table, trace: Trace, how: Convention, duration: float)
     # The longest that does not outlast the scenario; far shorter, and it is any unit's guess.
     best = max(spans, key=lambda u: spans[u], default=None)
     fits = best is not None and spans[best] > 0.01 * duration
-    judgement = f"looks like {best}; give --time-unit {best}" if fits else ""
+    advice = f"looks like {best}; give --time-unit {best}" if fits else ""
     raise TraceError(
         f"{table.file}: runs until {end:g} s, the scenario lasts {duration:g} s; "
-        f"{judgement or 'declare the unit with --time-unit, or score it by a longer scenario'}."
+        f"{advice or 'declare the unit with --time-unit, or score it by a longer scenario'}."
     )
 
 

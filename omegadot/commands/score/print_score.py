@@ -23,7 +23,7 @@ WIDTH_WHEN_PIPED = 200
 
 
 def print_text(result: ScoreResult) -> None:
-    """The table of channels, then what else must be reported, and where the page is."""
+    """The table of channels, then the sentences, and where the page is."""
     console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
     found, times = result.found, result.found.trace.times
     console.print(
@@ -47,12 +47,12 @@ def _print_others(result: ScoreResult) -> None:
     if others:
         engines = ", ".join(dict.fromkeys(task.engine for task in others))
         ended = f"{len(failed)} of them failed" if failed else "none failed"
-        typer.echo(f"Run beside it: {engines}, {len(others)} runs, {ended}.")
+        typer.echo(f"Other engines: {engines}; {len(others)} runs, {ended}.")
 
 
 def _table(found: Judged) -> Table:
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
-    for head in ("channel", "largest", "at the end", "rms", "left open", "unit", "", "why"):
+    for head in ("channel", "largest", "at the end", "rms", "resolution", "unit", "", "why"):
         table.add_column(head, no_wrap=True)
     for channel, error in found.measured.error.items():
         factor, unit = factor_of(found, channel)

@@ -1,4 +1,4 @@
-"""A scored trace as a record: it stands where engines stand, and beside them if some are run."""
+"""A scored trace as a record: the trace takes an engine's place, next to engines that are run."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def scored_record(
     command: Sequence[str],
     report: Reporter,
 ) -> Record:
-    """The record of the trace and of the engines that are run beside it."""
+    """The record of the trace and of the engines that are run with it."""
     started = time.perf_counter()
     request = RunRequest([found.case], list(choices))
     outcome = execute(request, report) if choices else _alone(found)
@@ -48,8 +48,8 @@ def scored_record(
         pl.concat([base.metrics, metrics_of(labels, version_of(found), rows)]),
         trajectories_of(base.trajectories, found, labels),
     )
-    beside = [headline(summarise(record))] if choices else []
-    record.run["headline"] = " ".join([sentence_of(found, rows, name), *beside])
+    engines = [headline(summarise(record))] if choices else []
+    record.run["headline"] = " ".join([sentence_of(found, rows, name), *engines])
     return record
 
 
@@ -64,7 +64,7 @@ def version_of(found: Judged) -> str:
 
 def conventions_of(how: Convention) -> list[str]:
     """How the trace was read, one clause each."""
-    judgement = [
+    clauses = [
         f"time in {how.time_unit}, angles in {how.angle_unit}, rates in {how.rate_unit}, "
         f"lengths in {how.length_unit}",
         f"omega in {how.omega_frame} axes, attitude {how.attitude}",
@@ -72,8 +72,8 @@ def conventions_of(how: Convention) -> list[str]:
     for kind, axes in (("world", how.world), ("body", how.body)):
         if not np.array_equal(axes, np.eye(3)):
             exact = bool(np.all(np.isin(axes, (-1.0, 0.0, 1.0))))
-            judgement.append(f"{kind} axes turned" + (f": {axes_text(axes)}" if exact else ""))
-    return judgement
+            clauses.append(f"{kind} axes turned" + (f": {axes_text(axes)}" if exact else ""))
+    return clauses
 
 
 def _engine(found: Judged, name: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""How good a trace must be, where somebody states so."""
+"""How good a trace must be, where a requirement is given."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ class Requirement:
         return f"{value / UNITS[kind][unit]:.4g}{'' if unit == '1' else unit}"
 
 
-def requirements_of(arguments: Mapping[str, str | None]) -> list[Requirement]:
+def requirements_of(texts: Mapping[str, str | None]) -> list[Requirement]:
     """By option name, without the dashes. Raises UsageError."""
     return [
         Requirement(name, text, quantity(text, KINDS[name], f"--{name}", needs_unit=True))
-        for name, text in arguments.items()
+        for name, text in texts.items()
         if text is not None
     ]
 

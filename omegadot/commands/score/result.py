@@ -22,7 +22,7 @@ UNITS = {"omega": "rad/s", "attitude": "rad", "position": "m"}
 class ChannelScore:
     """A channel's error against the exact solution, in `unit`; "1" is relative.
 
-    max, end, rms, start: of the samples.  digits_open: what the digits of the file leave open.
+    max, end, rms, start: of the samples.  digits_open: the resolution of the data, by its digits.
     bound: that, rounding and the floor together.  verdict: pass, fail or info, with kind and note.
     """
 
@@ -40,7 +40,7 @@ class ChannelScore:
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class ScoreResult(RunResult):
-    """A trace scored, and the record it stands in, with the engines that were run besides.
+    """A trace scored, and the record it stands in, with the engines that were run with it.
 
     name: the trace's, among the engines.  found: everything that was found.  rows: its measures.
     """
@@ -71,7 +71,7 @@ class ScoreResult(RunResult):
 
     @property
     def sentences(self) -> list[str]:
-        """What there is to say besides the channels' errors."""
+        """What else was found, one sentence each."""
         return sentences(self.found, list(self.rows))
 
 

@@ -103,11 +103,9 @@ def _shift(found: Judged) -> list[Row]:
     rows = [Row("trajectory", "time", "time_shift", shift.seconds, "s", shift.open, note=note)]
     if shift.of == "omega":
         rate = found.truth.yardstick.rate
-        judgement = f"{shift.before / rate:.1e} without the shift"
+        note = f"{shift.before / rate:.1e} without the shift"
         left, bound = shift.after / rate, shift.bound / rate
-        rows.append(
-            Row("trajectory", "omega", "residual_after_shift", left, "1", bound, note=judgement)
-        )
+        rows.append(Row("trajectory", "omega", "residual_after_shift", left, "1", bound, note=note))
     if shift.attitude_after is not None:
         left = shift.attitude_after
         rows.append(Row("trajectory", "attitude", "residual_after_shift", left, "rad"))

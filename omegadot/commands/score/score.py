@@ -115,8 +115,10 @@ def case_given(scenario: ScenarioLike) -> Case:
 
 
 def _choices(name: str, engines: Sequence[EngineLike]) -> list[EngineChoice]:
-    choices = engine_choices(engines) if engines else []
+    choices = engine_choices(engines, option="--with") if engines else []
     taken = (*RESERVED, *(choice.name for choice in choices))
-    if name in taken or not name.strip():
-        raise UsageError(f"--name {name}: an engine is called so; give the trace another.")
+    if not name.strip():
+        raise UsageError("--name is empty; give the trace a name.")
+    if name in taken:
+        raise UsageError(f"--name {name}: an engine has this name; give the trace another.")
     return choices

@@ -34,7 +34,7 @@ def largest(found: Judged, channel: str) -> str:
 
 
 def sentences(found: Judged, rows: list[Row]) -> list[str]:
-    """What the table does not say."""
+    """What the table of channels does not show, one sentence each."""
     parts: list[Callable[[], list[str]]] = [
         lambda: _late(found),
         lambda: _start(found),
@@ -46,7 +46,7 @@ def sentences(found: Judged, rows: list[Row]) -> list[str]:
 
 
 def _late(found: Judged) -> list[str]:
-    shift, judgement = found.shift, []
+    shift, lines = found.shift, list[str]()
     if shift is None:
         return []
     spins = shift.of == "omega"
@@ -54,59 +54,57 @@ def _late(found: Judged) -> list[str]:
     unit, what = (found.reading.how.rate_unit, "omega") if spins else ("rad", "the attitude")
     before, after = f"{factor * shift.before:.3g} {unit}", f"{factor * shift.after:.3g} {unit}"
     if shift.explains:
-        judgement.append(
-            f"The trace is {shift.as_text}, and that is its error: {what} is off by {before} as it "
-            f"stands and by {after} after the shift."
+        lines.append(
+            f"Best-fit time shift: {shift.as_text}. It explains the error: {what} is off by "
+            f"{before} without the shift and by {after} with it."
         )
     elif shift.seen:
-        judgement.append(
+        lines.append(
             f"Best-fit time shift: {shift.as_text}. It explains only part of the error: {what} is "
             f"off by {before} without the shift and by {after} with it."
         )
     noise = scatter(shift)
     if noise is not None:
-        judgement.append(
-            f"What is left of {what} looks like noise: neighbouring samples are uncorrelated, "
-            f"{factor * noise:.3g} {unit} (standard deviation, each axis)."
+        lines.append(
+            f"The remaining error of {what} looks like noise: neighbouring samples are "
+            f"uncorrelated, {factor * noise:.3g} {unit} (standard deviation, each axis)."
         )
-    return judgement
+    return lines
 
 
 def _start(found: Judged) -> list[str]:
-    judgement = []
+    lines = []
     if found.trace.times[0] > 0.0:
-        judgement.append(
-            f"The first sample is {found.trace.times[0]:g} s after the scenario's start."
-        )
+        lines.append(f"The first sample is {found.trace.times[0]:g} s after the scenario's start.")
     for channel in ("attitude", "omega", "position"):
         error = found.measured.error.get(channel)
         if error is not None and error[0] > found.bound[channel][0]:
             factor, unit = factor_of(found, channel)
-            judgement.append(
+            lines.append(
                 f"The first sample is not the scenario's state: {channel} is off by "
-                f"{factor * float(error[0]):.3g} {unit}, of which digits and rounding leave open "
+                f"{factor * float(error[0]):.3g} {unit}; digits and rounding account for "
                 f"{factor * float(found.bound[channel][0]):.2g}."
             )
-    return judgement
+    return lines
 
 
 def _notes(rows: list[Row]) -> list[str]:
-    judgement = []
+    lines = []
     for row in rows:
         if row.gate == "scheme":
-            judgement.append(f"Scheme: {row.note}.")
+            lines.append(f"Scheme: {row.note}.")
         elif row.gate == "equation" and row.channel == "omega_dot":
-            judgement.append(
+            lines.append(
                 f"omega-dot against the equation at the trace's own states: {row.value:.2e} "
                 f"(bound {row.bound:.1e}), {row.note or 'within it'}."
             )
         elif row.metric == "flip_time_error":
-            judgement.append(f"Flip times: off by at most {row.value:.3g} s ({row.note}).")
+            lines.append(f"Flip times: off by at most {row.value:.3g} s ({row.note}).")
         elif row.metric == "requirement":
             name = "flip time" if row.channel == "time" else row.channel.replace("_", " ")
             verb = "met" if row.verdict == "pass" else "missed"
-            judgement.append(f"Requirement {verb}: {name}, {row.note.removeprefix('required: ')}.")
-    return judgement
+            lines.append(f"Requirement {verb}: {name}, {row.note.removeprefix('required: ')}.")
+    return lines
 
 
 def _digits(found: Judged) -> list[str]:
@@ -114,18 +112,18 @@ def _digits(found: Judged) -> list[str]:
     for channel in ("omega", "attitude", "position"):
         if channel in found.measured.error:
             factor, unit = factor_of(found, channel)
-            opened = factor * float(np.max(found.digits[channel]))
-            parts.append(f"{opened:.1g} {unit} of {channel}")
-    return [f"The digits that the trace is written in leave open {', '.join(parts)}."] * bool(parts)
+            resolution = factor * float(np.max(found.digits[channel]))
+            parts.append(f"{resolution:.1g} {unit} of {channel}")
+    return [f"Resolution of the data (digits as written): {', '.join(parts)}."] * bool(parts)
 
 
 def _absent(found: Judged) -> list[str]:
-    judgement = []
+    lines = []
     if found.measured.absent:
         names = ", ".join(name.replace("_", " ") for name in found.measured.absent)
-        judgement.append(f"Not given, so not judged: {names}.")
+        lines.append(f"Not given, so not judged: {names}.")
     lacking = [] if found.trace.omega_dot is not None else ["equation (no omega-dot)"]
     if found.declared is None:
         lacking.append("scheme (declare --integrator-scheme and --timestep)")
     lacking.append("model and cost (a trace has none)")
-    return [*judgement, f"Gates not evaluated: {', '.join(lacking)}."]
+    return [*lines, f"Gates not evaluated: {', '.join(lacking)}."]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from omegadot.commands.score.columns import arguments_of, columns_of
+from omegadot.commands.score.columns import assignments_of, columns_of
 from omegadot.commands.score.convention import (
     Convention,
     axes_of,
@@ -32,16 +32,16 @@ class Declaration:
     settings: Mapping[str, Any] = field(default_factory=dict)
 
 
-def settings_of(terms: Declaration) -> tuple[list[tuple[str, list[str]]], dict[str, Any]]:
+def settings_of(declaration: Declaration) -> tuple[list[tuple[str, list[str]]], dict[str, Any]]:
     """Columns and settings, those declared here before the map's. Raises UsageError."""
-    if isinstance(terms.columns, Mapping):
-        own = [(role, _names(names)) for role, names in terms.columns.items()]
+    if isinstance(declaration.columns, Mapping):
+        own = [(role, _names(names)) for role, names in declaration.columns.items()]
     else:
-        own = arguments_of(_names(terms.columns))
-    given = {key: value for key, value in terms.settings.items() if value is not None}
-    if terms.map_file is None:
+        own = assignments_of(_names(declaration.columns))
+    given = {key: value for key, value in declaration.settings.items() if value is not None}
+    if declaration.map_file is None:
         return own, given
-    mapped = read_map(terms.map_file)
+    mapped = read_map(declaration.map_file)
     declared = {role for role, _ in own}
     kept = [(role, names) for role, names in mapped.columns if role not in declared]
     return own + kept, {**mapped.settings, **given}
@@ -53,22 +53,22 @@ def _names(names: str | Sequence[str]) -> list[str]:
 
 def convention_of(settings: Mapping[str, Any]) -> Convention:
     """The convention that the settings declare. Raises UsageError."""
-    names = {
+    fields = {
         key.replace("-", "_"): value
         for key, value in settings.items()
         if key not in ("quaternion", "world-axes", "body-axes", "attitude-is")
     }
     if "attitude-is" in settings:
-        names["attitude"] = settings["attitude-is"]
+        fields["attitude"] = settings["attitude-is"]
     for key in ("world", "body"):
         if f"{key}-axes" in settings:
-            names[key] = axes_of(settings[f"{key}-axes"], f"--{key}-axes")
-    return check_convention(Convention(**names))
+            fields[key] = axes_of(settings[f"{key}-axes"], f"--{key}-axes")
+    return check_convention(Convention(**fields))
 
 
-def reading_of(terms: Declaration, table: Table) -> Reading:
+def reading_of(declaration: Declaration, table: Table) -> Reading:
     """The trace's columns and convention. Raises UsageError and TraceError."""
-    columns, settings = settings_of(terms)
+    columns, settings = settings_of(declaration)
     how = convention_of(settings)
     check_sequence(how.euler)
     order = settings.get("quaternion", DEFAULT_ORDER)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.commands.score.beside import ExactTrajectory
+from omegadot.commands.score.exact_trajectory import ExactTrajectory
 from omegadot.commands.score.trace import Trace
 from omegadot.gates.phase import FARTHEST, MOST_ITERATIONS
 from omegadot.gates.scales import EPS, norm
@@ -27,8 +27,9 @@ EXPLAINS = 0.1
 class Shift:
     """The trace at t is nearest to the exact trajectory at t + seconds; negative is late.
 
-    open: s, what digits and rounding leave open of it.  before, after: the largest error, rad/s of
-    omega, or rad of attitude where no omega is given.  left: (m, 3), what is left at the samples.
+    open: s, the resolution of the shift by digits and rounding.  before, after: the largest error,
+    rad/s of omega, or rad of attitude where no omega is given.
+    left: (m, 3), the remaining error at the samples.
     attitude_after: rad, the largest attitude error that is left; None where it is not given.
     bound: what digits and rounding account for of `after`.  of: "omega" or "attitude".
     """
@@ -44,7 +45,7 @@ class Shift:
 
     @property
     def seen(self) -> bool:
-        """Whether it is more than digits and rounding leave open."""
+        """Whether it is larger than its resolution."""
         return abs(self.seconds) > self.open
 
     @property

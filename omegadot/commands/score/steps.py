@@ -8,8 +8,8 @@ from math import gcd
 
 import numpy as np
 
-from omegadot.commands.score.beside import part_of
 from omegadot.commands.score.bounds import Rounding, joined
+from omegadot.commands.score.exact_trajectory import part_of
 from omegadot.commands.score.measured import Measured, distance
 from omegadot.commands.score.trace import Trace
 from omegadot.gates.likeness import Likeness, likeness
@@ -22,13 +22,13 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State
 
 MOST_STEPS = 1_000_000
-# All schemes are only stepped beside a trace where that takes seconds, not minutes.
+# All schemes are stepped only where that takes seconds, not minutes.
 MOST_STEPS_OF_ALL = 10_000
 
 
 @dataclass(frozen=True)
 class Declared:
-    """What is reported of a trace's making. numbers: (n,), the steps that its samples stand at."""
+    """How a trace was made, as declared. numbers: (n,), the steps that its samples stand at."""
 
     scheme: str | None
     timestep: float
@@ -52,7 +52,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Compared:
-    """What a scheme is held against. bound: (n,) by channel, of an exact trajectory's imitation."""
+    """What a scheme is compared with. bound: (n,) by channel, of an exact trace."""
 
     truth: Truth
     initial: State
@@ -60,7 +60,7 @@ class Compared:
     measured: Measured
     digits: Rounding
     bound: Rounding
-    judgement: Declared
+    declared: Declared
 
     @property
     def starts_elsewhere(self) -> bool:
@@ -100,17 +100,17 @@ def declared_of(trace: Trace, scheme: str | None, timestep: float | None) -> Dec
     return Declared(scheme, timestep, numbers)
 
 
-def beside(held: Compared) -> list[Comparison]:
+def compare_schemes(held: Compared) -> list[Comparison]:
     """The scheme that is declared; every scheme if none is, or if it is another that was stepped.
 
     The declared one comes first; from the trace's own start, where that makes it agree.
     """
-    named = held.judgement.scheme
+    named = held.declared.scheme
     first = [] if named is None else [_against(held, named)]
     if named is not None and not first[0].found.agree and held.starts_elsewhere:
         own = _against(held, named, own_start=True)
         first = [own] if own.found.agree else first
-    if (first and first[0].found.agree) or held.judgement.numbers[-1] > MOST_STEPS_OF_ALL:
+    if (first and first[0].found.agree) or held.declared.numbers[-1] > MOST_STEPS_OF_ALL:
         return first
     return first + [_against(held, name) for name in SCHEMES if name != named]
 
@@ -123,10 +123,10 @@ def _against(held: Compared, scheme: str, own_start: bool = False) -> Comparison
 
 
 def _stepped(held: Compared, scheme: str, own_start: bool, way: Coordinates) -> Comparison:
-    judgement, yardstick, error = held.judgement, held.truth.yardstick, held.measured.error
-    numbers = judgement.numbers.astype(int)
+    declared, yardstick, error = held.declared, held.truth.yardstick, held.measured.error
+    numbers = declared.numbers.astype(int)
     every = reduce(gcd, (int(n) for n in numbers), 0) or 1
-    plan = [Steps(judgement.timestep, int(numbers[-1]), every)]
+    plan = [Steps(declared.timestep, int(numbers[-1]), every)]
     initial = held.initial
     if own_start:
         initial = part_of(held.measured.state, 0)
@@ -136,7 +136,7 @@ def _stepped(held: Compared, scheme: str, own_start: bool, way: Coordinates) -> 
         run = companion(yardstick.system, initial, scheme, yardstick.rate, plan, way)[0]
         rows = numbers // every
         state, growth = part_of(run.state, rows), run.growth[rows]
-        rounding = yardstick.round_off(judgement.timestep, judgement.numbers, growth)
+        rounding = yardstick.round_off(declared.timestep, declared.numbers, growth)
         bound = joined(rounding, held.digits)
         if own_start:
             bound = joined(bound, _start_open(held.digits, growth))

@@ -19,7 +19,7 @@ class TraceError(UsageError):
 
 @dataclass(frozen=True)
 class Column:
-    """One column. values: (n,).  open: (n,), what the digits it is written in leave open."""
+    """One column. values: (n,).  open: (n,), their resolution, by the digits as written."""
 
     values: Array
     open: Array

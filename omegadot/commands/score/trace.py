@@ -1,4 +1,4 @@
-"""A trace in the project's own units and frames, with what its digits leave open."""
+"""A trace in the project's own units and frames, with the resolution of its digits."""
 
 from __future__ import annotations
 

@@ -53,10 +53,10 @@ def trajectories_of(known: pl.DataFrame, found: Judged, labels: dict[str, Any]) 
     times, truth = found.trace.times, found.truth
     exact = {**labels, "engine": "exact", "integrator": truth.source, "timestep": None}
     parts = {**vars(truth.state), "omega_dot": truth.omega_dot}
-    beside = _samples(exact, times, parts)
+    sampled = _samples(exact, times, parts)
     at_known = known.filter(pl.col("engine") == "exact").get_column("time").implode()
-    beside = beside.filter(~pl.col("time").is_in(at_known))
-    return pl.concat([known, beside, _samples(labels, times, _given(found))])
+    sampled = sampled.filter(~pl.col("time").is_in(at_known))
+    return pl.concat([known, sampled, _samples(labels, times, _given(found))])
 
 
 def _given(found: Judged) -> dict[str, Array]:

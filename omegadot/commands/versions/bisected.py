@@ -14,8 +14,8 @@ from omegadot.commands.versions.measure import Portrait
 from omegadot.commands.versions.metric import (
     KINDS,
     Name,
-    arguments_of,
     matching,
+    terms_of,
     title,
     unknown_metric,
 )
@@ -27,7 +27,7 @@ from omegadot.harness.usage import UsageError, nearest
 
 
 def bisect_metric(
-    arguments: str,
+    query: str,
     product: Product,
     gallery: Gallery,
     versions: Sequence[str],
@@ -35,12 +35,12 @@ def bisect_metric(
 ) -> tuple[list[Portrait], Record]:
     """The versions looked at, rising, and the releases in which a metric changed.
 
-    Raises UsageError where no metric has all of these words.
+    Raises UsageError where no metric has all of these terms.
     """
     known: dict[Name, None] = {}
 
     def is_meant(name: Name) -> bool:
-        return bool(matching(arguments, [name], product.engine))
+        return bool(matching(query, [name], product.engine))
 
     def choose(names: list[Name]) -> Wanted:
         if not known:  # the lower end names what there is, the upper end may add to it
@@ -60,25 +60,25 @@ def bisect_metric(
 
     def compare(one: Portrait, other: Portrait) -> list[Change]:
         if not known:
-            raise UsageError(_no_such(arguments, first))
+            raise UsageError(_no_such(query, first))
         return changes_between(one, other, is_meant)
 
     first: list[Name] = []
     found: Bisection = bisect(versions, look, compare)
     portraits = sorted(found.looked_at, key=lambda p: Version(p.version))
-    return portraits, bisection_record(arguments, list(known), found)
+    return portraits, bisection_record(query, list(known), found)
 
 
 def _reported(portrait: Portrait, names: Iterable[Name]) -> bool:
     """Whether a version reports any of the metrics, be it that it does not have them."""
-    figures = [portrait.figures.get(name) for name in names if name[0] not in portrait.untold]
+    figures = [portrait.figures.get(name) for name in names if name[0] not in portrait.unreported]
     return any(figure is None or figure.value is not None for figure in figures)
 
 
-def _no_such(arguments: str, names: Sequence[Name]) -> str:
-    """Which word is in no metric's name, and what metrics are called."""
-    there = {argument for name in names for argument in arguments_of(title(name))}
-    unknown = unknown_metric(arguments, names)
+def _no_such(query: str, names: Sequence[Name]) -> str:
+    """Which term is in no metric's name, and what metrics are called."""
+    there = {term for name in names for term in terms_of(title(name))}
+    unknown = unknown_metric(query, names)
     kinds = ", ".join(kind for kind in KINDS if any(name[0] == kind for name in names))
     what = (
         f"no metric has {unknown[0]!r} in its name"
@@ -90,7 +90,7 @@ def _no_such(arguments: str, names: Sequence[Name]) -> str:
     example = next((title(n) for n in names if n[0] == "order"), title(names[0]) if names else "")
     systems = ", ".join(probe.kind for probe in PROBES)
     return (
-        f"--bisect {arguments}: {what}{close}; give terms of a name such as {example}: a kind "
+        f"--bisect {query}: {what}{close}; give terms of a name such as {example}: a kind "
         f"({kinds}), an integrator, a system ({systems}) or a scenario, "
         f"a channel ({', '.join(channel.replace('_', ' ') for channel in CHANNELS)})."
     )

@@ -11,7 +11,7 @@ from omegadot.commands.versions.measure import Portrait
 from omegadot.commands.versions.metric import KINDS, Figure, Name, differ
 from omegadot.commands.versions.speed import Ratio, pace_of, ratio_of
 
-# The place of the integrator in a metric's name, by the name's first word.
+# The place of the integrator in a metric's name, by the name's first term.
 _INTEGRATOR_AT = {"scheme": 1, "order": 1, "drift": 2}
 
 
@@ -45,14 +45,14 @@ def changes_between(
 ) -> list[Change]:
     """Every metric that differs, in the order of kinds.
 
-    Where an integrator is only in one of the two, that is all there is to say of it.
+    Where an integrator is only in one of the two, no other change of it is reported.
     """
     both = set(one.integrators) & set(other.integrators)
     names = filter(wanted, dict.fromkeys([*one.figures, *other.figures]))
     found = []
     for name in names:
         integrator = integrator_of(name)
-        if name[0] in one.untold | other.untold:
+        if name[0] in one.unreported | other.unreported:
             continue
         if integrator and integrator not in both and wanted(("integrator", integrator)):
             continue

@@ -40,7 +40,7 @@ BLOWN_UP = Figure("blew up")
 
 
 def reported_figures(description: Description, native: dict[str, dict[str, str]]) -> Figures:
-    """What an engine reports of itself and, where its adapter asks it, what it itself answers."""
+    """What an engine reports and, where its adapter gives access, what its own functions return."""
     found: Figures = {}
     for part, kind in (("conventions", "convention"), ("defaults", "default")):
         for name, value in native.get(part, {}).items():

@@ -83,15 +83,15 @@ class Gallery:
     def _check_start(self, portrait: Portrait, place: Place) -> None:
         if portrait.outcome == "not-installed" and place.origin != OWN:
             portrait.reason = f"installed, and it cannot be imported: {portrait.reason}"
-        statement = version_of(portrait.statement)
+        reported = version_of(portrait.reported_version)
         if (
             portrait.ok
             and place.origin == OWN
-            and statement
-            and statement != version_of(portrait.version)
+            and reported
+            and reported != version_of(portrait.version)
         ):
             portrait.outcome = "not-installed"
-            portrait.reason = f"the interpreter given for it has {portrait.statement}"
+            portrait.reason = f"the interpreter given for it has {portrait.reported_version}"
 
     def measure_all(
         self, versions: Sequence[str], jobs: int, seen: Callable[[Portrait], object]

@@ -45,23 +45,23 @@ REQUESTED_OF_ENGINE = frozenset({"convention", "default"})
 class Portrait:
     """One version. outcome: "ok", or why there is nothing of it, with the reason.
 
-    version: as requested.  statement: the version that the engine reports.  faults: where it is
-    not as its adapter declares, or wrong.  has: its integrators, those not looked at included.
-    troubles: questions that it failed to answer.  untold: kinds of metric that it was
-    requested in vain.
+    version: as requested.  reported_version: of the engine itself.  faults: where it is not as
+    its adapter declares, or wrong.  has: its integrators, those not looked at included.
+    troubles: requests that it failed to answer.  unreported: kinds of metric that it should report
+    and did not.
     """
 
     version: str
     outcome: str = "ok"
     reason: str = ""
     origin: str = ""
-    statement: str = ""
+    reported_version: str = ""
     integrators: list[str] = field(default_factory=list)
     has: list[str] = field(default_factory=list)
     figures: Figures = field(default_factory=dict)
     faults: list[str] = field(default_factory=list)
     troubles: list[str] = field(default_factory=list)
-    untold: frozenset[str] = frozenset()
+    unreported: frozenset[str] = frozenset()
     speeds: dict[str, list[float]] = field(default_factory=dict)
 
     @property
@@ -94,13 +94,13 @@ class Sitting:
             portrait.outcome, portrait.reason = answer.outcome, answer.reason
             return []
         self._description = description_of(answer.result)
-        portrait.statement = self._description.version
+        portrait.reported_version = self._description.version
         portrait.has = [integrator.name for integrator in self._description.integrators]
         portrait.integrators = self._aims.chosen(self._description)
         answer = self._worker.request("native")
         native = answer.result if answer.ok else {}
         if not answer.ok:
-            portrait.untold = REQUESTED_OF_ENGINE
+            portrait.unreported = REQUESTED_OF_ENGINE
         if not answer.ok and answer.outcome != "unsupported":
             self._note("its conventions", answer)
         portrait.figures |= reported_figures(self._description, native)

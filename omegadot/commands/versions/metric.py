@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from omegadot.reports.text.numbers import short
 
-# The first word of a metric's name: what kind of figure it is, in the order that they are reported
+# The first term of a metric's name: what kind of figure it is, in the order that they are reported
 # in.
 KINDS = ("convention", "default", "setup", "integrator", "scheme", "order", "drift", "equation")
 RATIO = "energy ratio E/E0"
@@ -65,34 +65,26 @@ def shown(name: Name, figure: Figure | None) -> str:
     return short(figure.value)
 
 
-def arguments_of(text: str) -> set[str]:
-    """The words of a name, in lower case: what starts with a letter, and numbers."""
+def terms_of(text: str) -> set[str]:
+    """The terms of a name, in lower case: what starts with a letter, and numbers."""
     found = re.findall(r"[a-z][a-z0-9]*|\d[\d.]*", text.lower())
-    return {re.sub(r"(\.\d*?)0+$", r"\1", argument).rstrip(".") for argument in found}
+    return {re.sub(r"(\.\d*?)0+$", r"\1", term).rstrip(".") for term in found}
 
 
-def _singular(arguments: set[str]) -> set[str]:
-    """Words as they are compared: an s at the end, as of several, does not count."""
-    return {argument.removesuffix("s") for argument in arguments}
+def _singular(terms: set[str]) -> set[str]:
+    """Terms as they are compared: an s at the end, as of several, does not count."""
+    return {term.removesuffix("s") for term in terms}
 
 
-def unknown_metric(arguments: str, names: Iterable[Name], engine: str = "") -> list[str]:
-    """The words that are in no metric's name."""
-    there = _singular(
-        {argument for name in names for argument in arguments_of(title((engine, *name)))}
-    )
+def unknown_metric(query: str, names: Iterable[Name], engine: str = "") -> list[str]:
+    """The terms that are in no metric's name."""
+    there = _singular({term for name in names for term in terms_of(title((engine, *name)))})
+    return [term for term in sorted(terms_of(query)) if not _singular({term}) <= there]
+
+
+def matching(query: str, names: Iterable[Name], engine: str = "") -> list[Name]:
+    """The metrics whose names have all of the terms, in any order."""
+    wanted = _singular(terms_of(query))
     return [
-        argument
-        for argument in sorted(arguments_of(arguments))
-        if not _singular({argument}) <= there
-    ]
-
-
-def matching(arguments: str, names: Iterable[Name], engine: str = "") -> list[Name]:
-    """The metrics whose names have all of the words, in any order."""
-    wanted = _singular(arguments_of(arguments))
-    return [
-        name
-        for name in names
-        if wanted and wanted <= _singular(arguments_of(title((engine, *name))))
+        name for name in names if wanted and wanted <= _singular(terms_of(title((engine, *name))))
     ]

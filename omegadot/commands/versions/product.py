@@ -1,4 +1,4 @@
-"""An engine as a product with releases: its adapter, its package, and what it needs beside it."""
+"""An engine as a product with releases: its adapter, its package, and what it needs with it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from omegadot.adapters.registry import BUILT_IN
 from omegadot.harness.usage import UsageError, nearest
 
-BESIDE = ("numpy", "scipy")  # what a worker needs besides its engine
+ALWAYS = ("numpy", "scipy")  # what a worker needs besides its engine
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Product:
         """What to install for a release."""
         extra = self.extras.get(version)
         more = extra.requirements if extra else ()
-        return [f"{self.package}=={version}", *BESIDE, *more]
+        return [f"{self.package}=={version}", *ALWAYS, *more]
 
 
 _OLDER_LIBRARIES = Extra(

@@ -78,7 +78,7 @@ def _version(portrait: Portrait) -> Record:
         "outcome": portrait.outcome,
         "reason": portrait.reason,
         "origin": portrait.origin,
-        "says": portrait.statement,
+        "reported_version": portrait.reported_version,
         "integrators": portrait.integrators,
         "faults": portrait.faults,
         "troubles": portrait.troubles,
@@ -100,7 +100,7 @@ def _figure(name: Name, figure: Figure | None) -> Record | None:
 
 
 def change_record(change: Change) -> Record:
-    """A change, with the parts of its name that tell what it is about."""
+    """A change, with the parts of its name that identify it."""
     return {
         "metric": title(change.name),
         "kind": change.name[0],
@@ -112,10 +112,10 @@ def change_record(change: Change) -> Record:
     }
 
 
-def bisection_record(arguments: str, matched: Sequence[Name], found: Bisection) -> Record:
+def bisection_record(query: str, matched: Sequence[Name], found: Bisection) -> Record:
     """The releases found, and what was looked at on the way."""
     return {
-        "query": arguments,
+        "query": query,
         "metrics": [title(name) for name in matched],
         "low": found.low.version if found.low else None,
         "high": found.high.version if found.high else None,

@@ -77,7 +77,7 @@ class VersionsResult:
         return self.comparable and found and not set(self.faults) & set(self.known)
 
     def page(self) -> str:
-        """The page: one HTML text that needs nothing beside it."""
+        """The page: one HTML text that needs no other file."""
         return draw_versions(self.record)
 
     def save(self, folder: str | os.PathLike[str]) -> Path:

@@ -13,7 +13,7 @@ from omegadot.scenarios.quantities import LARGEST, SMALLEST
 
 # decimal ASCII, as XML Schema and C++ streams have it: no underscores, no infinity, no nan
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-_WORD = re.compile(r"[^ \t\r\n]+")
+_TERM = re.compile(r"[^ \t\r\n]+")
 
 
 @dataclass(frozen=True)
@@ -71,6 +71,6 @@ class Place:
 
 
 def numbers_in(text: str) -> list[float]:
-    """The numbers in a text; none where a word of it is no number."""
-    words: Sequence[str] = _WORD.findall(text)
-    return [float(word) for word in words] if all(map(_NUMBER.fullmatch, words)) else []
+    """The numbers in a text; none where a term of it is no number."""
+    terms: Sequence[str] = _TERM.findall(text)
+    return [float(term) for term in terms] if all(map(_NUMBER.fullmatch, terms)) else []

@@ -13,10 +13,10 @@ from omegadot.scenarios.links.turns import Matrix, of_quaternion, roll_pitch_yaw
 
 def flag(text: str | None, place: Place) -> bool:
     """A truth value; false where none is given."""
-    word = (text or "false").strip().lower()
-    if word not in ("true", "1", "false", "0"):
+    flag = (text or "false").strip().lower()
+    if flag not in ("true", "1", "false", "0"):
         place.refuse(repr(text), "write true or false")
-    return word in ("true", "1")
+    return flag in ("true", "1")
 
 
 def pose_of(pose: Element | None, place: Place) -> tuple[list[float], Matrix]:

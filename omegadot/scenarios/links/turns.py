@@ -23,7 +23,7 @@ def _about(axis: int, angle: float) -> Matrix:
 
 
 def roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Matrix:
-    """``Rz(yaw) Ry(pitch) Rx(roll)``: about the fixed axes x, y, z in turn, as URDF and SDF say."""
+    """``Rz(yaw) Ry(pitch) Rx(roll)``: about fixed x, y, z in turn, as URDF and SDF define."""
     found: Matrix = _about(2, yaw) @ _about(1, pitch) @ _about(0, roll)
     return found
 

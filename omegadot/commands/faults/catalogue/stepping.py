@@ -135,7 +135,7 @@ class MomentumCorrected(Spoiled):
 
 @fault("stepping", "scheme")
 class StepSlightlyLong(Spoiled):
-    """Steps are 0.1 % longer than they say."""
+    """Steps are 0.1 % longer than requested."""
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int

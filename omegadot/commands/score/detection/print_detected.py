@@ -48,28 +48,28 @@ def _lines(trace: Path, scenario: str, found: Detected, fitting: list[Reading]) 
     if len(fitting) > 1:
         return _ambiguous(found, fitting)
     best = fitting[0]
-    judgement = [
+    lines = [
         f"One convention fits, to {best.misfit:.1e} of the motion:",
         _command(trace, scenario, best),
     ]
     if found.others:
         second = found.others[0]
         times = second.misfit / best.misfit if best.misfit > 0.0 else math.inf
-        judgement.append(
+        lines.append(
             f"The next best is {times:.0e} times as far off ({second.misfit:.1e}): "
             f"{' '.join(_different(second, best))}"
         )
-    return judgement + _lacking(best)
+    return lines + _lacking(best)
 
 
 def _ambiguous(found: Detected, fitting: list[Reading]) -> list[str]:
     why = "This motion does not distinguish them"
     if found.turn < 0.1:
         why = f"The body turns by {found.turn:.1e} rad only, too little to distinguish them"
-    judgement = [f"Ambiguous: {len(fitting)} conventions fit alike. {why}; nothing is guessed."]
-    judgement += [f"  {' '.join(reading.options())}" for reading in fitting[:MOST_SHOWN]]
+    lines = [f"Ambiguous: {len(fitting)} conventions fit alike. {why}; nothing is guessed."]
+    lines += [f"  {' '.join(reading.options())}" for reading in fitting[:MOST_SHOWN]]
     more = len(fitting) - MOST_SHOWN
-    return judgement + ([f"  and {more} more"] if more > 0 else [])
+    return lines + ([f"  and {more} more"] if more > 0 else [])
 
 
 def _command(trace: Path, scenario: str, best: Reading) -> str:
@@ -84,9 +84,9 @@ def _different(second: Reading, best: Reading) -> list[str]:
 
 
 def _lacking(best: Reading) -> list[str]:
-    judgement = []
+    lines = []
     if best.attitude is None:
-        judgement.append("No columns were found that fit as an attitude.")
+        lines.append("No columns were found that fit as an attitude.")
     if best.omega is None:
-        judgement.append("No columns were found that fit as an angular velocity.")
-    return judgement
+        lines.append("No columns were found that fit as an angular velocity.")
+    return lines

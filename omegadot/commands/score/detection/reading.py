@@ -124,15 +124,15 @@ def _names(reading: Reading) -> set[str]:
 
 def _read(reading: Reading, probe: dict[str, Array]) -> list[object]:
     """What a reading makes of random numbers, coarse enough for roundings to agree."""
-    judgement: list[object] = []
+    parts: list[object] = []
     q = None
     attitude = reading.attitude
     if attitude is not None and attitude.kind == "matrix":  # random numbers are none
-        judgement = [attitude.columns, attitude.direction, attitude.world, attitude.body]
+        parts = [attitude.columns, attitude.direction, attitude.world, attitude.body]
     elif attitude is not None:
         q = attitude.read(probe)
-        judgement = [tuple(np.round(rotation_matrix(q), 6).ravel() + 0.0)]
+        parts = [tuple(np.round(rotation_matrix(q), 6).ravel() + 0.0)]
     if reading.omega is not None:
-        judgement.append(tuple(np.round(reading.omega.read(probe, q), 6).ravel() + 0.0))
-        judgement.append(reading.omega.frame if q is None else "")
-    return judgement
+        parts.append(tuple(np.round(reading.omega.read(probe, q), 6).ravel() + 0.0))
+        parts.append(reading.omega.frame if q is None else "")
+    return parts

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from omegadot.commands.score.beside import exact_trajectory
 from omegadot.commands.score.detection.candidates import attitudes, omegas
 from omegadot.commands.score.detection.numbers import AXES, SAME, Numbers, rotations
 from omegadot.commands.score.detection.reading import Clock, Reading, unlike
+from omegadot.commands.score.exact_trajectory import exact_trajectory
 from omegadot.commands.score.table import Table, TraceError
 from omegadot.commands.units import UNITS
 from omegadot.gates.case import Case
@@ -92,14 +92,14 @@ def _next_to(
     return found
 
 
-def _found(beside: list[tuple[Clock, Numbers]]) -> list[Reading]:
+def _found(by_clock: list[tuple[Clock, Numbers]]) -> list[Reading]:
     """Every reading that is not far off.
 
     Turned axes are tried only where the trace cannot be read whole without.
     """
     found: list[Reading] = []
     for axes in (SAME + 1, len(AXES)):
-        found = [reading for pair in beside for reading in _readings(*pair, axes)]
+        found = [reading for pair in by_clock for reading in _readings(*pair, axes)]
         if any(reading.parts == 2 for reading in found):
             break
     return found
@@ -131,23 +131,23 @@ def _readings(clock: Clock, numbers: Numbers, axes: int) -> list[Reading]:
 
 def detect(case: Case, table: Table, column: str, names: Sequence[str]) -> Detected:
     """Try every reading of the columns named and distinguish the fits. column: the time's."""
-    beside = _next_to(case, table, column, names)
-    found = _found(beside)
-    turn = beside[0][1].turn if beside else 0.0
+    by_clock = _next_to(case, table, column, names)
+    found = _found(by_clock)
+    turn = by_clock[0][1].turn if by_clock else 0.0
     if not found:
         return Detected([], [], turn)
     most = max(reading.parts for reading in found)
     whole = [reading for reading in found if reading.parts == most]
     limit = BETTER * max(min(reading.misfit for reading in whole), ROUNDING)
     fitting = unlike(sorted((r for r in whole if r.misfit <= limit), key=lambda r: r.plainness))
-    others = [r for r in whole if r.misfit > limit] + _next_best(fitting[0], dict(beside))
+    others = [r for r in whole if r.misfit > limit] + _next_best(fitting[0], dict(by_clock))
     others = [reading for reading in others if reading.misfit > limit]
     return Detected(fitting, sorted(others, key=lambda r: r.misfit), turn)
 
 
-def _next_best(best: Reading, beside: dict[Clock, Numbers]) -> list[Reading]:
+def _next_best(best: Reading, by_clock: dict[Clock, Numbers]) -> list[Reading]:
     """The same with another attitude or another omega, however far off, in the plain axes."""
-    numbers, far = beside[best.clock], float("inf")
+    numbers, far = by_clock[best.clock], float("inf")
     found = []
     if best.attitude is not None:
         found += [replace(best, attitude=one) for one in attitudes(numbers, SAME + 1, far)]

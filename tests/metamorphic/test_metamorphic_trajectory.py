@@ -1,8 +1,8 @@
-"""The trajectory of a motion does not depend on the words it is reported in, step by step.
+"""The trajectory of a motion does not depend on the frame it is reported in, step by step.
 
 Catches, over what the equation shows: an update of the attitude in the wrong frame (rotated world
 and body), a body put to sleep below so many rad/s (scaled units) or m/s (Galilean shift). The
-errors of a scheme are the same in all words.
+errors of a scheme are the same in all frames.
 """
 
 from dataclasses import replace
@@ -97,7 +97,9 @@ def gap(adapter: Adapter, relation, motion: Motion, integrator: str, seed: int) 
 @pytest.mark.parametrize(("relation", "wanted", "fault"), RELATIONS, ids=NAMES)
 @settings(max_examples=max(2, settings().max_examples // 4))
 @given(seed=st.integers(0, 2**32 - 1))
-def test_the_course_is_the_same_in_other_words(name, relation, wanted, fault, seed: int) -> None:
+def test_the_trajectory_is_the_same_in_other_frames(
+    name, relation, wanted, fault, seed: int
+) -> None:
     adapter, motion = engine(name), random_motion(seed, wanted)
     integrators = [integrator.name for integrator in adapter.description.integrators]
     integrator = integrators[seed % len(integrators)]
