@@ -1,10 +1,9 @@
 """The likeliest cause of what the gates found, as text.
 
-``diagnose(case, truth, questions, result, runs) -> list[str]`` is a pure function of what the
-harness has after judging one engine on one case: the `Case`, its `Truth` (with the companions of
-the schemes in question), the `EvaluationStates`, the `CaseResult` with the engine's
-own
-answers, and the `JudgedRun` list of `judge_case`. Each sentence names a cause that was tried on
+``diagnose(case, truth, evaluation_states, result, runs) -> list[str]`` is a pure function of what
+the harness has after judging one engine on one case: the `Case`, its `Truth` (with companions of
+the schemes in question), the `EvaluationStates`, the `CaseResult` with the engine's own answers,
+and the `JudgedRun` list of `judge_case`. Each sentence names a cause that was tried on
 those answers and explains them within the gates' own bounds. Where nothing does, or nothing failed,
 the list is empty: no guess is better than a wrong one.
 """
@@ -12,6 +11,7 @@ the list is empty: no guess is better than a wrong one.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -25,16 +25,36 @@ from omegadot.diagnosis import (
 from omegadot.diagnosis.reported_run import reported_run
 from omegadot.diagnosis.reported_sample_causes import omega_dot_late
 from omegadot.gates.case import Case
-from omegadot.gates.evaluation_states import EvaluationStates
+from omegadot.gates.evaluation_states import EvaluationStates, evaluation_states_of
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun, shared_rows
+from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
+
+
+def causes_of(judged: JudgedCase, found: EngineCase, seed: int) -> Cause:
+    """For one engine on one case: a run's likeliest cause, or that of what its runs share.
+
+    Diagnosed on request, once for each integrator.
+    """
+
+    @cache
+    def named(integrator: str | None) -> str:
+        assert judged.truth is not None
+        runs = [run for run in found.runs if run.integrator.name == integrator]
+        evaluation_states = evaluation_states_of(judged.case, judged.truth, seed)
+        return "; ".join(diagnose(judged.case, judged.truth, evaluation_states, found.result, runs))
+
+    def cause(run: JudgedRun | None) -> str:
+        return named(None if run is None else run.integrator.name)
+
+    return cause
 
 
 def diagnose(
     case: Case,
     truth: Truth,
-    evaluation: EvaluationStates,
+    evaluation_states: EvaluationStates,
     result: CaseResult,
     runs: Sequence[JudgedRun],
 ) -> list[str]:
@@ -44,22 +64,24 @@ def diagnose(
     at by themselves only where neither gate failed.
     """
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-        return _causes(case, truth, evaluation, result, runs)
+        return _causes(case, truth, evaluation_states, result, runs)
 
 
 def _causes(
     case: Case,
     truth: Truth,
-    evaluation: EvaluationStates,
+    evaluation_states: EvaluationStates,
     result: CaseResult,
     runs: Sequence[JudgedRun],
 ) -> list[str]:
-    failed = {row.gate for row in shared_rows(case, evaluation, result) if row.verdict == "fail"}
+    failed = {
+        row.gate for row in shared_rows(case, evaluation_states, result) if row.verdict == "fail"
+    }
     found: list[str] = []
     if "model" in failed:
-        found += model.causes(case, evaluation, result)
+        found += model.causes(case, evaluation_states, result)
     if "equation" in failed and not found:
-        found += equation.causes(case, evaluation, result)
+        found += equation.causes(case, evaluation_states, result)
     if not failed:
         for run in _shortest_failed(runs):
             found = _of_run(case, truth, result, run)

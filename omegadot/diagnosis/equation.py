@@ -37,9 +37,9 @@ from omegadot.reference_impl.system import Acceleration, Array, State, System
 from omegadot.workers.wire import acceleration_from
 
 
-def causes(case: Case, evaluation: EvaluationStates, result: CaseResult) -> list[str]:
+def causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[str]:
     """What forward dynamics match instead; inverse dynamics where forward ones are sound."""
-    system, states = case.system, evaluation.random
+    system, states = case.system, evaluation_states.random
     if not result.forward.ok:
         return []
     found = acceleration_from(result.forward.result)
@@ -48,9 +48,9 @@ def causes(case: Case, evaluation: EvaluationStates, result: CaseResult) -> list
         return _forward(Match(system, states, found))
     if result.inverse.ok:
         torque = result.inverse.result["torque"]
-        rows = inverse_rows(system, states, evaluation.requested, torque)
+        rows = inverse_rows(system, states, evaluation_states.acceleration, torque)
         if any(row.verdict == "fail" for row in rows):
-            return _inverse(system, states, evaluation.requested, torque)
+            return _inverse(system, states, evaluation_states.acceleration, torque)
     return []
 
 

@@ -15,7 +15,7 @@ from omegadot.reference_impl.system import Array, Body, State
 from omegadot.workers.wire import body_from, state_from
 
 
-def causes(case: Case, evaluation: EvaluationStates, result: CaseResult) -> list[str]:
+def causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[str]:
     """What the engine holds instead of the body and of the state that it was given."""
     if not result.model.ok:
         return []
@@ -30,7 +30,7 @@ def causes(case: Case, evaluation: EvaluationStates, result: CaseResult) -> list
         found += _center(case.system.body, held)
     if "inertia" in failed:
         found += _inertia(case, held)
-    first = State(*(values[0] for values in vars(evaluation.random).values()))
+    first = State(*(values[0] for values in vars(evaluation_states.random).values()))
     # Of a wrong body the state follows: where it is pivoted, where its centre of mass is.
     return found or _state(case, first, state_from(result.model.result["state"]))
 

@@ -15,11 +15,14 @@ PATH_STATES = 200
 
 @dataclass(frozen=True)
 class EvaluationStates:
-    """States to put to an engine's equations: random ones, and ones along the exact trajectory."""
+    """Where an engine's equations are evaluated: at random, and along the exact trajectory.
+
+    acceleration: at the random states, for inverse dynamics.
+    """
 
     random: State
     path: State
-    requested: Acceleration
+    acceleration: Acceleration
 
 
 @dataclass(frozen=True)

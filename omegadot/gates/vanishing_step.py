@@ -39,11 +39,13 @@ RANGES = (slice(0, 5), slice(4, 9))
 STEPS = 9
 
 
-def probe_of(system: System, evaluation: EvaluationStates) -> Probe:
+def probe_of(system: System, evaluation_states: EvaluationStates) -> Probe:
     """States to step from, (m,), and steps (m, 9) s, short against all that goes on there."""
-    count = len(evaluation.path.angular_velocity)
+    count = len(evaluation_states.path.angular_velocity)
     along = np.unique(np.linspace(0, count - 1, PROBES).round().astype(int))
-    pairs = zip(vars(evaluation.random).values(), vars(evaluation.path).values(), strict=True)
+    pairs = zip(
+        vars(evaluation_states.random).values(), vars(evaluation_states.path).values(), strict=True
+    )
     states = State(*(np.concatenate([one[:PROBES], two[along]]) for one, two in pairs))
     turning = (states.orientation, states.angular_velocity)
     w_dot, jacobian = acceleration_and_jacobian(attitude_motion(system), *turning)

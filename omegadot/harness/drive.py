@@ -138,22 +138,25 @@ class Driver:
             every=sweep.every,
         )
 
-    def evaluate_equations(self, case: Case, evaluation: EvaluationStates) -> CaseResult:
+    def evaluate_equations(self, case: Case, evaluation_states: EvaluationStates) -> CaseResult:
         """The model read back, and the engine's equations at the states in question."""
         precision = self.engine.description.precision
         result = CaseResult(self.engine.name, case.name, precision=precision)
         features = self.engine.description.features
-        first = State(*(f[0] for f in vars(evaluation.random).values()))
+        first = State(*(f[0] for f in vars(evaluation_states.random).values()))
         result.model = self.request(case, "model", state=first)
         result.integrators = self.integrators()
         lacking = Answer("unsupported", "the engine offers no such call")
         result.forward = result.path = result.inverse = lacking
         if "forward_dynamics" in features:
-            result.forward = self.request(case, "forward", states=evaluation.random)
-            result.path = self.request(case, "forward", states=evaluation.path)
+            result.forward = self.request(case, "forward", states=evaluation_states.random)
+            result.path = self.request(case, "forward", states=evaluation_states.path)
         if "inverse_dynamics" in features:
             result.inverse = self.request(
-                case, "inverse", states=evaluation.random, acceleration=evaluation.requested
+                case,
+                "inverse",
+                states=evaluation_states.random,
+                acceleration=evaluation_states.acceleration,
             )
         return result
 

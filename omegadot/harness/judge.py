@@ -60,24 +60,26 @@ class JudgedRun:
         return {gate: verdict for gate, verdict in found.items() if verdict is not None}
 
 
-def shared_rows(case: Case, evaluation: EvaluationStates, result: CaseResult) -> list[Row]:
+def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[Row]:
     """The rows that belong to engine and scenario, whatever the integrator."""
     rows: list[Row] = []
     if result.model.ok:
         answer = result.model.result
         for body in answer["bodies"]:
             rows += model.body_rows(case, body_from(body))
-        first = State(*(values[0] for values in vars(evaluation.random).values()))
+        first = State(*(values[0] for values in vars(evaluation_states.random).values()))
         rows += model.state_rows(case, first, state_from(answer["state"]))
-    named = {"residual": (result.forward, evaluation.random)}
-    named["residual_on_path"] = (result.path, evaluation.path)
+    named = {"residual": (result.forward, evaluation_states.random)}
+    named["residual_on_path"] = (result.path, evaluation_states.path)
     for metric, (found, states) in named.items():
         if found.ok:
             acceleration = acceleration_from(found.result)
             rows += equation.forward_rows(case.system, states, acceleration, metric)
     if result.inverse.ok:
         torque = result.inverse.result["torque"]
-        rows += equation.inverse_rows(case.system, evaluation.random, evaluation.requested, torque)
+        rows += equation.inverse_rows(
+            case.system, evaluation_states.random, evaluation_states.acceleration, torque
+        )
     return rows
 
 

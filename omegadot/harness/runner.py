@@ -69,8 +69,8 @@ class Runner:
         if isinstance(truth, str):
             self.on_advance(tasks_of(engine, case))
             return CaseResult(engine.name, case.name)
-        evaluation = evaluation_states_of(case, truth, self.request.seed)
-        result = driver.evaluate_equations(case, evaluation)
+        evaluation_states = evaluation_states_of(case, truth, self.request.seed)
+        result = driver.evaluate_equations(case, evaluation_states)
         if engine.name == "exact":
             self.on_advance(1)
         elif engine.name == "reference":
@@ -78,7 +78,7 @@ class Runner:
             self.on_advance(tasks_of(engine, case))
         else:
             result.runs.update(driver.run_all(case, lambda: self.on_advance(1)))
-            probe_unknown_schemes(driver, case, evaluation, result)
+            probe_unknown_schemes(driver, case, evaluation_states, result)
         return result
 
     def _submit_case(self, case: Case) -> PendingCase:

@@ -20,14 +20,14 @@ def is_unknown(integrator: Integrator) -> bool:
 
 
 def probe_unknown_schemes(
-    driver: Driver, case: Case, evaluation: EvaluationStates, result: CaseResult
+    driver: Driver, case: Case, evaluation_states: EvaluationStates, result: CaseResult
 ) -> None:
     """Have unknown schemes take first steps, and begin their runs again, into `result`."""
     for integrator in filter(is_unknown, result.integrators):
         runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue
-        probe = vanishing_step.probe_of(case.system, evaluation)
+        probe = vanishing_step.probe_of(case.system, evaluation_states)
         fields = {"states": probe.states, "timesteps": probe.timesteps}
         requested = driver.request(case, "first_steps", integrator=integrator.name, **fields)
         result.first_steps[integrator.name] = (probe, requested)

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from omegadot.adapters.registry import BUILT_IN, build_adapter
-from omegadot.commands.faults.catalogue.every import ORDERED, target_of
+from omegadot.commands.faults.catalogue.every import ORDERED
 from omegadot.commands.faults.detect import Judgement, judge
 from omegadot.commands.faults.fault import Fault
 from omegadot.commands.faults.named import NAMES, is_named
+from omegadot.commands.faults.over import target_of
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.diagnosis.diagnose import diagnose
 from omegadot.harness.random_cases import FLAVOURS, features_of, random_case
@@ -50,7 +51,7 @@ def judgements(
 
 def sentences(prepared: Prepared, judged: Judgement) -> list[str]:
     with np.errstate(all="ignore"):
-        how = (prepared.case, prepared.truth, prepared.evaluation)
+        how = (prepared.case, prepared.truth, prepared.evaluation_states)
         return diagnose(*how, judged.result, judged.runs)
 
 
@@ -115,7 +116,7 @@ def test_a_target_names_a_fault_over_an_engine() -> None:
     for engine in ("reference", *ENGINES):
         adapter = build_adapter(target_of(engine, "GyroscopicDropped"))
         assert adapter.description.name == f"{engine}+GyroscopicDropped"
-    with pytest.raises(ValueError, match="no NoSuchFault"):
+    with pytest.raises(ValueError, match="no reference_NoSuchFault"):
         build_adapter(target_of("reference", "NoSuchFault"))
 
 

@@ -8,10 +8,10 @@ from functools import cached_property
 from pathlib import Path
 
 from omegadot.adapters.registry import registered
+from omegadot.commands.check.compare import store
 from omegadot.commands.check.generate import Subject
 from omegadot.commands.check.result import Check, Result
 from omegadot.commands.check.select import Arguments, Selection, select
-from omegadot.commands.check.store import store
 from omegadot.commands.check.suite import Suite
 from omegadot.commands.check.tally import Tally
 from omegadot.commands.progress import Count, Reporting, reporting

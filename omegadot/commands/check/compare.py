@@ -1,11 +1,18 @@
-"""The checks that a baseline adds: one for each run and each scenario that has figures."""
+"""The checks that a baseline adds, one for each run and each scenario, and its update."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 
-from omegadot.commands.check.baseline import changes
-from omegadot.commands.check.baseline_file import Baseline, RunKey, ScenarioFigures
+from omegadot.commands.check.baseline import changes, updated
+from omegadot.commands.check.baseline_file import (
+    Baseline,
+    RunKey,
+    ScenarioFigures,
+    read_baseline,
+    write_baseline,
+)
 from omegadot.commands.check.generate import Subject
 from omegadot.commands.check.meaning import meaning
 from omegadot.commands.check.result import PASSED, Check, Result
@@ -64,3 +71,14 @@ def compare(
     more = f"; and {len(found) - MOST_LISTED} more" if len(found) > MOST_LISTED else ""
     why = meaning(known, own, found, was.version == version)
     return Result("fail", f"{versions}: {reported}{more}. Probably {why}. {UPDATE.capitalize()}.")
+
+
+def store(folder: Path, subjects: Iterable[Subject], figures: dict[str, Baseline]) -> list[Path]:
+    """Update the baseline of every engine that gave figures; the files that were written."""
+    written = []
+    for subject in subjects:
+        if subject.name in figures:
+            stored = read_baseline(folder, subject.name)
+            whole = updated(stored, figures[subject.name], subject)
+            written.append(write_baseline(folder, subject.name, whole))
+    return written

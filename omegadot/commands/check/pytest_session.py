@@ -10,11 +10,11 @@ import pytest
 
 from omegadot.adapters.registry import AdapterError
 from omegadot.commands.check.baseline_file import Baseline, from_text, to_text
+from omegadot.commands.check.compare import store
 from omegadot.commands.check.pytest_items import ENGINE, MESSAGE, ROOT, VERDICT, collect
 from omegadot.commands.check.pytest_options import OPTIONS, PREFIX, dest_of
 from omegadot.commands.check.registry import Registry
 from omegadot.commands.check.select import Arguments, Selection, select
-from omegadot.commands.check.store import store
 from omegadot.commands.check.suite import Suite
 from omegadot.commands.check.tally import Tally, coverage
 from omegadot.harness.usage import UsageError

@@ -15,7 +15,7 @@ from omegadot.commands.check.registry import Registry
 from omegadot.commands.check.result import Check, Result, error, skipped
 from omegadot.commands.check.select import Selection
 from omegadot.commands.check.unmatched import unmatched
-from omegadot.diagnosis.causes import causes_of
+from omegadot.diagnosis.diagnose import causes_of
 from omegadot.gates.case import Case
 from omegadot.harness.outcome import JudgedCase, RunRequest
 from omegadot.harness.runner import Runner

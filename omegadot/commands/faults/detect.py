@@ -60,12 +60,12 @@ def judge(
     case = prepared.case
     chosen = integrators or chosen_integrators(adapter.description.integrators)
     driver = driver_of(name, adapter, chosen)
-    result = driver.evaluate_equations(case, prepared.evaluation)
+    result = driver.evaluate_equations(case, prepared.evaluation_states)
     pool.step_companions(prepared, result.integrators)
     result.runs.update(driver.run_all(case, lambda: None))
-    probe_unknown_schemes(driver, case, prepared.evaluation, result)
+    probe_unknown_schemes(driver, case, prepared.evaluation_states, result)
     with np.errstate(all="ignore"):  # a wrong engine may give any numbers
-        shared = shared_rows(case, prepared.evaluation, result)
+        shared = shared_rows(case, prepared.evaluation_states, result)
         runs = judge_case(prepared.truth, case, result, {})
     rows = (*shared, *(row for run in runs for row in run.rows))
     failure = result.first_failure()

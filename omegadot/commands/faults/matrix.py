@@ -147,10 +147,10 @@ def _caught_nameless(fault: Fault, engine: str, pool: Pool, numbers: list[int]) 
 
 
 def _named(fault: Fault, prepared: Prepared, judgement: Judgement) -> bool:
-    case, truth, evaluation = prepared.case, prepared.truth, prepared.evaluation
+    case, truth, evaluation_states = prepared.case, prepared.truth, prepared.evaluation_states
     with np.errstate(all="ignore"):
-        text = diagnose(case, truth, evaluation, judgement.result, judgement.runs)
-    return is_named(fault.name, text)
+        causes = diagnose(case, truth, evaluation_states, judgement.result, judgement.runs)
+    return is_named(fault.name, causes)
 
 
 def _published(check: Published, fault: Fault, engine: str, pool: Pool, poses: int) -> float | None:

@@ -57,7 +57,7 @@ def line_of(row: Detection) -> tuple[str, ...]:
 
 
 def summary_of(matrix: EngineMatrix) -> list[str]:
-    """What the table comes to, a sentence a line."""
+    """The table in sentences, one a line."""
     rows = matrix.rows
     missed = [row.fault.name for row in rows if row.judged and row.any < 1.0]
     unseen = [row.fault.name for row in rows if row.judged and row.no_scheme < 1.0]
@@ -74,7 +74,7 @@ def summary_of(matrix: EngineMatrix) -> list[str]:
         f"declared scheme {matrix.accused_nameless}.",
     ]
     if matrix.skipped:
-        lines.append(f"Not tried, for want of an integrator: {', '.join(matrix.skipped)}.")
+        lines.append(f"Not tried, since no integrator is suitable: {', '.join(matrix.skipped)}.")
     refused = [row.fault.name for row in rows if row.broken]
     if refused:
         lines.append(f"On some bodies the engine gave no answer: {', '.join(refused)}.")
@@ -122,24 +122,23 @@ HEAD = """\
 
 This page is the output of `{command}`.
 
-**How to read it.** Every fault is put into a sound engine, and the engine through the gates on
-{bodies} random bodies that have what the fault needs to show at all: masses and rates over two
-decades, sizes over one, tensors in any axes, centres of mass off the origin or on it, free, driven,
-damped and pivoted. A number is the share of these bodies, in per cent, on which a gate fails;
-*any gate* is what decides. What a finer step could still decide is not counted. *Cause named* is
-the share on which `omegadot` states as text what is wrong, and is right. *No scheme* is *any gate*
-again, of the same engine with integrators that declare their orders only, so that there is no run
-of the reference to hold them against; a fault that makes another scheme of the same order is none
-then (`PositionByFirstVelocity` of an engine of order 1). Each engine runs with one integrator of
-order 1 and, where it has one, one of order 4.
+**How to read it.** Each fault is injected into a sound engine, and the gates judge the engine on
+{bodies} random bodies on which the fault can show. Masses and rates range over two decades, sizes
+over one. The tensors are in any axes, the centres of mass at the origin or off it, the bodies free,
+driven, damped or pivoted. A number is the percentage of these bodies on which a gate fails. *Any
+gate* is the detection rate; runs that need a finer step to be decided do not count. *Cause named*
+is the percentage on which `omegadot` names the true cause. *No scheme* is *any gate* for the same
+engine with integrators that declare their orders only, so that no run of the reference is compared
+with them. A fault that gives another scheme of the same order is no fault then
+(`PositionByFirstVelocity` in an engine of order 1). Each engine runs with one integrator of order 1
+and, where it has one, one of order 4.
 
-**The published checks** next to them are tests that engines ship with, put to the same faulty
-engines as they stand: the same body, rates, step, length and bounds, from {bodies} random
-attitudes. A dash states that the check's scenarios, or the engine's integrators, lack what the
-fault
-needs. The facts of Drake's check were read in its repository (`free_body.h` next to the test gives
-the moments); its own integrator is of order 3 with error control and integrates from one attitude,
-and here one of order 4 takes its largest step.
+**The published checks** in the last columns are tests that engines ship with. They are applied to
+the same faulty engines unchanged: the same body, rates, step, length and bounds, from {bodies}
+random attitudes. A dash means that the check's scenarios, or the engine's integrators, lack what
+the fault needs. The figures of Drake's check are from its repository (`free_body.h`, in the folder
+of the test, gives the moments). Its integrator is of order 3 with error control and starts from one
+attitude; here an integrator of order 4 takes its largest step.
 """
 
 

@@ -27,7 +27,7 @@ class Prepared:
     case: Case
     features: frozenset[str]
     truth: Truth
-    evaluation: EvaluationStates
+    evaluation_states: EvaluationStates
 
 
 class Pool:
@@ -53,8 +53,8 @@ class Pool:
             truth = case_truth(self._exact, case)
             if isinstance(truth, str):
                 raise RuntimeError(f"{case.name}: {truth}")
-            evaluation = evaluation_states_of(case, truth, self.seed)
-            self._prepared[index] = Prepared(case, features, truth, evaluation)
+            evaluation_states = evaluation_states_of(case, truth, self.seed)
+            self._prepared[index] = Prepared(case, features, truth, evaluation_states)
         return self._prepared[index]
 
     def having(self, needs: Iterable[str], count: int) -> list[int]:

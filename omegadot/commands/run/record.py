@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from omegadot import __version__
-from omegadot.diagnosis.causes import causes_of
 from omegadot.diagnosis.clusters import clusters_of_run
+from omegadot.diagnosis.diagnose import causes_of
 from omegadot.gates.case import Case
 from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
 from omegadot.harness.outcome import Outcome, RunRequest

@@ -8,33 +8,33 @@ from omegadot.diagnosis.scheme_study.record import Record
 from omegadot.gates.verdicts import ORDER_TOLERANCE
 
 _HEAD = """\
-# Which scheme each integrator steps
+# Which scheme each integrator implements
 
 <!-- Made by a command. Do not edit; run it again:
 omegadot schemes --format markdown > docs/schemes.md -->
 
 This page is the output of `omegadot schemes --format markdown > docs/schemes.md`.
 
-**How to read it.** Every scheme of the reference is stepped next to the engine from the same start,
-on these systems:
+**How to read it.** Every scheme of the reference runs from the same start as the engine, on these
+systems:
 
 {probes}
 
-A scheme is named where the engine's whole trajectory equals the scheme's within what rounding may
-have grown to, in every channel; what the engine declares plays no part in that. *To 1e-13 over
-1000 steps* bounds the largest distance in attitude (rad) and in angular velocity (relative), over
-all systems. An integrator may change its scheme with the system: the first name then holds unless
-another is given for a kind. *Stepped in* names the coordinates of a free body that are stepped, in
-which the same scheme errs otherwise: position and velocity of the centre of mass in the world
-(com-world) or of the body's origin (origin-world), or the spatial velocity in body axes with the
-exponential of SE(3) (body-spatial).
+A scheme is named where the engine's whole trajectory equals the scheme's within the round-off
+bound, in every channel. The engine's declaration is not used. *To 1e-13 over 1000 steps* bounds the
+largest distance in attitude (rad) and in angular velocity (relative), over all systems. An
+integrator may change its scheme with the system: the first name then holds unless another is given
+for a kind. *Stepped in* names the coordinates of a free body that are stepped: position and
+velocity of the centre of mass in the world (com-world), those of the body's origin (origin-world),
+or the spatial velocity in body axes with the exponential of SE(3) (body-spatial). The errors of a
+scheme depend on these coordinates.
 
 An order is given as *declared (observed)*; orders that differ between systems are a range.
-The observed order is the slope of log error over log step, against the exact solution, from a step
-of {coarsest} rad downwards, halved until the slope has settled or the error has sunk into rounding.
-It is held to the declared order within {tolerance}. A channel that is *conserved* has no error but
-rounding. The one-step defect is what a single step from an exact state does wrong, the root mean
-square over several such states, the largest over the systems: in rad for the attitude, m for the
+The observed order is the slope of log error over log step, against the exact solution. The step is
+halved from {coarsest} rad until the slope has settled or the error is round-off. The observed order
+must equal the declared one within {tolerance}. A channel that is *conserved* has no error but
+round-off. The one-step defect is the error of a single step from an exact state: the root mean
+square over several states, the largest over the systems, in rad for the attitude, m for the
 position, relative for the others. Its order is one more than that of the accumulated error, or
 higher still in a channel whose error comes from others.
 """

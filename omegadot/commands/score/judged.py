@@ -9,8 +9,7 @@ from omegadot.commands.score.bounds import Rounding, digits_open, joined, readin
 from omegadot.commands.score.columns import Columns
 from omegadot.commands.score.convention import Convention
 from omegadot.commands.score.exact_trajectory import ExactTrajectory, exact_trajectory, truth_at
-from omegadot.commands.score.flips import flips_of
-from omegadot.commands.score.measured import Measured, measure_trace
+from omegadot.commands.score.measured import Measured, flips_of, measure_trace
 from omegadot.commands.score.plausible import check_duration, check_units
 from omegadot.commands.score.require import Requirement
 from omegadot.commands.score.shift import Shift, best_shift

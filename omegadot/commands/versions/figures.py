@@ -115,7 +115,7 @@ def equation_figures(case: Case, exact: Exact, forward: Answer, inverse: Answer)
         rows += forward_rows(case.system, exact.random, found, "residual")
     if inverse.ok:
         torque = inverse.result["torque"]
-        rows += inverse_rows(case.system, exact.random, exact.requested, torque)
+        rows += inverse_rows(case.system, exact.random, exact.acceleration, torque)
     return rows
 
 

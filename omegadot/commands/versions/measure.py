@@ -26,7 +26,7 @@ from omegadot.commands.versions.figures import (
     scheme_figures,
 )
 from omegadot.commands.versions.metric import Figure, Name
-from omegadot.commands.versions.requests import load, requested
+from omegadot.commands.versions.requests import answer_of, load
 from omegadot.commands.versions.truths import Truths
 from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
 from omegadot.diagnosis.scheme_study.study import IntegratorStudy, ProbeStudy
@@ -163,9 +163,9 @@ class Sitting:
     def _equations(self, case: Case, truths: Truths) -> None:
         exact, worker = truths.of(case), self._worker
         first = State(*(values[0] for values in vars(exact.random).values()))
-        rows = model_rows(case, first, requested(worker, "model", state=first))
-        forward = requested(worker, "forward", states=exact.random)
-        inverse = requested(worker, "inverse", states=exact.random, acceleration=exact.requested)
+        rows = model_rows(case, first, answer_of(worker, "model", state=first))
+        forward = answer_of(worker, "forward", states=exact.random)
+        inverse = answer_of(worker, "inverse", states=exact.random, acceleration=exact.acceleration)
         equations = equation_figures(case, exact, forward, inverse)
         self.portrait.figures |= figures_of_rows(case, equations)
         self._judge(case, rows + equations)

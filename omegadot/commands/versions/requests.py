@@ -9,7 +9,7 @@ from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
 
 
-def requested(worker: WorkerProcess, operation: str, **fields: object) -> Answer:
+def answer_of(worker: WorkerProcess, operation: str, **fields: object) -> Answer:
     """An answer, or "unsupported". Raises NoAnswerError for any other."""
     answer = worker.request(operation, **fields)
     if answer.ok or answer.outcome == "unsupported":

@@ -20,13 +20,16 @@ SEED = (0, 1)
 
 @dataclass(frozen=True)
 class Exact:
-    """A case's exact states at its samples, the measure of distances from them, and questions."""
+    """A case's exact states at its samples, and the measure of distances from them.
+
+    random, acceleration: where the equations are evaluated.
+    """
 
     state: State
     growth: Array
     yardstick: Yardstick
     random: State
-    requested: Acceleration
+    acceleration: Acceleration
 
 
 class Truths:
@@ -50,5 +53,5 @@ def _exact(case: Case) -> Exact:
     yardstick = Yardstick(case.system, times, state)
     growth = growth_along(case.system, times, state, yardstick.rate)
     random = random_states(case, STATES, SEED)
-    requested = random_acceleration(case.system, random, SEED)
-    return Exact(state, np.asarray(growth), yardstick, random, requested)
+    acceleration = random_acceleration(case.system, random, SEED)
+    return Exact(state, np.asarray(growth), yardstick, random, acceleration)
