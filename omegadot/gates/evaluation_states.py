@@ -34,7 +34,7 @@ class Probe:
 
 
 def evaluation_states_of(case: Case, truth: Truth, seed: int) -> EvaluationStates:
-    """The states that every engine is queried about; the same for all, and for every run."""
+    """The states of a case, the same for every engine and every run."""
     own = [seed, *case.name.encode()]
     states = random_states(case, RANDOM_STATES, own)
     path = path_states(case, truth, PATH_STATES)

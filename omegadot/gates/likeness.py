@@ -36,8 +36,7 @@ class Likeness:
 def share_of(distance: Array, bound: Array) -> float:
     """The largest distance over its bound, at the samples that have one; the start has nothing.
 
-    NaN where no other sample is bounded: there the motion has blown up, and nothing can be
-    reported.
+    NaN where no other sample is bounded: there the motion has blown up.
     """
     bounded = np.isfinite(bound)
     if not bounded[1:].any():

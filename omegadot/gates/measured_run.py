@@ -115,7 +115,7 @@ def evidence_of(measured: MeasuredRun, measured_runs: list[MeasuredRun], channel
 
 @dataclass(frozen=True)
 class Declared:
-    """What an integrator is held to: its scheme, and its order per channel (None: conserved)."""
+    """What an integrator is judged by: its scheme, and its order per channel (None: conserved)."""
 
     scheme: str | None
     orders: dict[str, int | None]
@@ -123,7 +123,7 @@ class Declared:
 
 @dataclass(frozen=True)
 class SchemeKey:
-    """Which of the reference's runs an integrator is held against."""
+    """Which of the reference's runs an integrator is compared with."""
 
     scheme: str
     coordinates: Coordinates = "com-world"

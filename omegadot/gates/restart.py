@@ -1,7 +1,7 @@
-"""Gate 3 for a scheme that no one knows: a run restarted at a sample of its own must go on alike.
+"""Gate 3 for an unknown scheme: a run restarted at one of its samples must repeat the rest.
 
 The motion is that of an autonomous system, so a step depends on the state alone: not on the clock,
-nor on how the state was come by. A run from the state reported at one sample then reports the same
+nor on how the state was reached. A run from the state reported at one sample then reports the same
 samples after it. It does not where a sample is not the state that was stepped (reported late, or
 made up afterwards), where something acts for a while only, and where there is noise.
 """
@@ -58,15 +58,13 @@ def row(
     found = alike(np.ones(len(sweep.times)))
     if not found.agree:  # most agree to the bit, and growth takes long to work out
         found = alike(growth_along(yardstick.system, sweep.times, state, yardstick.rate))
-    reported = (found.channel, METRIC, found.share, "1", 1.0)
+    start = (found.channel, METRIC, found.share, "1", 1.0)
     if np.isnan(found.share):
-        return Row(GATE, *reported, "info", "not judged: the run blows up")
+        return Row(GATE, *start, "info", "not judged: the run blows up")
     if found.agree:
-        return Row(GATE, *reported, "pass")
+        return Row(GATE, *start, "pass")
     if not integrator.one_step:
-        return Row(GATE, *reported, "info", "steps use earlier ones, as is declared")
+        return Row(GATE, *start, "info", "steps use earlier ones, as is declared")
     when = f"t = {sweep.times[sample]:.4g} s"
-    note = f"a run restarted at its own sample at {when} goes elsewhere: samples are not the"
-    return Row(
-        GATE, *reported, "fail", f"{note} state that is stepped, or steps depend on the past"
-    )
+    note = f"a run restarted at its own sample at {when} gives other samples: they are not the"
+    return Row(GATE, *start, "fail", f"{note} state that is stepped, or steps depend on the past")

@@ -143,9 +143,9 @@ def match_row(
     """The largest distance from the declared scheme, in parts of its round-off bound.
 
     An engine that declares a scheme and steps another fails, even where its error shrinks as it
-    should: what it reports of itself is wrong. What is left may stand where it shrinks faster than
-    the scheme's own error by an order at least: that is the same scheme, less finely computed.
-    One that declares none is reported what it equals.
+    should: its declaration is wrong. A remaining distance passes where it shrinks faster than the
+    scheme's own error by an order at least: that is the same scheme, less finely computed.
+    For an engine that declares none, the row names the schemes that it equals.
     """
     if measured.against_scheme:
         found = likeness(measured.against_scheme, measured.round_off)

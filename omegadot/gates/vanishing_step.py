@@ -1,4 +1,4 @@
-"""Gate 3 for a scheme that no one knows: steps made ever smaller must follow the equation.
+"""Gate 3 for an unknown scheme: steps made ever smaller must follow the equation.
 
 One step from a state x leads to ``Phi_h(x)``, and for every consistent scheme, whatever its order,
 ``(Phi_h(x) - x) / h`` tends to the equation's rate at x. The limit is extrapolated from halved
@@ -124,18 +124,18 @@ def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
     return {channel: _limit(h, *part) for channel, part in parts.items()}
 
 
-def _limit(h: Array, change: Array, expected: Array, rounding: Array, reported: Array) -> Limit:
+def _limit(h: Array, change: Array, expected: Array, rounding: Array, per_rate: Array) -> Limit:
     found, bounds = [], []
     for steps in RANGES:
         best, worse, worst = _extrapolants(change[:, steps] / h[:, steps, None])
         rounded = rounding * np.sum(_WEIGHTS / h[:, steps], axis=-1)
         found.append(best)
-        bounds.append(norm(best - worse) + norm(worse - worst) + rounded + reported)
+        bounds.append(norm(best - worse) + norm(worse - worst) + rounded + per_rate)
     return Limit(np.array(found), expected, np.array(bounds))
 
 
 def _common_factor(found: dict[str, Limit]) -> float | None:
-    """By which all rates are off alike: the step is that much longer than it states."""
+    """The factor by which all rates are off: the step is longer than requested by that factor."""
     weights = [np.where(one.bound[0] > 0.0, 1.0 / one.bound[0], 0.0) for one in found.values()]
     pairs = list(zip(found.values(), weights, strict=True))
     rates = np.concatenate([np.ravel(one.found[0] * part[:, None]) for one, part in pairs])

@@ -37,7 +37,7 @@ class Finding:
 
     @property
     def verdict(self) -> str:
-        """Whether the error may stand: pass, fail, or info where that cannot be reported."""
+        """The verdict on the error: pass, fail, or info where it cannot be judged."""
         if self.kind == "beyond":
             return "info"
         return "pass" if self.kind in ("round-off", "explained", "consistent") else "fail"

@@ -58,23 +58,23 @@ def _gates(rows: list[Row]) -> dict[str, str]:
 
 
 class _Causes:
-    """Requests the likeliest causes, as long as an engine has not had its share."""
+    """Finds the likeliest causes, up to a number of diagnoses for each engine."""
 
     def __init__(self, causes_of: CausesOf, seed: int) -> None:
         self._causes_of, self._seed = causes_of, seed
-        self._requested: dict[str, set[tuple[str, str]]] = {}
+        self._diagnosed: dict[str, set[tuple[str, str]]] = {}
 
     def of(self, case: JudgedCase, found: EngineCase) -> Cause:
         """The causes of one engine's runs on one case."""
-        request = self._causes_of(case, found, self._seed)
-        requested = self._requested.setdefault(found.engine.name, set())
+        diagnose = self._causes_of(case, found, self._seed)
+        diagnosed = self._diagnosed.setdefault(found.engine.name, set())
 
         def cause(run: JudgedRun | None) -> str:
             key = (case.case.name, run.integrator.name if run else "")
-            if key not in requested and len(requested) >= MOST_CAUSES:
+            if key not in diagnosed and len(diagnosed) >= MOST_CAUSES:
                 return ""
-            requested.add(key)
-            return request(run)
+            diagnosed.add(key)
+            return diagnose(run)
 
         return cause
 

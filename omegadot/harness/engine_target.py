@@ -66,7 +66,7 @@ def _where(module: str, name: str) -> str:
 
 
 def _class_in(path: Path) -> str:
-    """The adapter in a file: the only class that is called ...Adapter, or the only one."""
+    """The adapter in a file: the only class named ...Adapter, or the only class."""
     try:
         body = ast.parse(path.read_text(encoding="utf-8")).body
     except OSError:

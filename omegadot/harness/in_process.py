@@ -1,4 +1,4 @@
-"""An engine in this very process, requested as a worker is: the same operations, the same wire."""
+"""An engine in this very process, called as in a worker: the same operations, the same wire."""
 
 from __future__ import annotations
 

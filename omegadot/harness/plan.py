@@ -31,7 +31,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Engine:
-    """An engine that started: its choice, what it reports of itself, what is run of it."""
+    """An engine that started: its choice, its description, and the integrators that are run."""
 
     choice: EngineChoice
     description: Description

@@ -41,7 +41,7 @@ class Runner:
         self.on_advance: Callable[[int], object] = lambda _: None
 
     def _keys(self, case: Case) -> list[SchemeKey]:
-        """The reference's runs that this case's engines will be held against."""
+        """The reference's runs that this case's engines will be compared with."""
         stepping = (engine for engine in self.engines.started if engine.name != "exact")
         named = {
             key
@@ -135,14 +135,14 @@ class Runner:
         """Judge a case again with finer steps, as long as these can still decide something."""
         finer: dict[str, Refinements] = {}
         for _ in range(MOST_HALVINGS):
-            requested = []
+            futures = []
             for found in judged.engines:
                 name, driver = found.engine.name, self.engines.drivers[found.engine.name]
                 known = finer.setdefault(name, {})
                 if any(run.unresolved for run in found.runs):
                     call = partial(refine, driver, judged.case, found.runs, known)
-                    requested.append(self.engines.submit(name, call))
-            done = [outcome_of(future) for future in requested]
+                    futures.append(self.engines.submit(name, call))
+            done = [outcome_of(future) for future in futures]
             if not any(done):
                 break
             judged = self.judge(pending, finer)

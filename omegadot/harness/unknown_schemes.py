@@ -29,8 +29,8 @@ def probe_unknown_schemes(
             continue
         probe = vanishing_step.probe_of(case.system, evaluation_states)
         fields = {"states": probe.states, "timesteps": probe.timesteps}
-        requested = driver.request(case, "first_steps", integrator=integrator.name, **fields)
-        result.first_steps[integrator.name] = (probe, requested)
+        answer = driver.request(case, "first_steps", integrator=integrator.name, **fields)
+        result.first_steps[integrator.name] = (probe, answer)
         for sweep, run in runs.items():
             if run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
                 state = state_from(run.result["state"])

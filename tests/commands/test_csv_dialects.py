@@ -111,7 +111,7 @@ def test_two_columns_of_one_name_matter_where_one_is_used():
     }
     assert list(table.column("a").values) == [1, 4]
     assert list(table.column(find_column(table, "#4", "wz")).values) == [3, 6]
-    with pytest.raises(TraceError, match=r"two columns are called 'vz'; .* like #3"):
+    with pytest.raises(TraceError, match=r"two columns have the name 'vz'; .* like #3"):
         table.column(find_column(table, "vz", "wz"))
 
 

@@ -52,7 +52,7 @@ def edited(line, cell, text):
         (lambda rows: rows[:1], "no line of numbers"),
         (lambda rows: rows[:2], "has one sample only"),
         (lambda rows: ["# a comment"], "nothing but comments"),
-        (lambda rows: [rows[0].replace("yaw", "p"), *rows[1:]], "two columns are called 'p'"),
+        (lambda rows: [rows[0].replace("yaw", "p"), *rows[1:]], "two columns have the name 'p'"),
         (lambda rows: [rows[0].replace("q", "qq"), *rows[1:]], "no column 'q' for wy; write qq"),
         (lambda rows: [rows[0].replace("pitch", "pich"), *rows[1:]], "no column is e2"),
         (lambda rows: [rows[0].replace("time", "when"), *rows[1:]], "no column is the time"),

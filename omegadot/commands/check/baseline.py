@@ -76,7 +76,7 @@ def _figures(rows: Iterable[Row], scheme: str = "") -> Figures:
 
 
 def answered(found: EngineCase) -> bool:
-    """Whether an engine answered all that it was requested, if only by a refusal."""
+    """Whether an engine answered every request, if only by a refusal."""
     outcomes = {run.outcome for run in found.runs} - {"ok", "diverged", "unsupported"}
     return not outcomes and found.result.first_failure() is None
 

@@ -51,7 +51,7 @@ def baseline_checks(
 def compare(
     check: Check, stored: Baseline | None, now: ScenarioFigures | None, version: str
 ) -> Result:
-    """Hold the figures of one run or one scenario against those that are stored."""
+    """Compare the figures of one run or one scenario with those that are stored."""
     key = RunKey(check.integrator or "", check.timestep)
     own = now.runs.get(key) if now else None
     was = stored.get(check.scenario) if stored is not None else None
@@ -67,10 +67,10 @@ def compare(
     found = changes(known, own)
     if not found:
         return PASSED
-    reported = "; ".join(change.sentence for change in found[:MOST_LISTED])
+    listed = "; ".join(change.sentence for change in found[:MOST_LISTED])
     more = f"; and {len(found) - MOST_LISTED} more" if len(found) > MOST_LISTED else ""
     why = meaning(known, own, found, was.version == version)
-    return Result("fail", f"{versions}: {reported}{more}. Probably {why}. {UPDATE.capitalize()}.")
+    return Result("fail", f"{versions}: {listed}{more}. Probably {why}. {UPDATE.capitalize()}.")
 
 
 def store(folder: Path, subjects: Iterable[Subject], figures: dict[str, Baseline]) -> list[Path]:

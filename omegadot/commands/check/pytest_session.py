@@ -117,10 +117,10 @@ class PytestSession:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Count a check by its engine."""
-        reported = dict(report.user_properties)
-        if report.when == "call" and report.nodeid.startswith(f"{ROOT}::") and ENGINE in reported:
-            verdict, message = str(reported[VERDICT]), str(reported.get(MESSAGE, ""))
-            self.tally.add(str(reported[ENGINE]), verdict, message)
+        properties = dict(report.user_properties)
+        if report.when == "call" and report.nodeid.startswith(f"{ROOT}::") and ENGINE in properties:
+            verdict, message = str(properties[VERDICT]), str(properties.get(MESSAGE, ""))
+            self.tally.add(str(properties[ENGINE]), verdict, message)
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_sessionfinish(self, session: pytest.Session) -> None:

@@ -1,4 +1,4 @@
-"""One case's part of a choice: who qualifies, who does not and why, and what would change it."""
+"""One case's part of a choice: the candidates that qualify, and why the others do not."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class CaseDocument:
         return None if spread is None else spread.scaled(steps)
 
     def _fast_enough(self, candidate: Candidate, trial: Trial) -> bool:
-        """Whether the median speed meets what is requested, if anything is."""
+        """Whether the median speed meets the requirement, if there is one."""
         least, seconds = self._wanted.real_time_factor, self._seconds(candidate, trial.steps)
         if seconds is None:
             return False

@@ -50,7 +50,7 @@ def engine_rows(choice: Choice, wanted: Requirements) -> list[Row]:
 
 
 def document(choice: Choice, wanted: Requirements) -> Row:
-    """The whole choice: requirements, engines, cases, and who qualifies in every case."""
+    """The whole choice: requirements, engines, cases, and what qualifies in every case."""
     cases = [CaseDocument(choice, found, wanted) for found in choice.cases]
     return {
         "schema": SCHEMA,

@@ -1,4 +1,4 @@
-"""What can be reported of an engine before it steps: precision, features, licence, Python."""
+"""What is known of an engine before it steps: precision, features, licence, Python."""
 
 from __future__ import annotations
 

@@ -91,8 +91,8 @@ def _licences(value: object, where: str) -> tuple[str, ...]:
 def requirements_of(given: Mapping[str, Any], places: Mapping[str, str]) -> Requirements:
     """The requirements of keys and values as they were written.
 
-    places: where each key stands, for errors.  Raises UsageError, also where none requests an
-    accuracy: without one every step is good enough, and the largest is no answer.
+    places: where each key stands, for errors.  Raises UsageError, also where no accuracy is
+    required: without one every step is good enough.
     """
     limits, requested = {}, {}
     for key, (kind, _) in ACCURACY.items():
@@ -122,13 +122,13 @@ def _quantity(kind: str, value: object, where: str) -> float:
     return quantity(value, kind, where)
 
 
-def known_key(argument: str, where: str) -> str:
+def known_key(name: str, where: str) -> str:
     """The requirement that a key of a file names. Raises UsageError with the nearest name."""
     aliases = {"features": "feature", "licences": "licence", "license": "licence"}
-    key = argument.replace("_", "-")
+    key = name.replace("_", "-")
     key = aliases.get(key, key)
     if key not in KEYS:
-        raise UsageError(f"{where}: there is no requirement {argument!r}; {nearest(key, KEYS)}.")
+        raise UsageError(f"{where}: there is no requirement {name!r}; {nearest(key, KEYS)}.")
     return key
 
 

@@ -34,8 +34,8 @@ def read_requirements(path: Path) -> dict[str, Any]:
         reason = str(error).splitlines()[0].rstrip(".")
         raise UsageError(f"{path}: not valid TOML ({reason}); correct it there.") from None
     found: dict[str, Any] = {}
-    for argument, value in data.items():
-        key = known_key(argument, str(path))
+    for name, value in data.items():
+        key = known_key(name, str(path))
         if key in found:
             raise UsageError(f"{path}: {key} is given twice; give it once.")
         found[key] = value

@@ -48,7 +48,7 @@ def faults(
 ) -> FaultsResult:
     """Break sound engines in known ways, and find which gate catches what, and how often.
 
-    engines: built-in ones, which are imported into this process; the reference without any.
+    engines: built-in ones, imported into this process; default: the reference.
     bodies: random ones for each fault.  seed: theirs.
     Raises UsageError for an engine that is unknown or not installed.
     """
@@ -61,7 +61,7 @@ def faults(
             raise UsageError(f"--engine {name}: no such engine; {nearest(name, ENGINES)}.")
     pool, matrices = Pool(seed), []
     with reporting(progress) as report, quiet_engines():
-        count = Count(report, "putting wrong engines through the gates", len(settings.engines))
+        count = Count(report, "judging faulty engines", len(settings.engines))
         for name in settings.engines:
             try:
                 matrices.append(engine_matrix(name, pool, bodies))

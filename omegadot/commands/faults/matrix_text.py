@@ -103,14 +103,14 @@ def _plain_engine(matrix: EngineMatrix) -> dict[str, Any]:
 
 def _plain_row(row: Detection) -> dict[str, Any]:
     fault = row.fault
-    reported = {k: v for k, v in vars(row).items() if k != "fault"}
+    columns = {k: v for k, v in vars(row).items() if k != "fault"}
     return {
         "name": fault.name,
         "sentence": fault.sentence,
         "kind": fault.kind,
         "needs": sorted(fault.needs),
         "expected": list(fault.gates),
-        **reported,
+        **columns,
     }
 
 

@@ -1,4 +1,4 @@
-"""An engine whose integrators declare their orders and no scheme, as one that no one knows does."""
+"""An engine whose integrators declare their orders and no scheme."""
 
 from __future__ import annotations
 

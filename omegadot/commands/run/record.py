@@ -1,4 +1,4 @@
-"""From a finished run to its record: who ran, on what, with what outcome."""
+"""From a finished run to its record: which engines ran, on what, with what outcome."""
 
 from __future__ import annotations
 

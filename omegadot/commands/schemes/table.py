@@ -40,17 +40,23 @@ def tables_of(record: Record) -> list[Table]:
         Table(
             "Schemes",
             ("engine", "integrator", "scheme", "stepped in", "match", "declared"),
-            [(*who, *_scheme(record, integrator)) for who, integrator in found],
+            [(*label, *_scheme(record, integrator)) for label, integrator in found],
         ),
         Table(
             "Orders: declared (observed)",
             ("engine", "integrator", *HEADS),
-            [(*who, *(orders_cell(integrator, c) for c in CHANNELS)) for who, integrator in found],
+            [
+                (*label, *(orders_cell(integrator, c) for c in CHANNELS))
+                for label, integrator in found
+            ],
         ),
         Table(
             f"One-step defect at a step of {angle} rad, and its order",
             ("engine", "integrator", *HEADS),
-            [(*who, *(defects_cell(integrator, c) for c in CHANNELS)) for who, integrator in found],
+            [
+                (*label, *(defects_cell(integrator, c) for c in CHANNELS))
+                for label, integrator in found
+            ],
         ),
     ]
 
@@ -136,9 +142,9 @@ def remarks_of(record: Record) -> list[str]:
         if engine["outcome"] != "ok":
             lines.append(f"{engine['name']}: {engine['outcome']}: {engine['reason']}")
         for integrator in engine["integrators"]:
-            who = f"{engine['name']} {engine['version']}, {integrator['name']}"
+            label = f"{engine['name']} {engine['version']}, {integrator['name']}"
             for kind, probe in integrator["probes"].items():
                 if probe["outcome"] != "ok":
-                    lines.append(f"{who}, {kind}: {probe['outcome']}: {probe['reason']}")
-            lines += [f"{who}, {clause}" for clause in integrator["departures"]]
+                    lines.append(f"{label}, {kind}: {probe['outcome']}: {probe['reason']}")
+            lines += [f"{label}, {clause}" for clause in integrator["departures"]]
     return lines

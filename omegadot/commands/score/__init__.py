@@ -1,1 +1,1 @@
-"""A trajectory from outside, of any simulator or log, held against the exact solution."""
+"""``omegadot score``: a trajectory of any simulator or log, against the exact solution."""

@@ -1,4 +1,4 @@
-"""A trace whose step, or scheme and step, is declared, held against the reference's schemes."""
+"""A trace whose step, or scheme and step, is declared, compared with the reference's schemes."""
 
 from __future__ import annotations
 

@@ -74,17 +74,17 @@ def find_column(table: Table, wanted: str, role: str) -> str:
 
 
 def check_alone(table: Table, name: str) -> None:
-    """Raise TraceError where another column is called so too."""
+    """Raise TraceError where another column has the same name."""
     if table.names.count(name) > 1:
         raise TraceError(
-            f"{table.file}: two columns are called {name!r}; rename one, or give its number, "
+            f"{table.file}: two columns have the name {name!r}; rename one, or give its number, "
             f"like #{table.names.index(name) + 1}."
         )
 
 
 def _near(wanted: str, names: Sequence[str]) -> str:
     advice = nearest(wanted, names)
-    return advice if advice.startswith("write ") else "give one that is there"
+    return advice if advice.startswith("write ") else "give an existing one"
 
 
 def _listed(names: Sequence[str], most: int = 20) -> str:

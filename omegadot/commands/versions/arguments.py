@@ -25,7 +25,7 @@ def requested_releases(
 ) -> RequestedReleases:
     """The releases of ``VERSION``, ``LOW..HIGH`` and ``VERSION=PYTHON`` arguments.
 
-    releases: the published ones, queried where a range needs them. Raises UsageError.
+    releases: the published ones, looked up where a range needs them. Raises UsageError.
     """
     versions: list[str] = []
     pythons: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""Versions measured: each placed in its environment, started, queried, timed, and ended."""
+"""Versions measured: each placed in its environment, started, measured, timed, and ended."""
 
 from __future__ import annotations
 

@@ -128,7 +128,7 @@ class Uv:
         _run([*self._command, "pip", "install", "--quiet", *to, *requirements])
 
     def releases(self, package: str, span: Span) -> list[str]:
-        """No call of uv lists releases: it is queried for the newest below each one found."""
+        """No call of uv lists releases: it is called for the newest below each one found."""
         found: list[str] = []
         bounds = [f">={span.low}"] if span.low else []
         last = [f"<={span.high}"] if span.high else []

@@ -71,7 +71,7 @@ class Portrait:
 
 
 class Sitting:
-    """One version being measured, through its worker; once `halted`, nothing more is queried."""
+    """One version being measured, through its worker; once `halted`, no further request is sent."""
 
     def __init__(
         self, portrait: Portrait, worker: WorkerProcess, aims: Aims, halted: Callable[[], bool]
@@ -155,7 +155,7 @@ class Sitting:
 
     def _load(self, system: System) -> dict[str, Integrator]:
         if self._halted():
-            raise NoAnswerError(Answer("interrupted", "interrupted before this question"))
+            raise NoAnswerError(Answer("interrupted", "interrupted before this request"))
         if self._timeouts >= MOST_TIMEOUTS:
             raise NoAnswerError(Answer("timeout", f"not tried after {MOST_TIMEOUTS} time-outs"))
         return load(self._worker, system)
@@ -179,7 +179,7 @@ class Sitting:
 
     @contextmanager
     def _noting(self, what: str, names: list[Name]) -> Iterator[None]:
-        """Let a question that fails cost its own figures alone."""
+        """A request that fails costs its own figures alone."""
         try:
             yield
             self._answered = True

@@ -60,7 +60,7 @@ def product_of(argument: str, target: str = "", package: str = "") -> Product:
     known = {name: product for product in PRODUCTS for name in (product.engine, product.package)}
     if argument not in known:
         raise UsageError(
-            f"{argument}: no engine with releases is called so; {nearest(argument, known)}, "
+            f"{argument}: no such engine with releases; {nearest(argument, known)}, "
             "or name an adapter of your own with --adapter FILE.py:Class."
         )
     return known[argument]

@@ -1,4 +1,4 @@
-"""The exact trajectories that all versions are held against, each computed once."""
+"""The exact trajectories that all versions are compared with, each computed once."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ def study_engine(
 ) -> EngineStudy:
     """Start an engine's worker and study it on every probe; end the worker.
 
-    stopping: set from elsewhere, it makes an end of it. Raises UsageError where an integrator is
+    stopping: an event that ends the study. Raises UsageError where an integrator is
     requested that the engine does not have.
     """
     halt = stopping or threading.Event()

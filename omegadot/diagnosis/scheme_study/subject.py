@@ -22,7 +22,7 @@ class NoAnswerError(Exception):
 
 
 class Stepper(Protocol):
-    """How an integrator is queried to step."""
+    """How an integrator is stepped."""
 
     def __call__(self, initial: State, timestep: float, steps: int, every: int) -> State:
         """The states at step 0, each `every`-th and the last. Raises NoAnswerError."""

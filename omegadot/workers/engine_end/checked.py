@@ -16,7 +16,7 @@ CHANNELS = get_args(Channel)
 
 
 class AnswerError(TypeError):
-    """An adapter's answer is not what the protocol requests; the message states what and where."""
+    """An adapter's answer is not what the protocol requires; the message states what and where."""
 
 
 def _expect(what: str, value: Any, kind: type) -> None:
@@ -70,7 +70,7 @@ def checked_seconds(seconds: Any, whole: float) -> float:
 
 
 def checked_acceleration(found: Any, lead: Shape) -> Acceleration:
-    """Angular and linear acceleration at as many states as were requested."""
+    """Angular and linear acceleration at as many states as were given."""
     what = "forward_dynamics()"
     _expect(what, found, Acceleration)
     angular = numbers(f"{what}.angular", found.angular, (*lead, 3))
@@ -78,7 +78,7 @@ def checked_acceleration(found: Any, lead: Shape) -> Acceleration:
 
 
 def checked_torque(found: Any, lead: Shape) -> Array:
-    """A torque for each state that was requested."""
+    """A torque for each state."""
     return numbers("inverse_dynamics()", found, (*lead, 3))
 
 

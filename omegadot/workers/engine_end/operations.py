@@ -1,4 +1,4 @@
-"""What a worker can be requested: each operation takes the adapter and the request's fields."""
+"""The requests that a worker answers: each operation takes the adapter and the request's fields."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def _text_of(error: BaseException) -> str:
 
 
 def failure(error: BaseException) -> dict[str, Any]:
-    """The answer that reports of an exception, with its type and the line that raised it."""
+    """The answer that reports an exception, with its type and the line that raised it."""
     traceback.clear_frames(error.__traceback__)  # what they hold may be all the memory there is
     texts = one_line(_text_of(error))
     if isinstance(error, UnsupportedError):

@@ -21,7 +21,7 @@ from omegadot.workers.machine import memory_of_machine
 from omegadot.workers.plain_text import one_line
 
 SECONDS_TO_LEAVE = 2.0
-# Importing an engine takes as long as it takes, however short a request may be requested to be.
+# Importing an engine takes its time, however short the limit of a request.
 SECONDS_TO_START = 20.0
 
 
@@ -158,7 +158,7 @@ class WorkerProcess:
         process, pipes = self._process, self._pipes
         if process is None or pipes is None:
             return
-        if process.poll() is not None:  # it died while no one requested it anything
+        if process.poll() is not None:  # it died between requests
             self._post_mortem(process, pipes, "")
             return
         pipes.close_requests()
