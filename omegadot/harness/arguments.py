@@ -60,10 +60,10 @@ def engine_choices(
         chosen = added or known
         return [EngineChoice(name, target) for name, target in {**known, **chosen}.items()]
     picked: dict[str, list[str]] = {}
-    for term in names:
-        name, _, integrator = term.partition(":")
+    for given in names:
+        name, _, integrator = given.partition(":")
         if name not in known:
-            raise UsageError(f"{option} {term}: no such engine; {nearest(name, known)}.")
+            raise UsageError(f"{option} {given}: no such engine; {nearest(name, known)}.")
         picked.setdefault(name, []).append(integrator)
     picked |= {name: [""] for name in added if name not in picked}
     return [
@@ -83,27 +83,27 @@ def check_integrators(choice: EngineChoice, description: Description) -> None:
             )
 
 
-def scenarios_of(terms: Sequence[ScenarioLike]) -> list[Scenario]:
+def scenarios_of(wanted: Sequence[ScenarioLike]) -> list[Scenario]:
     """The scenarios given, each by name, path, tables or as one; all built-ins without any.
 
     Raises ScenarioError, and UsageError where two of them have the same name.
     """
     seen: dict[str, Scenario] = {}
     origin: dict[str, ScenarioLike] = {}
-    for term in terms or builtin_names():
-        found = scenario(term)
+    for given in wanted or builtin_names():
+        found = scenario(given)
         if found.name in seen:
             raise UsageError(
-                f"{_origin(term)}: its name {found.name!r} is that of "
+                f"{_origin(given)}: its name {found.name!r} is that of "
                 f"{_origin(origin[found.name])} too; give every scenario of a run a name of its "
                 "own."
             )
-        seen[found.name], origin[found.name] = found, term
+        seen[found.name], origin[found.name] = found, given
     return list(seen.values())
 
 
-def _origin(term: ScenarioLike) -> str:
-    return str(term) if isinstance(term, str | PathLike) else "a scenario built in code"
+def _origin(given: ScenarioLike) -> str:
+    return str(given) if isinstance(given, str | PathLike) else "a scenario built in code"
 
 
 def case_of(scenario: Scenario, timesteps: Sequence[float]) -> Case:

@@ -89,10 +89,10 @@ def test_an_engine_is_idle_only_when_every_check_was_skipped() -> None:
 
 
 def test_engines_are_named_given_or_required() -> None:
-    terms = Arguments(
+    arguments = Arguments(
         engines=["mujoco:RK4"], adapters=[f"{WRONG}:Sound"], required=["mujoco", "dart", "nope"]
     )
-    found = select(replace(terms, scenarios=["sphere"]))
+    found = select(replace(arguments, scenarios=["sphere"]))
     assert [(c.name, c.integrators) for c in found.choices] == [
         ("mujoco", ("RK4",)),
         ("sound", ()),
@@ -115,8 +115,8 @@ def test_a_file_is_enough_where_it_holds_one_adapter(tmp_path: Path) -> None:
 
 
 def test_a_sound_engine_passes_every_check(tmp_path: Path) -> None:
-    terms = ("--integrator", "RK4", "--scenario", quick_scenario(tmp_path))
-    result = omegadot("check", "mujoco", *terms, "--format", "json", folder=tmp_path)
+    arguments = ("--integrator", "RK4", "--scenario", quick_scenario(tmp_path))
+    result = omegadot("check", "mujoco", *arguments, "--format", "json", folder=tmp_path)
     assert result.code == 0, result.err
     assert result.json["exit_code"] == 0
     assert result.json["verdicts"] == {
@@ -131,8 +131,8 @@ def test_a_sound_engine_passes_every_check(tmp_path: Path) -> None:
 
 
 def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
-    terms = (f"{WRONG}:NoGyroscopic", "--scenario", quick_scenario(tmp_path))
-    result = omegadot("check", *terms, folder=tmp_path)
+    arguments = (f"{WRONG}:NoGyroscopic", "--scenario", quick_scenario(tmp_path))
+    result = omegadot("check", *arguments, folder=tmp_path)
     assert result.code == 1, result.err
     assert "FAIL  nogyroscopic-quick-equation" in result.out
     assert "omega_dot: residual" in result.out
@@ -150,8 +150,8 @@ def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
     ],
 )
 def test_outcomes_stay_apart(name: str, code: int, text: str, tmp_path: Path) -> None:
-    terms = (f"{FAULTY}:{name}", "--scenario", quick_scenario(tmp_path))
-    result = omegadot("check", *terms, folder=tmp_path)
+    arguments = (f"{FAULTY}:{name}", "--scenario", quick_scenario(tmp_path))
+    result = omegadot("check", *arguments, folder=tmp_path)
     assert result.code == code, result.err
     assert text in result.out
     if name == "Raises":  # the other integrator is whole
@@ -159,7 +159,7 @@ def test_outcomes_stay_apart(name: str, code: int, text: str, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("adapter", "terms", "text"),
+    ("adapter", "arguments", "message"),
     [
         ("mujocco", Arguments(), "write mujoco"),
         ("mujoco:RK4", Arguments(), "--integrator RK4"),
@@ -168,10 +168,10 @@ def test_outcomes_stay_apart(name: str, code: int, text: str, tmp_path: Path) ->
         ("nowhere.py", Arguments(), "no such adapter file"),
     ],
 )
-def test_wrong_usage_is_one_sentence(adapter: str, terms: Arguments, text: str) -> None:
+def test_wrong_usage_is_one_sentence(adapter: str, arguments: Arguments, message: str) -> None:
     with pytest.raises(UsageError) as caught:
-        select(arguments_of(adapter, [], terms))
-    assert text in str(caught.value)
+        select(arguments_of(adapter, [], arguments))
+    assert message in str(caught.value)
     assert str(caught.value).endswith(".")
 
 
@@ -182,8 +182,8 @@ def test_wrong_usage_is_found_where_the_engine_knows_better(tmp_path: Path) -> N
 
 
 def test_json_gives_every_check_its_parts(tmp_path: Path) -> None:
-    terms = ("--scenario", quick_scenario(tmp_path), "--format", "json")
-    result = omegadot("check", "exact", *terms, folder=tmp_path)
+    arguments = ("--scenario", quick_scenario(tmp_path), "--format", "json")
+    result = omegadot("check", "exact", *arguments, folder=tmp_path)
     assert result.code == 0, result.err
     first = json.loads(result.out)["checks"][0]
     check, verdict = Check("exact", "quick", "model"), Result("pass")

@@ -56,7 +56,7 @@ def test_what_is_declared_is_not_used(case, truth):
     }
 
 
-def test_who_equals_nothing_is_alone_and_nameless(case, truth):
+def test_a_run_that_equals_none_is_alone_and_unnamed(case, truth):
     engines = [engine_case(case, truth, "odd", (declared("own", None, 2), "implicit-midpoint"))]
     assert members(clusters_of(case, truth, engines), 0.01) == {("odd:own",): None}
 
@@ -100,8 +100,8 @@ def test_a_run_that_failed_is_in_no_cluster(case, truth):
 def test_a_run_records_its_clusters(tmp_path: Path) -> None:
     quick_scenario(tmp_path)
     engines = ("mujoco:Euler", "mujoco:RK4", "pinocchio:aba+semi-implicit-euler", "dart")
-    terms = [term for engine in engines for term in ("--engine", engine)]
-    result = omegadot("run", "quick.toml", *terms, "--out", "out", folder=tmp_path)
+    arguments = [term for engine in engines for term in ("--engine", engine)]
+    result = omegadot("run", "quick.toml", *arguments, "--out", "out", folder=tmp_path)
     assert result.code == 0, result.err
     run = json.loads((tmp_path / "out" / "run.json").read_text())
     (finest,) = [c for c in run["clusters"] if c["timestep"] == 0.005 and len(c["members"]) > 1]

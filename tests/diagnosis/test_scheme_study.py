@@ -44,9 +44,9 @@ NAMED = {
 }
 
 
-def studied(folder: Path, *terms: object, code: int = 0) -> Any:
+def studied(folder: Path, *arguments: object, code: int = 0) -> Any:
     """The JSON of ``omegadot schemes``, which must end with this exit code."""
-    result = omegadot("schemes", *terms, "--format", "json", folder=folder)
+    result = omegadot("schemes", *arguments, "--format", "json", folder=folder)
     assert result.code == code, result.err or result.out
     return result.json
 
@@ -138,8 +138,10 @@ def test_each_reference_scheme_identifies_itself_alone(monkeypatch: pytest.Monke
 
 def test_a_wrong_declaration_is_found_out(tmp_path: Path) -> None:
     engines = ["EulerAsRungeKutta", "NaiveAsRungeKutta", "Unheard", "AlmostEuler"]
-    terms = [w for e in engines for w in ("--adapter", f"{MISDECLARED}:{e}", "--engine", e.lower())]
-    record = studied(tmp_path, *terms, code=1)
+    arguments = [
+        w for e in engines for w in ("--adapter", f"{MISDECLARED}:{e}", "--engine", e.lower())
+    ]
+    record = studied(tmp_path, *arguments, code=1)
     euler, naive, unheard, almost = (integrators(record)[e.lower(), "step"] for e in engines)
 
     assert names(euler) == [EXPLICIT]
@@ -175,11 +177,11 @@ def test_runge_kutta_of_mujoco_changed_its_order(tmp_path: Path) -> None:
     python = os.environ.get(OLD_MUJOCO)
     if python is None:
         pytest.skip(f"{OLD_MUJOCO} names no interpreter that has MuJoCo 3.17.0, NumPy and SciPy")
-    terms = ("--engine", "mujoco:RK4")
-    old = studied(tmp_path, *terms, "--python", f"mujoco={python}")
+    arguments = ("--engine", "mujoco:RK4")
+    old = studied(tmp_path, *arguments, "--python", f"mujoco={python}")
     assert old["engines"][0]["version"] == "3.17.0"
     before = integrators(old)["mujoco", "RK4"]
-    after = integrators(studied(tmp_path, *terms))["mujoco", "RK4"]
+    after = integrators(studied(tmp_path, *arguments))["mujoco", "RK4"]
     assert names(before) == ["lie-rk4-naive"]
     assert names(after) == ["munthe-kaas-rk4"]
     for kind in ("free", "damped", "pivoted", "pivoted-damped"):
@@ -188,8 +190,8 @@ def test_runge_kutta_of_mujoco_changed_its_order(tmp_path: Path) -> None:
 
 
 def test_tables_are_printed_and_an_interpreter_is_taken(tmp_path: Path) -> None:
-    terms = ("--engine", f"reference:{EXPLICIT}", "--python", f"reference={sys.executable}")
-    result = omegadot("schemes", *terms, folder=tmp_path)
+    arguments = ("--engine", f"reference:{EXPLICIT}", "--python", f"reference={sys.executable}")
+    result = omegadot("schemes", *arguments, folder=tmp_path)
     assert result.code == 0, result.err
     assert "Schemes" in result.out
     assert re.search(rf"{EXPLICIT} +{EXPLICIT} +com-world +to 0 over 1000 steps", result.out)
@@ -197,14 +199,14 @@ def test_tables_are_printed_and_an_interpreter_is_taken(tmp_path: Path) -> None:
 
 
 def test_an_engine_that_dies_is_an_outcome(tmp_path: Path) -> None:
-    terms = ("--adapter", f"{FAULTY}:Killed", "--engine", f"killed:{EXPLICIT}")
-    killed = integrators(studied(tmp_path, *terms, code=3))["killed", EXPLICIT]
+    arguments = ("--adapter", f"{FAULTY}:Killed", "--engine", f"killed:{EXPLICIT}")
+    killed = integrators(studied(tmp_path, *arguments, code=3))["killed", EXPLICIT]
     assert {probe["outcome"] for probe in killed["probes"].values()} == {"crashed"}
     assert killed["schemes"] == []
 
 
 @pytest.mark.parametrize(
-    ("terms", "text"),
+    ("arguments", "message"),
     [
         (("--python", "mujoco"), "NAME=PATH"),
         (("--python", "mujoko=/bin/sh"), "write mujoco"),
@@ -213,10 +215,10 @@ def test_an_engine_that_dies_is_an_outcome(tmp_path: Path) -> None:
         (("--engine", "mujoko"), "write mujoco"),
     ],
 )
-def test_wrong_usage_of_schemes_is_one_sentence(terms: tuple[str, ...], text: str) -> None:
-    result = omegadot("schemes", *terms, folder=PAGE.parent)
+def test_wrong_usage_of_schemes_is_one_sentence(arguments: tuple[str, ...], message: str) -> None:
+    result = omegadot("schemes", *arguments, folder=PAGE.parent)
     assert result.code == 2
-    assert text in result.err
+    assert message in result.err
     assert result.err.count("\n") == 1
 
 

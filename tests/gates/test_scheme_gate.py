@@ -164,7 +164,7 @@ def test_a_likeness_names_where_it_is_least():
     assert found.share == pytest.approx(10.0)
 
 
-def test_who_declares_no_scheme_is_held_against_all_of_them(case):
+def test_without_a_declared_scheme_all_are_compared(case):
     assert comparison_keys(declared("own", "lie-rk4"), case.system) == [SchemeKey("lie-rk4")]
     silent = comparison_keys(declared("own"), case.system)
     assert {key.scheme for key in silent} == set(SCHEMES)

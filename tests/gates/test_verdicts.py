@@ -105,7 +105,7 @@ def test_beyond_the_schemes_own_end_nothing_is_judged() -> None:
     assert judge(Evidence(LARGE, bound, left, (None, None)), "scheme", 1).verdict == "fail"
 
 
-def test_a_slope_that_is_still_rising_is_not_held_against_anyone() -> None:
+def test_a_slope_that_is_still_rising_fails_no_run() -> None:
     steps = [0.04, 0.02, 0.01]
     seen = observed_order(steps, [h - 9 * h**2 for h in steps])
     assert seen is not None

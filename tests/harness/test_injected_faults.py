@@ -122,11 +122,11 @@ def processes_marked(mark: str) -> list[str]:
 
 def run_engines(folder: Path, adapters: list[str], *more: object) -> Run:
     scenario = quick_scenario(folder, TINY, "tiny.toml")
-    terms = [term for adapter in adapters for term in ("--adapter", adapter)]
+    arguments = [term for adapter in adapters for term in ("--adapter", adapter)]
     mark = os.environ[MARK] = uuid.uuid4().hex
     try:
         out = ("--out", "out", *more)
-        result = omegadot("run", scenario, "--engine", "reference", *terms, *out, folder=folder)
+        result = omegadot("run", scenario, "--engine", "reference", *arguments, *out, folder=folder)
     finally:
         del os.environ[MARK]
     assert "Traceback" not in result.err, result.err

@@ -22,7 +22,7 @@ BODY = """
 TOUCHING = '<geom type="sphere" size="10" mass="0"/>'
 
 
-def terms(values: Array) -> str:
+def numbers(values: Array) -> str:
     return " ".join(f"{value:.17g}" for value in values)
 
 
@@ -31,11 +31,11 @@ def mujoco_body(motion: Motion, geom: str) -> str:
     i = body.inertia
     full = np.array([i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]])
     return BODY.format(
-        p=terms(state.position),
-        q=terms(state.orientation),
-        c=terms(body.center_of_mass),
+        p=numbers(state.position),
+        q=numbers(state.orientation),
+        c=numbers(body.center_of_mass),
         m=f"{float(body.mass):.17g}",
-        i=terms(full),
+        i=numbers(full),
         geom=geom,
     )
 

@@ -138,8 +138,8 @@ def test_playing_ends_at_the_end_and_announces_a_divergence(page):
     choose(page, "view-speed", "10")
     page.evaluate(f"{PLAY}.click()")
     page.wait(f"{PLAY}.textContent === 'Play' && {TIME} === 4")
-    terms = "dart semi-implicit diverges from the exact solution at 1.50 s."
-    assert any(text.startswith(terms) for text in page.evaluate("heard"))
+    sentence = "dart semi-implicit diverges from the exact solution at 1.50 s."
+    assert any(text.startswith(sentence) for text in page.evaluate("heard"))
 
 
 def test_scrubbing_sets_the_clock_and_the_numbers(page):

@@ -27,8 +27,8 @@ def browser(tmp_path_factory):
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     record = build()
-    terms = [HOSTILE, "folder/spun-again.toml", "--seed", "7", "--adapter=mine.py:My Engine"]
-    record.run["command"] = ["omegadot", "run", *terms]
+    arguments = [HOSTILE, "folder/spun-again.toml", "--seed", "7", "--adapter=mine.py:My Engine"]
+    record.run["command"] = ["omegadot", "run", *arguments]
     record.run["scenarios"] = [scenario_entry("sphere"), scenario_entry("spun-again")]
     file = tmp_path_factory.mktemp("page") / "report.html"
     file.write_text(draw_page(record), encoding="utf-8")

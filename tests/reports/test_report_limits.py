@@ -101,7 +101,7 @@ def sweep(engine, *points):
     return Sweep(engine, "physics", "a", 1.0, tuple(Point(h, e, None, c) for h, e, c in points))
 
 
-def test_the_front_is_what_nothing_beats_in_both_and_the_reference_stands_aside():
+def test_the_pareto_front_is_of_engines_without_the_reference():
     sweeps = [
         sweep("x", (0.1, 1e-2, 1.0), (0.01, 1e-4, 10.0), (0.001, 1e-4, 100.0)),
         sweep("y", (0.1, 2e-2, 2.0), (0.01, 1e-3, 5.0), (0.001, None, 0.1)),

@@ -106,10 +106,10 @@ def test_every_chart_has_a_text_alternative_and_a_table(sound):
 
 def test_equations_errata_and_limitations_are_stated(sound):
     text = text_of(sound)
-    for terms in ("(8)", "(9) is printed without its minus sign", "2.2.1", "Limitations"):
-        assert terms in text
-    for terms in ("sleeping", "quaternions are (w, x, y, z)", "numpy", "2.0.0", "x86_64"):
-        assert terms in text
+    for expected in ("(8)", "(9) is printed without its minus sign", "2.2.1", "Limitations"):
+        assert expected in text
+    for expected in ("sleeping", "quaternions are (w, x, y, z)", "numpy", "2.0.0", "x86_64"):
+        assert expected in text
     assert "omegadot run --out 'a folder'" in text
     assert "example.org/issue/1" in text
 

@@ -18,8 +18,8 @@ from omegadot.reports.summary.provenance import (
 from omegadot.reports.summary.summary import summarise
 
 
-def run(*terms, names=("sphere", "spun")):
-    return {"command": ["omegadot", "run", *terms], "scenarios": [{"name": n} for n in names]}
+def run(*arguments, names=("sphere", "spun")):
+    return {"command": ["omegadot", "run", *arguments], "scenarios": [{"name": n} for n in names]}
 
 
 def test_a_scenario_of_a_file_is_requested_by_its_path():

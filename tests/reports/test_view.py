@@ -72,9 +72,9 @@ def test_the_attitudes_that_travel_are_the_stored_ones(record):
     omega = values[start + 4 * count : start + 7 * count].reshape(3, count).T
     assert omega * scenario["fastest"] == pytest.approx(np.tile([0, 0, 2.0], (count, 1)), abs=1e-12)
     exact = exact / np.linalg.norm(exact, axis=-1, keepdims=True)
-    for line, _, terms, clock, first, n, *_ in scenario["runs"]:
+    for line, _, knob, clock, first, n, *_ in scenario["runs"]:
         engine, integrator = lines[line].engine, lines[line].integrator
-        step = float(terms.removeprefix("step ").removesuffix(" s"))
+        step = float(knob.removeprefix("step ").removesuffix(" s"))
         stored = column(record, engine, integrator, step, ["qw", "qx", "qy", "qz", "wz"])
         frames = scenario["frames"][clock]
         assert np.array(scenario["times"])[frames] == pytest.approx(stored[:, 0], rel=1e-6)

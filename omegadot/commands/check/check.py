@@ -77,14 +77,14 @@ def check(
     compare with, or to store them in.  timeout: s, for one request to the engine.
     Raises UsageError, ScenarioError and NoTruthError.
     """
-    names = Arguments(
+    arguments = Arguments(
         scenarios=several(scenarios),
         exceptions=several(exceptions),
         baseline=baseline,
         update=update_baseline,
         timeout=timeout,
     )
-    selection = select(arguments_of(engine, several(integrators), names))
+    selection = select(arguments_of(engine, several(integrators), arguments))
     with reporting(progress) as report:
         suite = Suite(selection)
         count = Count(report, "checking", len(suite.checks))
@@ -108,7 +108,7 @@ def _result_of(suite: Suite, selection: Selection, results: dict[Check, Result])
     return CheckResult(results, suite.registry.subjects, tuple(skipped), tuple(written))
 
 
-def arguments_of(engine: EngineLike, integrators: Sequence[str], names: Arguments) -> Arguments:
+def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Arguments) -> Arguments:
     """The arguments for one engine, which is taken for a name or for a class.
 
     Raises UsageError.
@@ -129,4 +129,4 @@ def arguments_of(engine: EngineLike, integrators: Sequence[str], names: Argument
             "FILE.py:Class or module:Class."
         )
     engines = [f"{name}:{integrator}" for integrator in integrators] or [name]
-    return replace(names, engines=engines, adapters=adapters, required=[name])
+    return replace(arguments, engines=engines, adapters=adapters, required=[name])

@@ -46,29 +46,29 @@ class Selection:
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
 
 
-def select(terms: Arguments) -> Selection:
+def select(arguments: Arguments) -> Selection:
     """Make ready what was requested. Raises UsageError and ScenarioError.
 
     Without an argument about engines these are all that are registered; otherwise those that are
     named, given by an adapter, or required.
     """
-    if terms.update and terms.baseline is None:
+    if arguments.update and arguments.baseline is None:
         raise UsageError("--update-baseline: give the folder of the baselines with --baseline DIR.")
-    adapters = adapters_named(terms.adapters)
+    adapters = adapters_named(arguments.adapters)
     known = {**registered(), **adapters}
-    unknown = tuple(name for name in terms.required if name not in known)
-    wanted = list(terms.engines)
-    for name in (*adapters, *terms.required):
+    unknown = tuple(name for name in arguments.required if name not in known)
+    wanted = list(arguments.engines)
+    for name in (*adapters, *arguments.required):
         if name in known and name not in {argument.partition(":")[0] for argument in wanted}:
             wanted.append(name)
-    choices = [] if unknown and not wanted else engine_choices(wanted, terms.adapters)
+    choices = [] if unknown and not wanted else engine_choices(wanted, arguments.adapters)
     return Selection(
         choices=choices,
-        cases=[case_of(scenario, ()) for scenario in scenarios_of(terms.scenarios)],
-        exceptions=exceptions_of(choices, map(Path, terms.exceptions)),
-        required=frozenset(terms.required),
+        cases=[case_of(scenario, ()) for scenario in scenarios_of(arguments.scenarios)],
+        exceptions=exceptions_of(choices, map(Path, arguments.exceptions)),
+        required=frozenset(arguments.required),
         unknown=unknown,
-        baseline=None if terms.baseline is None else Path(terms.baseline),
-        update=terms.update,
-        timeout=terms.timeout,
+        baseline=None if arguments.baseline is None else Path(arguments.baseline),
+        update=arguments.update,
+        timeout=arguments.timeout,
     )

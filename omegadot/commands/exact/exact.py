@@ -73,7 +73,7 @@ def exact(scenario: ScenarioLike, times: ArrayLike | None = None) -> ExactStates
     scenario: a built-in's name, a path, a scenario or its tables.  times: s, one or several,
     from 0 on and rising; without them, the sample times of the scenario's own sweep.
     Closed forms where there are (double precision, to the floor), else a Taylor series.
-    Raises ScenarioError, and UsageError for times that are none.
+    Raises ScenarioError, and UsageError for times that do not rise from 0 on.
     """
     case = case_of(scenarios_of([scenario])[0], ())
     requested = case.sample_times if times is None else _checked(times, case)
@@ -103,7 +103,7 @@ def exact(scenario: ScenarioLike, times: ArrayLike | None = None) -> ExactStates
 def _followed(case: Case, requested: Array) -> Array:
     """The times requested, and those of the scenario's samples, from 0 to the last of all.
 
-    What rounding comes to grows along the motion, so the floor needs the whole of it.
+    Rounding accumulates along the motion, so the floor needs the whole of it.
     """
     own = case.sample_times
     interval = own[-1] / (len(own) - 1)

@@ -44,7 +44,7 @@ class Published:
 
 
 def attitude(random: Generator) -> Array:
-    """Any attitude, all alike."""
+    """A random attitude, uniformly distributed."""
     return normalize(random.standard_normal(4))
 
 
@@ -55,7 +55,7 @@ def free_body(mass: float, inertia: Array, center: Array | None = None, **load: 
 
 
 def start(orientation: Array, w: Array, x: Array | None = None, v: Array | None = None) -> State:
-    """A state; at rest at the origin but for its turning where nothing else is given."""
+    """A state that spins; at rest at the origin unless x or v is given."""
     none = np.zeros(3)
     return State(orientation, w, none if x is None else x, none if v is None else v)
 

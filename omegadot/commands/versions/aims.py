@@ -54,12 +54,12 @@ def case_for(argument: ScenarioLike, timestep: float | None) -> Case:
 
 
 def aims_of(
-    terms: Sequence[ScenarioLike], integrators: Sequence[str], timestep: float | None
+    scenarios: Sequence[ScenarioLike], integrators: Sequence[str], timestep: float | None
 ) -> Aims:
     """What the arguments request. Raises ScenarioError and UsageError."""
-    named = list(terms) or list(DEFAULT)
-    once = [term for place, term in enumerate(named) if term not in named[:place]]
-    cases = tuple(case_for(term, timestep) for term in once)
+    named = list(scenarios) or list(DEFAULT)
+    once = [one for place, one in enumerate(named) if one not in named[:place]]
+    cases = tuple(case_for(one, timestep) for one in once)
     return Aims(cases, tuple(dict.fromkeys(integrators)))
 
 

@@ -15,7 +15,7 @@ from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array
 
 PROBES = 8
-Term = tuple[str, str | float]
+Option = tuple[str, str | float]
 
 
 @dataclass(frozen=True)
@@ -56,16 +56,16 @@ class Reading:
 
     def options(self) -> list[str]:
         """The options to pass to have the trace read so."""
-        return [_option(key, value) for key, value in self._terms()]
+        return [_option(key, value) for key, value in self._options()]
 
     def arguments(self) -> dict[str, Any]:
         """The same as keyword arguments of `omegadot.score`."""
-        terms = self._terms()
-        settings = {k.replace("-", "_"): value for k, value in terms if k != "column"}
-        return {"columns": [value for k, value in terms if k == "column"], **settings}
+        options = self._options()
+        settings = {k.replace("-", "_"): value for k, value in options if k != "column"}
+        return {"columns": [value for k, value in options if k == "column"], **settings}
 
-    def _terms(self) -> list[Term]:
-        found: list[Term] = [("column", f"t={self.clock.column}")]
+    def _options(self) -> list[Option]:
+        found: list[Option] = [("column", f"t={self.clock.column}")]
         if self.clock.unit != "s":
             found.append(("time-unit", self.clock.unit))
         if self.clock.offset:
@@ -77,7 +77,7 @@ class Reading:
             found += [("omega-frame", "world")] * (self.omega.frame == "world")
             body = self.omega.axes if self.omega.frame == "body" else SAME
         if self.attitude is not None:
-            found += _attitude_terms(self.attitude)
+            found += _attitude_options(self.attitude)
             world, body = self.attitude.world, self.attitude.body
         for name, axes in (("world", world), ("body", body)):
             found += [(f"{name}-axes", axes_text(AXES[axes]))] * (axes != SAME)
@@ -92,16 +92,16 @@ def _option(key: str, value: str | float) -> str:
     return f"--{key} {value}"
 
 
-def _attitude_terms(found: Attitude) -> list[Term]:
-    names, terms = ",".join(found.columns), list[Term]()
+def _attitude_options(found: Attitude) -> list[Option]:
+    names, options = ",".join(found.columns), list[Option]()
     if found.kind.startswith("quaternion"):
-        terms = [("column", f"q={names}"), ("quaternion", found.kind.split()[1])]
+        options = [("column", f"q={names}"), ("quaternion", found.kind.split()[1])]
     elif found.kind == "matrix":
-        terms = [("column", f"r={names}")]
+        options = [("column", f"r={names}")]
     else:
-        terms = [("column", f"e={names}"), ("euler", found.kind)]
-        terms += [("angle-unit", found.unit)] * (found.unit != "rad")
-    return terms + [("attitude-is", found.direction)] * (found.direction != "world-from-body")
+        options = [("column", f"e={names}"), ("euler", found.kind)]
+        options += [("angle-unit", found.unit)] * (found.unit != "rad")
+    return options + [("attitude-is", found.direction)] * (found.direction != "world-from-body")
 
 
 def unlike(readings: Sequence[Reading]) -> list[Reading]:
