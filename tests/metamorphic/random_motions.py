@@ -141,7 +141,7 @@ def trajectory_gap(
 ) -> float:
     """The distance of two trajectories of a motion over what rounding may grow to in both.
 
-    The growth is that of the declared scheme along its own course; where none is declared, of RK4.
+    The growth is that of the declared scheme along its own trajectory, or of RK4 without one.
     A scheme that steps a velocity in body axes turns a steady one by an error of its own order, so
     that of a Galilean shift only the rotation knows nothing.
     """
