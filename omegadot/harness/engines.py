@@ -105,7 +105,7 @@ def _advice(answer: Answer) -> str:
         return "give it more memory (--memory)"
     if "ImportError" in answer.reason or "ModuleNotFoundError" in answer.reason:
         return (
-            "a file in the current folder may hide a package of the same name: rename it, or run "
-            "in another folder"
+            "a module is missing, or a file on PYTHONPATH hides it: install the one, or rename the "
+            "other"
         )
     return "correct what this message names"
