@@ -1,4 +1,4 @@
-"""The reference beside an engine: one scheme, every step of a sweep, and how rounding grows.
+"""The companion of an engine's run: one scheme, every step of a sweep, and how rounding grows.
 
 Each step of a sweep is stepped by itself: a single body in floats is quicker than a few lanes.
 """

@@ -54,7 +54,7 @@ class DoubleDouble(NDArrayOperatorsMixin):
         return into[0]
 
     def __array_function__(self, function: Any, _: Any, given: Any, options: Any) -> Any:
-        if function in _ASKING:
+        if function in _QUERIES:
             return function(*_part(given, "high"), **options)
         if function in _MOVING:
             parts = (function(*_part(given, name), **options) for name in self.__slots__)
@@ -143,4 +143,4 @@ _COMPARISONS = {np.equal, np.not_equal, np.less, np.less_equal, np.greater, np.g
 _MOVING = {
     np.broadcast_to, np.concatenate, np.expand_dims, np.stack, np.swapaxes, np.zeros_like
 }  # fmt: skip
-_ASKING = {np.any, np.ndim, np.shape}
+_QUERIES = {np.any, np.ndim, np.shape}

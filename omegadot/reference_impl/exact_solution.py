@@ -41,7 +41,7 @@ def exact_solution(system: System, initial: State, times: Array) -> ExactSolutio
 
 
 def _floor_by_growth(system: System, times: Array, state: State) -> Floor:
-    """The floor where there is no form to solve anew with each input moved.
+    """The floor where there is no form to solve again with each input moved.
 
     The start is off by an eps, and the inertia's eps moves omega-dot by an eps of its size A, so
     that ``eps (1 + A t / rate) growth`` is off at time t; half an eps is the answer's rounding.

@@ -44,7 +44,7 @@ def growth_along(system: System, times: Array, states: State, rate: float) -> Ar
     From each sample twelve neighbours move to the next by Runge-Kutta steps; the maps between
     samples, each well conditioned, are then multiplied up, so that the growth may be as large as
     it will. Infinite from the first state on that is not finite, or turns so far to the next sample
-    that its neighbours cannot be followed there in MOST_STEPS: a course that has blown up.
+    that its neighbours cannot be followed there in MOST_STEPS: a trajectory that has blown up.
     """
     w = states.angular_velocity
     finite = np.all(np.isfinite(w), axis=-1) & np.all(np.isfinite(states.orientation), axis=-1)

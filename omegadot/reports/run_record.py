@@ -77,7 +77,7 @@ class RunRecord(Record):
         return str(self.run.get("headline") or headline(summarise(self)))
 
     def page(self) -> str:
-        """The report: one HTML text that needs nothing beside it."""
+        """The report: one HTML text that needs nothing else."""
         from omegadot.reports.page.page import draw_page
 
         return draw_page(self)

@@ -1,4 +1,4 @@
-"""The reference's schemes over Pinocchio's ABA, and the shapes that they ask it for."""
+"""The reference's schemes over Pinocchio's ABA, and the shapes that they request."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_loops_over_aba_are_the_references_loops(scheme: str, load: str) -> None
     start = place_on_pivot(of, at(states(1, seed=21, far=1.0, fast=2.0), 0))
     found = aba(of).run(start, PREFIX + scheme, 0.005, 40, 5).state
     _, expected = step_body(SCHEMES[scheme], of, start, 0.005, 40, 5, "body-spatial")
-    # a step asks for at most some twenty accelerations, and each errs by a few roundings
+    # a step evaluates at most some twenty accelerations, and each errs by a few roundings
     allowed = 64 * EPS * 40 * 20 * growth(of, start, 0.2)
     assert np.max(attitude_angle(found.orientation, expected.orientation)) <= allowed
     for one, other in (
@@ -115,7 +115,7 @@ def test_an_answer_is_not_overwritten_by_the_next() -> None:
 
 
 def test_the_force_of_rnea_is_newtons() -> None:
-    """``F = m (a - g)``: the spatial acceleration that RNEA is given is the one that was asked."""
+    """``F = m (a - g)``: the spatial acceleration that RNEA is given is the one requested."""
     of = system("full", "all")
     many, joint = states(10, seed=26, fast=2.0), PinocchioJoint(pinocchio, of)
     wanted = np.random.default_rng(27).normal(size=(10, 2, 3))
@@ -146,7 +146,7 @@ def test_nothing_runs_before_a_system_is_loaded() -> None:
 
 
 def test_the_flip_at_a_millisecond_drifts_as_first_order_does() -> None:
-    """|H| grows by 2.3e-3 in 20 s: three equal first-order loops are not three votes."""
+    """|H| grows by 2.3e-3 in 20 s: three equal first-order loops are one piece of evidence."""
     start = State(np.array([1.0, 0, 0, 0]), np.array([0.01, 2.0, 0.01]), np.zeros(3), np.zeros(3))
     adapter = aba(T_HANDLE)
     found = adapter.run(start, "aba+semi-implicit-euler", 0.001, 20_000, 500).state

@@ -1,4 +1,4 @@
-"""The coordinates that a body is stepped in: one motion, whatever it is told in."""
+"""The coordinates that a body is stepped in: one motion, whichever they are."""
 
 from __future__ import annotations
 

@@ -34,10 +34,10 @@ def test_a_step_that_is_too_large_is_no_number() -> None:
 def test_forces_are_taken_where_the_middle_of_the_step_is() -> None:
     """Place and velocity there, for loads that depend on them: under a constant pull, exactly."""
     pull, h, of = np.array([0.5, -1.0, 2.0]), 0.3, system(INERTIA)
-    asked = []
+    evaluated = []
 
     def acceleration(q: Array, v: Array) -> Array:
-        asked.append((q, v))
+        evaluated.append((q, v))
         return np.concatenate((0 * v[..., :3] + pull, -0.1 * v[..., 3:]), axis=-1)
 
     motion = replace(body_motion(of), acceleration=acceleration, jacobian=None)
@@ -45,6 +45,6 @@ def test_forces_are_taken_where_the_middle_of_the_step_is() -> None:
     one_step(MIDPOINT, of, begin, h, motion=motion)
     velocity = begin.linear_velocity + 0.5 * h * pull
     place = begin.position + 0.5 * h * velocity
-    q, v = asked[-1]
+    q, v = evaluated[-1]
     np.testing.assert_allclose(v[:3], velocity, rtol=4 * EPS)
     np.testing.assert_allclose(q[:3], place, rtol=4 * EPS)

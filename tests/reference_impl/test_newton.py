@@ -14,29 +14,29 @@ def same(right):
 
 def solved(rate, noise=0.0):
     """ω_m for ``ω̇ = rate (ω - ω₀) + 1``, half a step of 1 s, the Jacobian taken for zero."""
-    generator, asked = np.random.default_rng(0), []
+    generator, evaluated = np.random.default_rng(0), []
 
     def push(w):
-        asked.append(w)
+        evaluated.append(w)
         jitter = noise * generator.standard_normal(3)
         return rate * (w - START) + 1.0 + jitter
 
-    return mean_velocity_of(push, np.ones(3), START, same, slice(None)), len(asked)
+    return mean_velocity_of(push, np.ones(3), START, same, slice(None)), len(evaluated)
 
 
 @pytest.mark.parametrize("rate", [0.0, 0.1, -0.4, 0.6, -0.7])
 def test_it_settles_where_changes_shrink_however_slowly(rate):
-    found, asked = solved(rate)
+    found, evaluated = solved(rate)
     # Fifty changes, each `rate` of the one before, leave |rate|^50, below 2e-8.
     assert np.allclose(found, START + 1.0 / (1.0 - rate), rtol=1e-7)
-    assert asked <= 50
+    assert evaluated <= 50
 
 
 @pytest.mark.parametrize("noise", [1e-12, 1e-7, 1e-4])
 def test_noise_of_an_engine_ends_it_and_is_no_divergence(noise):
-    found, asked = solved(0.1, noise)
+    found, evaluated = solved(0.1, noise)
     assert np.allclose(found, START + 1.0 / 0.9, atol=20 * noise)
-    assert asked < 25
+    assert evaluated < 25
 
 
 @pytest.mark.parametrize("rate", [1.0, -1.5, 3.0])

@@ -44,7 +44,7 @@ LINKS = (
     "https://gepettoweb.laas.fr/doc/stack-of-tasks/pinocchio/master/doxygen-html/",
 )
 
-# The reference's other schemes tell what some engine's stepper does; nobody would loop them here.
+# The reference's other schemes describe steppers of other engines; no user loops them over ABA.
 LOOPED = (
     "semi-implicit-euler",
     "linearly-implicit-euler",

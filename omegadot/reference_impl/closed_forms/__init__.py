@@ -1,7 +1,7 @@
 """Motions known in closed form, the truth that engines are held against.
 
 ``closed_form_of(system, initial)`` gives the motion as a function of time, or None where no closed
-form is known; ``floor(system, initial, times)`` says how far a perfect answer in double precision
+form is known; ``floor(system, initial, times)`` is how far a perfect answer in double precision
 may be off. Inputs are taken as exact (the orientation after normalisation); times may be negative.
 """
 

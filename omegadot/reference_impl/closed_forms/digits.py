@@ -3,7 +3,7 @@
 A closed form has few constants and many times. The constants (moduli, periods, rates, phases) are
 worked out in decimal arithmetic from the inputs taken as exact, so that nothing in them cancels
 down to double precision; above all the difference of products that decides on which side of the
-separatrix a body lies. Only the course in time runs in double precision.
+separatrix a body lies. Only the motion in time runs in double precision.
 """
 
 from __future__ import annotations

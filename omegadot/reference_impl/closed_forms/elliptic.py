@@ -74,7 +74,7 @@ class Modulus:
     def argument(self, sn: Decimal, cn_square: Decimal, dn_square: Decimal) -> Decimal:
         """The u from -K to K with this sn u: ``sn R_F(cn², dn², 1)``, DLMF 19.25.5.
 
-        The squares are given beside sn, so that none of them is formed as ``1 - sn²``.
+        The squares are returned with sn, so that none of them is formed as ``1 - sn²``.
         """
         return sn * carlson_rf(cn_square, dn_square, ONE) if sn else ZERO
 

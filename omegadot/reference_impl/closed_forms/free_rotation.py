@@ -87,7 +87,7 @@ def inertia_and_omega(numbers: Row) -> tuple[Matrix, Row]:
 
 
 def uniform(omega: Row) -> MeasuredRun:
-    """ω constant: ``q = (cos |ω|t/2, sin |ω|t/2 ω/|ω|)``, the vector of the course is ω."""
+    """ω constant: ``q = (cos |ω|t/2, sin |ω|t/2 ω/|ω|)``, the vector of the motion is ω."""
     speed = dot(omega, omega).sqrt()
     angle = Phase.of(speed / (4 * pi()), ZERO)
     direction = doubles([x / speed for x in omega] if speed else omega)[:, None]

@@ -1,4 +1,4 @@
-"""The course of a free rotation about the axis that the angular velocity encircles.
+"""The motion of a free rotation about the axis that the angular velocity encircles.
 
 The sources are named in ``free_rotation.py``.
 """

@@ -45,7 +45,7 @@ def free_rotation_rates(system: System, initial: State) -> FreeRotationRates:
 
     The angle ψ about the momentum L that is left when the shortest rotation takes L to the
     encircled axis advances by ``precession_rate flip_period`` in every flip (Montgomery, How much
-    does the rigid body rotate?, Am. J. Phys. 59 (1991) 394-398, says the same by areas).
+    does the rigid body rotate?, Am. J. Phys. 59 (1991) 394-398, has the same by areas).
     Raises ValueError where a torque acts.
     """
     c = _constants(system, initial)

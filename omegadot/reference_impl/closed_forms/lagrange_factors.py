@@ -24,7 +24,7 @@ from omegadot.reference_impl.system import Array
 
 @dataclass(frozen=True)
 class Factor:
-    """One of α, β and ω_1 + i ω_2: ``scale exp(i rate t) Θ`` with Θ or Θ* as opposite says."""
+    """One of α, β and ω_1 + i ω_2: ``scale exp(i rate t) Θ`` with Θ or Θ* as opposite states."""
 
     theta: ShiftedTheta
     rate: Decimal

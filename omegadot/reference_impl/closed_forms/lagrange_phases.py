@@ -20,7 +20,7 @@ def phases_of(
 ) -> list[complex]:
     """The constant phases of the three factors, from their values at time zero.
 
-    A factor that is nearly zero there has no phase to tell: then it follows from the other two by
+    A factor that is nearly zero there has no definite phase: then it follows from the other two by
     ``ω_1 + iω_2 = 2 β α* (i (b - a u) - u̇) / (1 - u²)``, taken where none of them vanishes.
     """
     zero = Times(np.zeros(1))

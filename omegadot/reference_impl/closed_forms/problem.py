@@ -40,9 +40,9 @@ class Problem:
 
 @dataclass(frozen=True)
 class Placed:
-    """A course seen from the world and the body.
+    """A motion seen from the world and the body.
 
-    turning: (3, 3), the linear map of the course's vector to ω in body axes.  placing: (4, 4), that
+    turning: (3, 3), the linear map of the motion's vector to ω in body axes.  placing: (4, 4), that
     of its quaternion to the attitude.
     """
 
@@ -65,7 +65,7 @@ class Placed:
 
 
 def _block(size: int) -> Array:
-    """An array of its own; a large one from the bounds of large pages on, for which NumPy asks.
+    """An array of its own; a large one from the bounds of large pages on, which NumPy requests.
 
     In small pages its page faults would take longer than the samples do.
     """
@@ -78,7 +78,7 @@ def _block(size: int) -> Array:
 
 
 def place(trajectory: MeasuredRun, turning: Matrix, frame: Row, orientation: Row) -> Placed:
-    """The course with the given attitude at time zero.
+    """The motion with the given attitude at time zero.
 
     frame: the quaternion of frame-from-body.  Attitudes are ``W q(t) frame``, with the constant W
     such that the first one is ``orientation``.

@@ -10,7 +10,7 @@ from omegadot.reference_impl.system import Array
 def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
     """``v₁ = v₀ + h v̇(q₀, v₀)``, ``q₁ = q₀ exp(h v₁)``.
 
-    On a free body the step in ω is plain explicit Euler: the name speaks of places and velocities.
+    On a free body the step in ω is plain explicit Euler: the name refers to places and velocities.
     """
     v = v + h * motion.acceleration(q, v)
     return motion.retract(q, h * v), v

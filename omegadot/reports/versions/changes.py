@@ -82,7 +82,7 @@ def _orders(changes: Sequence[Record]) -> list[str]:
 
 
 def _drifts(changes: Sequence[Record]) -> list[str]:
-    """How many of its errors moved, and the most telling ones: E/E0 first, then the largest."""
+    """How many of its errors moved, and the most significant ones: E/E0 first, then the largest."""
     own = [change for change in changes if change["kind"] == "drift"]
     if not own:
         return []
