@@ -146,7 +146,7 @@ def test_nothing_runs_before_a_system_is_loaded() -> None:
 
 
 def test_the_flip_at_a_millisecond_drifts_as_first_order_does() -> None:
-    """|H| grows by 2.3e-3 in 20 s: three equal first-order loops are one piece of evidence."""
+    """|H| grows by 2.3e-3 in 20 s: three equal first-order loops are one."""
     start = State(np.array([1.0, 0, 0, 0]), np.array([0.01, 2.0, 0.01]), np.zeros(3), np.zeros(3))
     adapter = aba(T_HANDLE)
     found = adapter.run(start, "aba+semi-implicit-euler", 0.001, 20_000, 500).state

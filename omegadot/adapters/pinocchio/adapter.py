@@ -44,7 +44,7 @@ LINKS = (
     "https://gepettoweb.laas.fr/doc/stack-of-tasks/pinocchio/master/doxygen-html/",
 )
 
-# The reference's other schemes describe steppers of other engines; no user loops them over ABA.
+# The reference's other schemes are those of other engines' steppers; no user loops them here.
 LOOPED = (
     "semi-implicit-euler",
     "linearly-implicit-euler",
