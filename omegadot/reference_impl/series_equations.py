@@ -87,7 +87,7 @@ class Equations:
         return self.refreshed(x)
 
     def refreshed(self, x: Array) -> Array:
-        """The x with a unit quaternion, and the world's vectors turned into the body by it again."""
+        """The x with a unit quaternion, and the world's vectors turned into the body by it."""
         q, x = normalize(x[..., Q]), x.copy()
         x[..., Q] = q
         x[..., G] = rotate_inverse(q, self.gravity) @ self.axes.T

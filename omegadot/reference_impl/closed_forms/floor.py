@@ -26,7 +26,7 @@ def floor_of(problem: Problem, times: Array) -> Floor:
     """The floor at times (n,) s.
 
     A double stands for all numbers that round to it. Each number of the problem is moved by one
-    relative eps up and down, the closed form is evaluated again, the greater of the two distances is
+    relative eps up and down, the form is evaluated again, the greater of the two distances is
     taken and the distances of all numbers are added. The answer's own rounding is added once: a
     component is an amplitude times a function of time, so that three values are rounded, each by
     half an eps. Nothing is linearised: where one rounding of an input takes the body across the
