@@ -164,4 +164,7 @@ def _note(limit: Limit, factor: float | None) -> str:
         return "a run of one step does not move"
     if factor is not None:
         return f"steps are {100 * abs(factor - 1.0):.4g} % too {'long' if factor > 1 else 'short'}"
-    return f"as the step vanishes, its rate is not the equation's: it is off by {limit.off:.1e}"
+    return (
+        f"as the step vanishes, its rate is not the equation's: the relative error is "
+        f"{limit.off:.1e}"
+    )

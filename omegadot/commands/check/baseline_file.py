@@ -15,7 +15,7 @@ from omegadot.harness.usage import UsageError
 
 SCHEMA = 1
 DIGITS = 3
-HEAD = "# Written by --update-baseline. [figure, band]: within the band a rerun may differ."
+HEAD = "# Written by --update-baseline. [value, band]: within the band a rerun may differ."
 
 
 @dataclass(frozen=True)

@@ -30,12 +30,13 @@ def check(
         typer.Option(metavar="FILE", help="Known failures, declared in TOML; repeatable."),
     ] = None,
     baseline: Annotated[
-        str | None, typer.Option(metavar="DIR", help="Compare with the figures stored in DIR.")
+        str | None, typer.Option(metavar="DIR", help="Compare with the values stored in DIR.")
     ] = None,
     update_baseline: Annotated[
         bool,
         typer.Option(
-            "--update-baseline", help="Store the figures in --baseline DIR instead of comparing."
+            "--update-baseline",
+            help="Store the values in --baseline DIR instead of comparing.",
         ),
     ] = False,
     timeout: Annotated[

@@ -58,11 +58,11 @@ def compare(
     known = was.runs.get(key) if was is not None else None
     if known is None or was is None:
         if own is None:
-            return Result("skip", "no figures, and none are stored")
-        return Result("fail", "no figures are stored for this; write them with --update-baseline.")
+            return Result("skip", "no values, and none are stored")
+        return Result("fail", "no values are stored for this; write them with --update-baseline.")
     versions = f"{check.engine} {was.version} -> {version}"
     if own is None:
-        gone = f"figures are stored of {check.engine} {was.version}, and {version} gives none"
+        gone = f"values are stored of {check.engine} {was.version}, and {version} gives none"
         return Result("fail", f"{gone}: {UPDATE}.")
     found = changes(known, own)
     if not found:

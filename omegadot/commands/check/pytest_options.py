@@ -26,8 +26,8 @@ OPTIONS: dict[str, dict[str, Any]] = {
         "metavar": "NAME|FILE",
         "help": "check on this scenario; repeatable; default: every built-in",
     },
-    "baseline": {"metavar": "DIR", "help": "compare with the figures stored in DIR"},
-    "update-baseline": {"action": "store_true", "help": "store the figures in DIR instead"},
+    "baseline": {"metavar": "DIR", "help": "compare with the values stored in DIR"},
+    "update-baseline": {"action": "store_true", "help": "store the measured values in DIR instead"},
     "exceptions": {
         "action": "append",
         "metavar": "FILE",

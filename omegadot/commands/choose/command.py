@@ -21,14 +21,16 @@ def choose(
     body: Annotated[
         str | None,
         typer.Option(
-            metavar="FILE#LINK", help="A body: a link of a URDF, MJCF or SDF file, or a TOML file."
+            metavar="FILE#LINK",
+            help="A body: a link of a URDF, MJCF or SDF file, or a TOML file. "
+            "Without a scenario also give --angular-velocity and --duration.",
         ),
     ] = None,
     allow_impossible_inertia: Annotated[
         bool,
         typer.Option(
             "--allow-impossible-inertia",
-            help="Go on with an inertia that breaks the triangle inequality, as no body's does.",
+            help="Accept an inertia with one principal moment above the sum of the other two.",
         ),
     ] = False,
     angular_velocity: Annotated[

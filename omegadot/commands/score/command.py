@@ -92,13 +92,15 @@ def score(
         str | None, typer.Option(metavar="1mm", help="Required: the largest position error.")
     ] = None,
     energy: Annotated[
-        str | None, typer.Option(metavar="1e-6", help="Required: the largest relative error.")
+        str | None,
+        typer.Option(metavar="1e-6", help="Required: the largest relative energy error."),
     ] = None,
     momentum: Annotated[
         str | None, typer.Option(metavar="1e-6", help="Required: of angular momentum, relative.")
     ] = None,
     flip_time: Annotated[
-        str | None, typer.Option(metavar="1ms", help="Required: the largest error of a flip.")
+        str | None,
+        typer.Option(metavar="1ms", help="Required: the largest error of a flip time."),
     ] = None,
     name: Annotated[
         str, typer.Option(metavar="NAME", help="Name of the trace in the report.")

@@ -123,9 +123,9 @@ def variant_lines(case: Row) -> Iterator[str]:
             verb = "qualify" if len(variant["joined"]) > 1 else "qualifies"
             changes.append(f"{listed(variant['joined'])} {verb} too")
         if not changes:
-            changes.append("the ranking stays" if variant["same"] else "the ranking changes")
+            changes.append("the ranking is the same" if variant["same"] else "the ranking changes")
         steps = [
-            f"{o['rank']}{'=' if o['tied'] else ''} {o['candidate']} at "
+            f"rank {o['rank']}{'=' if o['tied'] else ''} {o['candidate']} at "
             f"{step_text(o['timestep'], case['duration'])} s"
             for o in order
         ]

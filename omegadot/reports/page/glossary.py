@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from markupsafe import Markup, escape
 
 INTRODUCTION = (
-    "The report's headings link to these terms. `h` is the time step, `n` the number of steps, "
-    "`eps` is 2^-52."
+    "The report's headings link to these terms. Omega is the angular velocity and omega-dot the "
+    "angular acceleration. `h` is the time step, `n` the number of steps, `eps` is 2^-52."
 )
 
 
@@ -69,6 +69,13 @@ TERMS = (
         ("defects",),
     ),
     Term(
+        "divergence",
+        "A run diverges at the first sample whose attitude is more than 1° from the exact one. The "
+        "outcome diverged means more: the state is no longer finite.",
+        "s, or outcome `diverged`",
+        ("diverges",),
+    ),
+    Term(
         "exact solution",
         "The motion that every run is compared with: a closed form where one is known, otherwise a "
         "Taylor series of the same equations with extra digits. It never comes from another "
@@ -83,6 +90,13 @@ TERMS = (
         "passes.",
         "|engine − companion| ≤ round-off bound",
         ("source of error",),
+    ),
+    Term(
+        "flip",
+        "The body turns over: omega along the axis of middle inertia changes its sign. The error "
+        "of a flip is the difference of its time from the exact one.",
+        "s",
+        ("flips", "flip time"),
     ),
     Term(
         "floor",
@@ -143,8 +157,8 @@ TERMS = (
         "round-off bound",
         "How far rounding alone can take a run away from what its scheme gives in exact "
         "arithmetic. It counts the roundings of each step and multiplies them by the growth.",
-        "16 eps (n + 1) (1 + h A / rate) growth(t), with A the largest |ω̇|; rad in attitude, "
-        "relative to the rate in omega",
+        "16 eps (n + 1) (1 + h A / rate) growth(t), with A the largest |ω̇| and rate the largest "
+        "|ω|; rad in attitude, relative to the rate in omega",
     ),
     Term(
         "scheme",
@@ -153,6 +167,12 @@ TERMS = (
         "step by step.",
         "for example ω ← ω + h ω̇, then q ← q exp(h ω)",
         ("schemes",),
+    ),
+    Term(
+        "separatrix",
+        "The motions that tend to a spin about the axis of middle inertia, or to an upright top. "
+        "Close to them a small deviation grows exponentially, and so do rounding errors.",
+        "growth ≫ 1",
     ),
     Term(
         "setup",

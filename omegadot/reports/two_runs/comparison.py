@@ -66,7 +66,7 @@ class Comparison:
                 message.append(f"{times(len(tasks), 'run')} {term}.")
         if not self.worse and not self.better:
             message.insert(0, "No change.")
-        compared = f"{times(self.runs, 'run')} and {times(self.figures, 'figure')} compared."
+        compared = f"{times(self.runs, 'run')} and {times(self.figures, 'value')} compared."
         return " ".join([*message, compared])
 
 
@@ -75,7 +75,7 @@ def _engines(changes: Iterable[Change]) -> str:
     found: dict[str, Counter[str]] = {}
     for change in changes:
         name = " ".join(filter(None, (name_of(change.key), change.key.integrator)))
-        found.setdefault(name, Counter())["figure" if change.metric else "run"] += 1
+        found.setdefault(name, Counter())["value" if change.metric else "run"] += 1
     shown = [
         f"{name} ({listed([times(count, noun) for noun, count in counts.items()])})"
         for name, counts in list(found.items())[:_NAMED]

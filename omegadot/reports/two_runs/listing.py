@@ -26,7 +26,7 @@ def change_rows(changes: Iterable[Change]) -> Rows:
 
 def _change_row(group: Group) -> tuple[str, ...]:
     worst, many = group.worst, group.count > 1
-    noun = "figure" if worst.metric else "run"
+    noun = "value" if worst.metric else "run"
     in_all = f"{times(group.count, noun)} on {times(len(group.scenarios), 'scenario')}"
     return (
         group.engine,

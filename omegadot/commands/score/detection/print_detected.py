@@ -49,7 +49,7 @@ def _lines(trace: Path, scenario: str, found: Detected, fitting: list[Reading]) 
         return _ambiguous(found, fitting)
     best = fitting[0]
     lines = [
-        f"One convention fits, to {best.misfit:.1e} of the motion:",
+        f"One convention fits; its error is {best.misfit:.1e} of the size of the motion:",
         _command(trace, scenario, best),
     ]
     if found.others:
