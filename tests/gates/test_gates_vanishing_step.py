@@ -114,5 +114,6 @@ def test_what_is_reported_of_the_limit() -> None:
     }
     assert set(reported(on, requested, stretch=0.5).values()) == {"steps are 50 % too short"}
     assert reported(on, requested, omega=1.01) == {
-        "omega": "as the step vanishes, its rate is not the equation's: the relative error is 1.0e-02"
+        "omega": "as the step vanishes, its rate is not the equation's: "
+        "the relative error is 1.0e-02"
     }
