@@ -56,7 +56,7 @@ def scheme_table(record: Record, sources: Sources | None = None) -> Table:
     return Table(
         ("engine", "integrator", "scheme"),
         (("implemented in", 1), ("max. deviation from the scheme", 3)),
-        ("runs, of those judged", "fraction of round-off bound", "omega, relative", "attitude, rad"),
+        ("runs, of judged", "fraction of round-off bound", "omega, relative", "attitude, rad"),
         tuple(rows),
     )
 
