@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from omegadot.reference_impl.body_motion import motion_over
@@ -37,5 +39,10 @@ def step_again(
     plan: tuple[float, int, int],
 ) -> tuple[Array, State]:
     """Times and states of a scheme over any acceleration. plan: the step in s, steps, every."""
-    motion = motion_over(system, coordinates, acceleration)
+    over = motion_over(system, coordinates, acceleration)
+
+    def at_unit(q: Array, v: Array) -> Array:  # a wrong step may leave q too long
+        return over.acceleration(over.normalize(q), v)
+
+    motion = replace(over, acceleration=at_unit)
     return step_body(scheme, system, initial, *plan, coordinates, motion)

@@ -257,6 +257,8 @@ def test_a_run_logs_the_start_each_kth_step_and_the_last(name: str) -> None:
     of = system(load="all")
     adapter, start = loaded(name, of), at(cases(1, of, 8, fast=2.0), 0)
     for integrator in adapter.description.integrators:
+        none = adapter.run(start, integrator.name, 0.01, 0, 1)
+        assert np.array_equal(none.time, [0.0])
         every = adapter.run(start, integrator.name, 0.01, 7, 1)
         third = adapter.run(start, integrator.name, 0.01, 7, 3)
         assert np.array_equal(third.time, np.array([0, 3, 6, 7]) * 0.01)

@@ -56,7 +56,7 @@ class Stepper:
         state; the chunk is then left to `_run_from_sample_to_sample`, which goes on as MuJoCo does.
         """
         start, applied = rows[0], self._vector(self._applied)
-        chunk = min(CHUNK // every * every, steps)
+        chunk = max(1, min(CHUNK // every * every, steps))
         # forces that are not given are none
         control = np.tile(applied, (1, chunk, 1)) if applied.any() else None
         buffer = np.empty((chunk if every > 1 else 0, len(start)))

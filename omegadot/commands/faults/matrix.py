@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -157,7 +158,16 @@ def _published(check: Published, fault: Fault, engine: str, pool: Pool, poses: i
     adapter = fault.wrap(build_adapter(BUILT_IN[engine]))
     if not fault.needs <= check.has or check.integrator_of(adapter.inner) is None:
         return None
+    if _fails_sound(check, engine, pool.seed, poses):
+        return None
     return _score(check, adapter, adapter.inner, pool.seed, poses)
+
+
+@cache
+def _fails_sound(check: Published, engine: str, seed: int, poses: int) -> bool:
+    """Whether the sound engine breaks a check's bounds: the check then detects no fault in it."""
+    sound = build_adapter(BUILT_IN[engine])
+    return _score(check, sound, sound, seed, poses) > 0.0
 
 
 def _score(check: Published, adapter: Adapter, sound: Adapter, seed: int, poses: int) -> float:

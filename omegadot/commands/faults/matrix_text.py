@@ -136,9 +136,10 @@ and, where it has one, one of order 4.
 **The published checks** in the last columns are tests that engines ship with. They are applied to
 the same faulty engines unchanged: the same body, rates, step, length and bounds, from {bodies}
 random attitudes. A dash means that the check's scenarios, or the engine's integrators, lack what
-the fault needs. The figures of Drake's check are from its repository (`free_body.h`, in the folder
-of the test, gives the moments). Its integrator is of order 3 with error control and starts from one
-attitude; here an integrator of order 4 takes its largest step.
+the fault needs, or that the sound engine fails the check itself. The figures of Drake's check are
+from its repository (`free_body.h`, in the folder of the test, gives the moments). Its integrator is
+of order 3 with error control and starts from one attitude; here an integrator of order 4 takes its
+largest step.
 """
 
 
