@@ -26,8 +26,10 @@ def framed(page: str, alternative: str, height: int = HEIGHT) -> str:
         )
     own = page.replace("<head>", f"<head>{OWN_BASE}", 1)
     text = own.replace("&", "&amp;").replace('"', "&quot;")
-    return (
+    frame = (
         f'<iframe srcdoc="{text}" sandbox="allow-scripts allow-downloads" '
         f'title="{escape(alternative)}" loading="lazy" '
         f'style="width: 100%; height: {height}px; border: 0"></iframe>'
     )
+    # ASCII alone: where the page around it names no encoding, the browser guesses one.
+    return frame.encode("ascii", "xmlcharrefreplace").decode()
