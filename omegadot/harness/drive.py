@@ -1,7 +1,7 @@
 """Put one engine through one scenario: load, read back, equation, every integrator and step.
 
-A request that kills or is pivoted the worker costs its own task; the worker is started again and
-the next request goes on.
+A request that crashes the worker, or that gets no answer in time, costs its own task; the worker
+is started again and the next request goes on.
 """
 
 from __future__ import annotations
@@ -68,11 +68,11 @@ class Driver:
         self,
         engine: Engine,
         worker: WorkerProcess,
-        slots: threading.Semaphore,
+        in_turn: Callable[[Callable[[], Answer]], Answer],
         stopping: threading.Event,
     ) -> None:
         self.engine, self.worker = engine, worker
-        self._slots, self._stopping = slots, stopping
+        self._in_turn, self._stopping = in_turn, stopping
         self._timeouts_in_a_row = 0
         self._loaded: Case | None = None
         self._tried: set[str] = set()
@@ -81,8 +81,7 @@ class Driver:
 
     def _send(self, call: Callable[[], Answer]) -> Answer:
         """What a call to the worker comes to, when its turn has come."""
-        with self._slots:
-            answer = INTERRUPTED if self._stopping.is_set() else call()
+        answer = self._in_turn(lambda: INTERRUPTED if self._stopping.is_set() else call())
         if self._stopping.is_set() and not answer.ok:
             return INTERRUPTED
         late = answer.outcome == "timeout"

@@ -67,7 +67,7 @@ class Engines:
             check_integrators(choice, description)
             engine = Engine(choice, description, integrators_chosen(choice, description))
             pool = self._pool
-            self.drivers[name] = Driver(engine, pool.processes[name], pool.slots, pool.stopping)
+            self.drivers[name] = Driver(engine, pool.processes[name], pool.in_turn, pool.stopping)
             if name in self._requested:
                 self.started.append(engine)
         self._require_truth()

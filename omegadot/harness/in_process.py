@@ -45,4 +45,4 @@ def driver_of(name: str, adapter: Adapter, integrators: tuple[Integrator, ...] =
     description = adapter.description
     engine = Engine(EngineChoice(name, ""), description, integrators or description.integrators)
     worker = cast(WorkerProcess, Local(adapter))
-    return Driver(engine, worker, threading.Semaphore(), threading.Event())
+    return Driver(engine, worker, lambda call: call(), threading.Event())

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from functools import partial
 
 import numpy as np
 
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.evaluation_states import evaluation_states_of
-from omegadot.gates.measured_run import Companion, SchemeKey, scheme_key
+from omegadot.gates.measured_run import SchemeKey, scheme_key
 from omegadot.gates.scheme import comparison_keys
 from omegadot.gates.truth import Truth
-from omegadot.harness.drive import INTERRUPTED, CaseResult, Driver
+from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.engines import Engines
 from omegadot.harness.judge import JudgedRun, judge_case, shared_rows
 from omegadot.harness.outcome import (
@@ -26,7 +27,12 @@ from omegadot.harness.outcome import (
 )
 from omegadot.harness.plan import Engine
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine, refined_sweeps
-from omegadot.harness.truth_requests import case_companions, case_truth, reference_runs
+from omegadot.harness.truth_requests import (
+    Companions,
+    case_companions,
+    case_truth,
+    reference_runs,
+)
 from omegadot.harness.unknown_schemes import probe_unknown_schemes
 from omegadot.workers.harness_end.pool import outcome_of
 
@@ -51,18 +57,40 @@ class Runner:
         }
         return sorted(named, key=str)
 
+    def _submit_companions(
+        self,
+        case: Case,
+        truth: Callable[[], Truth | str],
+        keys: list[SchemeKey],
+        sweeps: Sequence[Sweep],
+    ) -> Future[Companions]:
+        """The companions of these schemes, each from whichever of two processes is free.
+
+        They take longer than any engine, and the exact solution's process is soon idle.
+        """
+        left = iter(keys)  # one iterator for both: each takes the next scheme
+
+        def step(name: str) -> Companions:
+            return case_companions(self.engines.drivers[name], case, truth(), left, sweeps)
+
+        half = self.engines.submit("exact", lambda: step("exact"))
+        return self.engines.submit("reference", lambda: step("reference") | half.result())
+
     def _add_companions(
         self, case: Case, truth: Truth, results: list[CaseResult], sweeps: list[Sweep]
     ) -> None:
         """Companions for schemes or steps that came up only when the engines had answered."""
         named = {scheme_key(i, case.system) for result in results for i in result.integrators}
+        pending = []
         for sweep in sweeps:
             known = {key for key, step in truth.companions if step == sweep.timestep}
             missing = sorted((key for key in named if key and key not in known), key=str)
-            if missing:
-                driver = self.engines.drivers["reference"]
-                call = partial(case_companions, driver, case, truth, missing, [sweep])
-                truth.companions.update(outcome_of(self.engines.submit("reference", call)))
+            if missing:  # an empty request, too, would wait for all that was submitted before
+                call = self._submit_companions(case, lambda: truth, missing, [sweep])
+                pending.append(call)
+        for companions in pending:
+            found: Companions = outcome_of(companions)
+            truth.companions.update(found)
 
     def _examine(self, engine: Engine, case: Case, pending: PendingTruth) -> CaseResult:
         truth, driver = pending.truth.result(), self.engines.drivers[engine.name]
@@ -82,18 +110,9 @@ class Runner:
         return result
 
     def _submit_case(self, case: Case) -> PendingCase:
-        exact, reference = self.engines.drivers["exact"], self.engines.drivers["reference"]
+        exact = self.engines.drivers["exact"]
         truth = self.engines.submit("exact", lambda: case_truth(exact, case))
-        keys = self._keys(case)
-
-        def step(driver: Driver, own: list[SchemeKey]) -> dict[tuple[SchemeKey, float], Companion]:
-            return case_companions(driver, case, truth.result(), own, case.sweeps)
-
-        # The companions take longer than any engine; the exact solution's process is soon idle.
-        half = self.engines.submit("exact", lambda: step(exact, keys[1::2]))
-        companions = self.engines.submit(
-            "reference", lambda: step(reference, keys[::2]) | half.result()
-        )
+        companions = self._submit_companions(case, truth.result, self._keys(case), case.sweeps)
         known = PendingTruth(truth, companions)
         results = {
             engine.name: self.engines.submit(

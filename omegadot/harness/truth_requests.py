@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.measured_run import Companion, SchemeKey
@@ -14,6 +14,7 @@ from omegadot.workers.harness_end.process import Answer
 from omegadot.workers.wire import state_from
 
 STEPS_TIMED = 64
+Companions = dict[tuple[SchemeKey, float], Companion]
 
 
 def case_truth(exact: Driver, case: Case) -> Truth | str:
@@ -40,14 +41,14 @@ def case_companions(
     reference: Driver,
     case: Case,
     truth: Truth | str,
-    keys: Sequence[SchemeKey],
+    keys: Iterable[SchemeKey],
     sweeps: Sequence[Sweep],
-) -> dict[tuple[SchemeKey, float], Companion]:
+) -> Companions:
     """The reference's run for every scheme and step; a scheme that fails is left out."""
     if isinstance(truth, str):
         return {}
     plan = [{"timestep": s.timestep, "steps": s.steps, "every": s.every} for s in sweeps]
-    found = {}
+    found: Companions = {}
     for key in keys:
         fields = {"system": case.system, "initial": case.initial, "plan": plan}
         fields |= {
@@ -66,7 +67,7 @@ def case_companions(
 
 
 def reference_runs(
-    reference: Driver, case: Case, companions: dict[tuple[SchemeKey, float], Companion]
+    reference: Driver, case: Case, companions: Companions
 ) -> dict[tuple[str, float], Answer]:
     """The companions as the runs of the engine `reference`: they are the same computation.
 

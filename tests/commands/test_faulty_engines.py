@@ -1,10 +1,11 @@
-"""An engine that dies, is pivoted, raises or diverges costs its own tasks and nothing else."""
+"""An engine that dies, hangs, raises or diverges costs its own tasks and nothing else."""
 
 import json
 import os
 import signal
 import subprocess
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import polars as pl
@@ -100,19 +101,34 @@ def test_an_engine_that_does_not_start_is_reported(
 
 
 def long_run(folder: Path) -> subprocess.Popen[str]:
-    """A run that is busy for minutes, with its MuJoCo and reference workers up."""
-    text = quick_scenario(folder).read_text().replace("duration = 1.0", "duration = 100.0")
-    scenario = quick_scenario(folder, text)
-    arguments = ["run", str(scenario), "--engine", "dart", "--engine", "reference", "--out", "out"]
+    """A run that is busy for a minute: one of its workers hangs."""
+    arguments = ["run", str(quick_scenario(folder)), "--engine", "dart", "--engine", "reference"]
     return subprocess.Popen(
-        [*PROGRAM, *arguments, "--timestep", "0.001"],
+        [
+            *PROGRAM,
+            *arguments,
+            "--timestep",
+            "0.01",
+            "--adapter",
+            f"{FAULTY}:Hangs",
+            "--out",
+            "out",
+        ],
         cwd=folder,
+        env={**os.environ, "OMEGADOT_TEST_MARKS": str(folder)},
         # A shell's background jobs ignore SIGINT, and so would every child of such a job.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL) and None,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
+
+
+def wait_until(condition: Callable[[], object]) -> None:
+    end = time.monotonic() + 60.0
+    while not condition():
+        assert time.monotonic() < end, "the run never came that far"
+        time.sleep(0.05)
 
 
 def wait_for_worker(process: subprocess.Popen[str], name: str) -> int:
@@ -126,8 +142,7 @@ def wait_for_worker(process: subprocess.Popen[str], name: str) -> int:
 
 def test_ctrl_c_leaves_a_readable_record(tmp_path: Path) -> None:
     process = long_run(tmp_path)
-    wait_for_worker(process, "dart")
-    time.sleep(2.0)
+    wait_until((tmp_path / "hangs").exists)
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130, err
@@ -162,12 +177,13 @@ def test_a_worker_killed_from_outside_is_replaced(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [*PROGRAM, *arguments, "--timestep", "0.01", "--out", "out"],
         cwd=tmp_path,
+        env={**os.environ, "OMEGADOT_TEST_MARKS": str(tmp_path)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
     worker = wait_for_worker(process, "faulty.py")
-    time.sleep(5.0)  # by now it is pivoted in its first run
+    wait_until((tmp_path / "hangs").exists)
     os.kill(worker, signal.SIGKILL)
     _, err = process.communicate(timeout=120)
     assert process.returncode == 3, err

@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from omegadot.reference_impl.system import State
 
 FAULTY_ENGINES = "semi-implicit-euler"
 WELL = "rk4-quaternion"
+MARKS = "OMEGADOT_TEST_MARKS"
 
 
 class Faulty(ReferenceAdapter):
@@ -54,9 +56,11 @@ class Exits(Faulty):
 
 
 class Hangs(Faulty):
-    """Never comes back."""
+    """Never comes back; a file in the folder MARKS, where there is one, shows when it hangs."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
+        if MARKS in os.environ:
+            Path(os.environ[MARKS], "hangs").touch()
         time.sleep(3600)
         return trajectory
 

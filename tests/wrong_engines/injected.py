@@ -395,7 +395,7 @@ class HoldsTheLock(Faulty):
 
 
 class SleepsWithAChild(Faulty):
-    """It is pivoted, and so does a program that it started."""
+    """It never answers, nor does a program that it started."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         os.spawnlp(os.P_WAIT, "sleep", "sleep", "3600")
@@ -403,7 +403,7 @@ class SleepsWithAChild(Faulty):
 
 
 class SleepsWithADaemon(Faulty):
-    """It is pivoted, and a program that it started is in a session of its own."""
+    """It never answers, and a program that it started is in a session of its own."""
 
     def fail(self, trajectory: Trajectory) -> Trajectory:
         subprocess.Popen(["sleep", "3600"], start_new_session=True).wait()

@@ -6,7 +6,6 @@ import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from functools import partial
 from typing import TypeVar
 
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
@@ -40,7 +39,8 @@ class WorkerPool:
 
     def __init__(self, targets: Mapping[str, str], setup: str, limits: Limits) -> None:
         self.stopping = threading.Event()
-        self.slots = threading.Semaphore(limits.jobs)
+        # First come, first served: where workers wait for a free processor, none waits for long.
+        self._turns = ThreadPoolExecutor(limits.jobs, "turn")
         self.processes = {
             name: WorkerProcess(target, setup, limits.timeout, memory=limits.memory)
             for name, target in targets.items()
@@ -49,15 +49,13 @@ class WorkerPool:
 
     def start(self) -> dict[str, Answer]:
         """Start every process; each answers with its engine's description, or why it has none."""
-        started = {
-            name: self.submit(name, partial(self._start_one, process))
-            for name, process in self.processes.items()
-        }
+        # By turns: many engines that start together would only be late together.
+        started = {name: self._turns.submit(p.start) for name, p in self.processes.items()}
         return {name: outcome_of(future) for name, future in started.items()}
 
-    def _start_one(self, process: WorkerProcess) -> Answer:
-        with self.slots:  # many engines that start together would only be late together
-            return process.start()
+    def in_turn(self, call: Callable[[], Answer]) -> Answer:
+        """A request's answer, once fewer than `jobs` others are being answered."""
+        return self._turns.submit(call).result()
 
     def submit(self, name: str, call: Callable[[], Result]) -> Future[Result]:
         """Have a call done on the engine's own thread, after what was submitted before."""
@@ -71,7 +69,7 @@ class WorkerPool:
 
     def finish(self) -> None:
         """End the threads, then the processes, which are idle by then or stopped already."""
-        for threads in self._threads.values():
+        for threads in (*self._threads.values(), self._turns):
             threads.shutdown(wait=True, cancel_futures=True)
         for process in self.processes.values():
             process.finish()
