@@ -13,8 +13,6 @@ from omegadot.adapters.registry import BUILT_IN, build_adapter
 from omegadot.commands.faults.catalogue.every import ORDERED
 from omegadot.commands.faults.detect import Judgement, judge
 from omegadot.commands.faults.fault import Fault
-from omegadot.commands.faults.named import NAMES, is_named
-from omegadot.commands.faults.over import target_of
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.diagnosis.diagnose import diagnose
 from omegadot.harness.random_cases import FLAVOURS, features_of, random_case
@@ -62,7 +60,7 @@ def test_every_fault_is_caught_and_named(pool: Pool, fault: Fault) -> None:
         assert set(fault.gates) <= judged.failed, prepared.case.name
         text = sentences(prepared, judged)
         assert len(text) == 1, text
-        assert is_named(fault.name, text), text
+        assert fault.is_named(text), text
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -78,7 +76,7 @@ def test_faults_are_caught_and_named_over_engines(pool: Pool, engine: str, name:
         assert set(fault.gates) <= judged.failed, prepared.case.name
         text = sentences(prepared, judged)
         assert len(text) == 1, text
-        assert is_named(fault.name, text), text
+        assert fault.is_named(text), text
 
 
 @pytest.mark.parametrize("engine", ["reference", *ENGINES])
@@ -97,7 +95,7 @@ def test_there_are_enough_faults_and_each_has_its_phrases() -> None:
     assert {fault.kind for fault in ORDERED} == {
         *("model", "convention", "equation", "stepping", "logging", "state")
     }
-    assert set(NAMES) == {fault.name for fault in ORDERED}
+    assert all(fault.named and all(fault.named) for fault in ORDERED)
     assert len({fault.sentence for fault in ORDERED}) == len(ORDERED)
 
 
@@ -110,14 +108,6 @@ def test_silence_where_no_cause_matches(pool: Pool) -> None:
     judged = judge(pool, prepared, "reference", adapter)
     assert "equation" in judged.failed
     assert sentences(prepared, judged) == []
-
-
-def test_a_target_names_a_fault_over_an_engine() -> None:
-    for engine in ("reference", *ENGINES):
-        adapter = build_adapter(target_of(engine, "GyroscopicDropped"))
-        assert adapter.description.name == f"{engine}+GyroscopicDropped"
-    with pytest.raises(ValueError, match="no reference_NoSuchFault"):
-        build_adapter(target_of("reference", "NoSuchFault"))
 
 
 def test_random_cases_are_those_of_their_seed() -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
 from omegadot.adapters.protocol import Adapter, Description, Trajectory
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
@@ -90,8 +90,8 @@ class Fault:
     """One fault.
 
     sentence: what is wrong.  needs: the features of a scenario in which it shows at all (see
-    `features_of`).  gates: those expected to catch it.  wrap: an adapter with the fault around a
-    sound one.
+    `features_of`).  gates: those expected to catch it.  named: phrases of a diagnosis that name its
+    cause.  wrap: an adapter with the fault around a sound one.
     """
 
     name: str
@@ -99,16 +99,24 @@ class Fault:
     kind: Kind
     needs: frozenset[str]
     gates: tuple[str, ...]
+    named: tuple[str, ...]
     wrap: Callable[[Adapter], Spoiled]
+
+    def is_named(self, sentences: Iterable[str]) -> bool:
+        """Whether one of the sentences names this fault's cause."""
+        return any(phrase in text for text in sentences for phrase in self.named)
 
 
 FAULTS: dict[str, Fault] = {}
 """Every fault by name, in the order of their files; `catalogue` fills it."""
 
 Class = TypeVar("Class", bound=type[Spoiled])
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def fault(kind: Kind, gates: str, needs: str = "") -> Callable[[Class], Class]:
+def fault(
+    kind: Kind, gates: str, needs: str = "", *, named: str | tuple[str, ...]
+) -> Callable[[Class], Class]:
     """Enter a class among the faults; its docstring is the sentence. Names are separated by blanks.
 
     Raises ValueError where the docstring is missing or a name comes twice.
@@ -119,8 +127,28 @@ def fault(kind: Kind, gates: str, needs: str = "") -> Callable[[Class], Class]:
         name = wrapper.__name__
         if not sentence or name in FAULTS:
             raise ValueError(f"{name}: give a fault a docstring, and a name of its own.")
+        phrases = (named,) if isinstance(named, str) else named
         needed, expected = frozenset(needs.split()), tuple(gates.split())
-        FAULTS[name] = Fault(name, sentence, kind, needed, expected, wrapper)
+        FAULTS[name] = Fault(name, sentence, kind, needed, expected, phrases, wrapper)
         return wrapper
+
+    return enter
+
+
+def fault_by(
+    base: type[Spoiled],
+    method: str,
+    kind: Kind,
+    gates: str,
+    needs: str = "",
+    *,
+    named: str | tuple[str, ...],
+) -> Callable[[Function], Function]:
+    """Enter a function among the faults: `base` with this function for one of its methods."""
+
+    def enter(function: Function) -> Function:
+        own = {method: staticmethod(function), "__doc__": function.__doc__}
+        fault(kind, gates, needs, named=named)(type(function.__name__, (base,), own))
+        return function
 
     return enter

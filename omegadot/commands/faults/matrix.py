@@ -16,7 +16,6 @@ from omegadot.adapters.registry import BUILT_IN, build_adapter
 from omegadot.commands.faults.catalogue.every import ORDERED
 from omegadot.commands.faults.detect import GATES, Judgement, chosen_integrators, judge
 from omegadot.commands.faults.fault import Fault
-from omegadot.commands.faults.named import is_named
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.commands.faults.published import Published
 from omegadot.commands.faults.published_checks import PUBLISHED
@@ -151,7 +150,7 @@ def _named(fault: Fault, prepared: Prepared, judgement: Judgement) -> bool:
     case, truth, evaluation_states = prepared.case, prepared.truth, prepared.evaluation_states
     with np.errstate(all="ignore"):
         causes = diagnose(case, truth, evaluation_states, judgement.result, judgement.runs)
-    return is_named(fault.name, causes)
+    return fault.is_named(causes)
 
 
 def _published(check: Published, fault: Fault, engine: str, pool: Pool, poses: int) -> float | None:

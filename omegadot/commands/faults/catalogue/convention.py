@@ -4,14 +4,18 @@ A fault *throughout* acts on what goes in and on what comes out, so that a state
 trip unchanged and only the motion shows it.
 """
 
+# ruff: noqa: D403  (omega is a symbol)
+
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
-from omegadot.commands.faults.fault import Spoiled, fault
+from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.reference_impl.kinematics import at_point
 from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
 from omegadot.reference_impl.system import State
@@ -34,20 +38,37 @@ class Misread(Spoiled):
 
 
 class Throughout(Misread):
-    """States are misread on the way in, and on the way out in just the same way."""
+    """States are misread on the way in, and on the way out in just the same way.
 
-    def taken(self, state: State) -> State:
-        """The inverse of `reported`."""
-        return state
+    ways: what is made of a state on its way in and on its way out, each the inverse of the other.
+    """
+
+    ways: tuple[Callable[[State], State], Callable[[State], State]]
 
     def into(self, state: State) -> State:
         """Misread."""
-        return self.taken(state)
+        return self.ways[0](state)
+
+    def reported(self, state: State) -> State:
+        """Misread the same way."""
+        return self.ways[1](state)
 
 
-def omega_in_world(state: State) -> State:
-    """Omega turned from body to world axes."""
+misread = partial(fault_by, Misread, "reported", "convention", "model")
+
+
+@fault_by(Spoiled, "read_back", "convention", "model", named="omega looks like world axes")
+def OmegaInWorldReadBack(state: State) -> State:
+    """omega is read back in world axes."""
     return replace(state, angular_velocity=rotate(state.orientation, state.angular_velocity))
+
+
+@fault_by(
+    Spoiled, "logged", "convention", "scheme", named="in the run, omega looks like world axes"
+)
+def OmegaInWorldInRuns(trajectory: Trajectory) -> Trajectory:
+    """omega is logged in world axes during a run."""
+    return Trajectory(trajectory.time, OmegaInWorldReadBack(trajectory.state))
 
 
 def omega_in_body(state: State) -> State:
@@ -56,106 +77,55 @@ def omega_in_body(state: State) -> State:
     return replace(state, angular_velocity=w)
 
 
-def transposed(state: State) -> State:
-    """The inverse rotation."""
+@fault(
+    "convention",
+    "equation",
+    named=("on the way in, omega looks like world axes", "way out, omega looks"),
+)
+class OmegaInWorldThroughout(Throughout):
+    """omega is read and reported in world axes, so that what goes in comes out."""
+
+    ways = omega_in_body, OmegaInWorldReadBack
+
+
+@misread(named="the rotation looks transposed")
+def RotationTransposed(state: State) -> State:
+    """The rotation is reported transposed."""
     return replace(state, orientation=conjugate(state.orientation))
 
 
-def scalar_last(state: State) -> State:
-    """The quaternion as (x, y, z, w)."""
+@fault("convention", "scheme", named="the rotation looks transposed")
+class RotationTransposedThroughout(Throughout):
+    """The rotation is read and reported transposed, so that what goes in comes out."""
+
+    ways = RotationTransposed, RotationTransposed
+
+
+@misread(named="the quaternion looks like (x, y, z, w)")
+def QuaternionScalarLast(state: State) -> State:
+    """The quaternion is reported as x, y, z, w."""
     return replace(state, orientation=np.roll(state.orientation, -1, axis=-1))
 
 
 def scalar_first(state: State) -> State:
-    """The inverse of `scalar_last`."""
+    """The inverse of `QuaternionScalarLast`."""
     return replace(state, orientation=np.roll(state.orientation, 1, axis=-1))
 
 
-@fault("convention", "model")
-class OmegaInWorldReadBack(Spoiled):
-    """omega is read back in world axes."""
-
-    def read_back(self, state: State) -> State:
-        """In the world."""
-        return omega_in_world(state)
-
-
-@fault("convention", "scheme")
-class OmegaInWorldInRuns(Spoiled):
-    """omega is logged in world axes during a run."""
-
-    def logged(self, trajectory: Trajectory) -> Trajectory:
-        """In the world."""
-        return Trajectory(trajectory.time, omega_in_world(trajectory.state))
-
-
-@fault("convention", "equation")
-class OmegaInWorldThroughout(Throughout):
-    """omega is read and reported in world axes, so that what goes in comes out."""
-
-    def taken(self, state: State) -> State:
-        """As if it were given in the world."""
-        return omega_in_body(state)
-
-    def reported(self, state: State) -> State:
-        """In the world."""
-        return omega_in_world(state)
-
-
-@fault("convention", "model")
-class RotationTransposed(Misread):
-    """The rotation is reported transposed."""
-
-    def reported(self, state: State) -> State:
-        """Transposed."""
-        return transposed(state)
-
-
-@fault("convention", "scheme")
-class RotationTransposedThroughout(Throughout):
-    """The rotation is read and reported transposed, so that what goes in comes out."""
-
-    def taken(self, state: State) -> State:
-        """Transposed."""
-        return transposed(state)
-
-    def reported(self, state: State) -> State:
-        """Transposed."""
-        return transposed(state)
-
-
-@fault("convention", "model")
-class QuaternionScalarLast(Misread):
-    """The quaternion is reported as x, y, z, w."""
-
-    def reported(self, state: State) -> State:
-        """Scalar last."""
-        return scalar_last(state)
-
-
-@fault("convention", "scheme")
+@fault("convention", "scheme", named="the quaternion looks like (x, y, z, w)")
 class QuaternionScalarLastThroughout(Throughout):
     """The quaternion is read as x, y, z, w and reported so, so that what goes in comes out."""
 
-    def taken(self, state: State) -> State:
-        """As if the scalar came last."""
-        return scalar_first(state)
-
-    def reported(self, state: State) -> State:
-        """Scalar last."""
-        return scalar_last(state)
+    ways = scalar_first, QuaternionScalarLast
 
 
-@fault("convention", "model")
-class QuaternionNotUnit(Misread):
+@misread(named="not of unit length")
+def QuaternionNotUnit(state: State) -> State:
     """The quaternion reported is a millionth too long."""
-
-    def reported(self, state: State) -> State:
-        """The right direction, another length."""
-        return replace(state, orientation=(1.0 + 1e-6) * state.orientation)
+    return replace(state, orientation=(1.0 + 1e-6) * state.orientation)
 
 
-@fault("convention", "model", "offset")
+@fault("convention", "model", "offset", named="the position looks like that of the body's origin")
 class PositionOfOrigin(Misread):
     """The position reported is that of the body's origin, not of the centre of mass."""
 
@@ -164,7 +134,12 @@ class PositionOfOrigin(Misread):
         return replace(state, position=at_point(state, -self.system.body.center_of_mass).position)
 
 
-@fault("convention", "model", "offset")
+@fault(
+    "convention",
+    "model",
+    "offset",
+    named="the linear velocity looks like that of the body's origin",
+)
 class VelocityOfOrigin(Misread):
     """The velocity reported is that of the body's origin, not of the centre of mass."""
 
@@ -174,20 +149,14 @@ class VelocityOfOrigin(Misread):
         return replace(state, linear_velocity=velocity)
 
 
-@fault("convention", "model", "free")
-class VelocityInBodyAxes(Misread):
+@misread("free", named="the linear velocity looks like body axes")
+def VelocityInBodyAxes(state: State) -> State:
     """The velocity is reported in body axes."""
-
-    def reported(self, state: State) -> State:
-        """In the body."""
-        velocity = rotate_inverse(state.orientation, state.linear_velocity)
-        return replace(state, linear_velocity=velocity)
+    velocity = rotate_inverse(state.orientation, state.linear_velocity)
+    return replace(state, linear_velocity=velocity)
 
 
-@fault("convention", "model")
-class OmegaInDegrees(Misread):
+@misread(named="degrees per second")
+def OmegaInDegrees(state: State) -> State:
     """omega is reported in degrees per second."""
-
-    def reported(self, state: State) -> State:
-        """In degrees."""
-        return replace(state, angular_velocity=np.rad2deg(state.angular_velocity))
+    return replace(state, angular_velocity=np.rad2deg(state.angular_velocity))

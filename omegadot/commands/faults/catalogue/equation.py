@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from omegadot.commands.faults.catalogue.load import ExtraTorque
+from omegadot.commands.faults.catalogue.load import extra_torque
 from omegadot.commands.faults.fault import Spoiled, fault
 from omegadot.diagnosis.restep import on_rows, step_again
 from omegadot.gates.scales import norm
@@ -13,56 +13,46 @@ from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.symmetric import apply
-from omegadot.reference_impl.system import Acceleration, Array, State
+from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 
-class Gyroscopic(ExtraTorque):
-    """The gyroscopic term ``omega x I omega`` times `factor`."""
-
-    factor = 1.0
-
-    def torque(self, state: State) -> Array:
-        """What the term has too little."""
-        w = state.angular_velocity
-        return (1.0 - self.factor) * cross(w, apply(moving_inertia(self.system), w))
+def gyroscopic_term(system: System, state: State) -> Array:
+    """``omega x I omega``."""
+    w = state.angular_velocity
+    return cross(w, apply(moving_inertia(system), w))
 
 
-@fault("equation", "equation", "asymmetric")
-class GyroscopicDropped(Gyroscopic):
+@extra_torque("asymmetric", named="the gyroscopic term is missing")
+def GyroscopicDropped(system: System, state: State) -> Array:
     """The gyroscopic term is missing."""
+    return gyroscopic_term(system, state)
 
-    factor = 0.0
 
-
-@fault("equation", "equation", "asymmetric")
-class GyroscopicReversed(Gyroscopic):
+@extra_torque("asymmetric", named="the gyroscopic term has the wrong sign")
+def GyroscopicReversed(system: System, state: State) -> Array:
     """The gyroscopic term has the wrong sign, as equation (9) is printed."""
+    return 2.0 * gyroscopic_term(system, state)
 
-    factor = -1.0
 
-
-@fault("equation", "equation", "asymmetric")
-class GyroscopicDoubled(Gyroscopic):
+@extra_torque("asymmetric", named="the gyroscopic term counts twice")
+def GyroscopicDoubled(system: System, state: State) -> Array:
     """The gyroscopic term counts twice."""
+    return -gyroscopic_term(system, state)
 
-    factor = 2.0
 
-
-@fault("equation", "equation", "asymmetric")
-class GyroscopicOnePercentOff(Gyroscopic):
+@extra_torque("asymmetric", named="the gyroscopic term is scaled by 1.01")
+def GyroscopicOnePercentOff(system: System, state: State) -> Array:
     """The gyroscopic term is 1 % too large."""
+    return (1.0 - 1.01) * gyroscopic_term(system, state)
 
-    factor = 1.01
 
-
-@fault("equation", "equation", "asymmetric")
-class GyroscopicSlightlyOff(Gyroscopic):
+@extra_torque("asymmetric", named="the gyroscopic term is scaled by 1.0001")
+def GyroscopicSlightlyOff(system: System, state: State) -> Array:
     """The gyroscopic term is 0.01 % too large."""
+    return (1.0 - 1.0001) * gyroscopic_term(system, state)
 
-    factor = 1.0001
 
-
-@fault("equation", "equation", "asymmetric")
+@fault("equation", "equation", "asymmetric", named="omega-dot looks like world axes")
 class OmegaDotInWorld(Spoiled):
     """omega-dot is right and reported in world axes."""
 
@@ -72,7 +62,7 @@ class OmegaDotInWorld(Spoiled):
         return Acceleration(rotate(states.orientation, found.angular), found.linear)
 
 
-@fault("equation", "equation", "asymmetric")
+@fault("equation", "equation", "asymmetric", named="omega-dot is the same at every state")
 class OmegaDotConstant(Spoiled):
     """omega-dot is that of the first state requested, whatever comes after."""
 
@@ -82,7 +72,7 @@ class OmegaDotConstant(Spoiled):
         return Acceleration(np.broadcast_to(found.angular[:1], found.angular.shape), found.linear)
 
 
-@fault("equation", "equation", "asymmetric")
+@fault("equation", "equation", "asymmetric", named="a difference quotient")
 class OmegaDotByDifference(Spoiled):
     """omega-dot is a difference quotient over a short step, passed off as exact."""
 
@@ -96,7 +86,7 @@ class OmegaDotByDifference(Spoiled):
         return Acceleration(quotient, found.linear)
 
 
-@fault("equation", "equation", "offset")
+@fault("equation", "equation", "offset", named="acceleration looks like that of the body's origin")
 class AccelerationOfOrigin(Spoiled):
     """The linear acceleration reported is that of the body's origin."""
 
@@ -108,12 +98,11 @@ class AccelerationOfOrigin(Spoiled):
         return Acceleration(found.angular, found.linear - rotate(states.orientation, lever))
 
 
-@fault("equation", "equation", "asymmetric")
+@fault("equation", "equation", "asymmetric", named="inverse dynamics leave out the gyroscopic term")
 class InverseWithoutGyroscopic(Spoiled):
     """Inverse dynamics leaves out the gyroscopic term; all else is sound."""
 
     def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
         """The torque less ``omega x I omega``."""
-        w = states.angular_velocity
-        term = cross(w, apply(moving_inertia(self.system), w))
-        return super().inverse_dynamics(states, acceleration) - term
+        found = super().inverse_dynamics(states, acceleration)
+        return found - gyroscopic_term(self.system, states)

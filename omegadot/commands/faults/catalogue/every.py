@@ -10,7 +10,6 @@ from omegadot.commands.faults.catalogue import (  # noqa: F401  (importing them 
     logging,
     model,
     reporting,
-    slight,
     stepping,
 )
 from omegadot.commands.faults.fault import FAULTS

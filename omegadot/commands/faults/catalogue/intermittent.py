@@ -1,4 +1,4 @@
-"""Faults that come and go: at the first step, after a while, at some speeds or attitudes only."""
+"""Faults that are small, or that show at times only: at some steps or speeds, in one answer."""
 
 from __future__ import annotations
 
@@ -7,22 +7,24 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
-from omegadot.commands.faults.catalogue.load import ExtraTorque
-from omegadot.commands.faults.fault import fault
+from omegadot.commands.faults.catalogue.equation import gyroscopic_term
+from omegadot.commands.faults.catalogue.load import extra_torque, other_load
+from omegadot.commands.faults.fault import Spoiled, fault
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import Coordinates
-from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.loads import applied_torque, gravity_torque
+from omegadot.reference_impl.loads import applied_torque, gravity_torque, torque
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.symmetric import apply, inverse
-from omegadot.reference_impl.system import Acceleration, Array, State
+from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
+
+ASIDE = np.array([1e-6, 0.0, 0.0])  # m
 
 
 class Timed(Restepped):
-    """Steps that know their number: each is taken with `early` or with the right acceleration."""
+    """Steps that know their number: each is taken with `wrong` or with the right acceleration."""
 
     steps = 0
     coordinates: Coordinates = "com-world"
@@ -68,7 +70,7 @@ class Timed(Restepped):
         return Acceleration(sound.angular + more, sound.linear)
 
 
-@fault("stepping", "scheme", "gravity")
+@fault("stepping", "scheme", "gravity", named="only the first steps are wrong")
 class GravityOffInFirstStep(Timed):
     """Gravity does not act yet in the first step."""
 
@@ -79,7 +81,7 @@ class GravityOffInFirstStep(Timed):
         return self.pushed(sound, -gravity_torque(self.system, state))
 
 
-@fault("stepping", "scheme", "torque")
+@fault("stepping", "scheme", "torque", named="only the first steps are wrong")
 class TorqueOneStepLate(Timed):
     """The applied torque acts one step late, and so not at all in the first."""
 
@@ -88,7 +90,7 @@ class TorqueOneStepLate(Timed):
         return self.pushed(sound, -applied_torque(self.system, state))
 
 
-@fault("stepping", "scheme", "asymmetric order-4")
+@fault("stepping", "scheme", "asymmetric order-4", named="only the first steps are wrong")
 class FirstStepByEuler(Timed):
     """The first step is one of Euler's, whatever is declared."""
 
@@ -97,7 +99,7 @@ class FirstStepByEuler(Timed):
         return SCHEMES["semi-implicit-euler"]
 
 
-@fault("stepping", "scheme")
+@fault("stepping", "scheme", named="and every step after it is wrong")
 class DampingAfterAWhile(Timed):
     """From the middle of a run on, a damping acts that was not requested."""
 
@@ -111,33 +113,50 @@ class DampingAfterAWhile(Timed):
         return Acceleration(sound.angular - 1e-3 * norm(w)[..., None] * w, sound.linear)
 
 
-@fault("equation", "equation", "asymmetric")
-class GyroscopicOffAtNegativeSpin(ExtraTorque):
+@extra_torque("asymmetric", named="wrong only where omega_z is below")
+def GyroscopicOffAtNegativeSpin(system: System, state: State) -> Array:
     """The gyroscopic term is 1 % too large where the spin about z is negative."""
-
-    def torque(self, state: State) -> Array:
-        """A hundredth of it."""
-        w = state.angular_velocity
-        term = -0.01 * cross(w, apply(moving_inertia(self.system), w))
-        return np.where(w[..., 2:] < 0.0, term, 0.0)
+    backwards = state.angular_velocity[..., 2:] < 0.0
+    return np.where(backwards, -0.01 * gyroscopic_term(system, state), 0.0)
 
 
-@fault("equation", "equation", "asymmetric fast")
-class GyroscopicOffWhenFast(ExtraTorque):
+@extra_torque("asymmetric fast", named="wrong only where |omega| is above")
+def GyroscopicOffWhenFast(system: System, state: State) -> Array:
     """The gyroscopic term is 1 % too large above 1 rad/s."""
-
-    def torque(self, state: State) -> Array:
-        """A hundredth of it."""
-        w = state.angular_velocity
-        term = -0.01 * cross(w, apply(moving_inertia(self.system), w))
-        return np.where(norm(w)[..., None] > 1.0, term, 0.0)
+    fast = norm(state.angular_velocity)[..., None] > 1.0
+    return np.where(fast, -0.01 * gyroscopic_term(system, state), 0.0)
 
 
-@fault("equation", "equation", "torque")
-class TorqueOffFarFromIdentity(ExtraTorque):
+@extra_torque("torque", named="wrong only where the angle from the identity is above")
+def TorqueOffFarFromIdentity(system: System, state: State) -> Array:
     """The applied torque is missing where the body has turned by more than 2 rad."""
+    far = np.abs(state.orientation[..., :1]) < np.cos(1.0)
+    return np.where(far, -applied_torque(system, state), 0.0)
 
-    def torque(self, state: State) -> Array:
-        """Taken away."""
-        far = np.abs(state.orientation[..., :1]) < np.cos(1.0)
-        return np.where(far, -applied_torque(self.system, state), 0.0)
+
+@other_load("pivot", named=("the pivot lies at", "the pivot lies 1e-06 m"))
+def PivotSlightlyOff(load: Load) -> Load:
+    """The pivot lies a thousandth of a millimetre aside."""
+    return replace(load, pivot=None if load.pivot is None else load.pivot + ASIDE)
+
+
+@other_load("gravity", named="gravity is (")
+def GravityAxesPermuted(load: Load) -> Load:
+    """Gravity's components stand under the wrong axes: y up for z up."""
+    return replace(load, gravity=np.roll(load.gravity, 1))
+
+
+@extra_torque("torque", named="it is divided by the mass")
+def TorqueOverMass(system: System, state: State) -> Array:
+    """The torques of the loads are divided by the mass, as forces are."""
+    return (1.0 / system.body.mass - 1.0) * torque(system, state)
+
+
+@fault("equation", "equation", "pivot gravity", named="inverse dynamics leave out gravity")
+class InverseWithoutGravity(Spoiled):
+    """Inverse dynamics leave out gravity; all else is sound."""
+
+    def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
+        """The torque as if there were no weight."""
+        found = super().inverse_dynamics(states, acceleration)
+        return np.asarray(found + gravity_torque(self.system, states))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from omegadot.commands.faults.fault import Spoiled, fault
+from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.commands.faults.restepped import Accelerated
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
@@ -29,60 +30,54 @@ class OtherLoad(Spoiled):
         return replace(system, load=self.other(system.load))
 
 
-@fault("equation", "equation", "gravity")
-class GravityReversed(OtherLoad):
+other_load = partial(fault_by, OtherLoad, "other", "equation", "equation")
+
+
+@other_load("gravity", named="gravity has the wrong sign")
+def GravityReversed(load: Load) -> Load:
     """Gravity has the wrong sign."""
-
-    def other(self, load: Load) -> Load:
-        """Upwards."""
-        return replace(load, gravity=-load.gravity)
+    return replace(load, gravity=-load.gravity)
 
 
-@fault("equation", "equation", "gravity")
-class GravityIgnored(OtherLoad):
+@other_load("gravity", named="gravity is missing")
+def GravityIgnored(load: Load) -> Load:
     """Gravity does not act."""
-
-    def other(self, load: Load) -> Load:
-        """None."""
-        return replace(load, gravity=np.zeros_like(load.gravity))
+    return replace(load, gravity=np.zeros_like(load.gravity))
 
 
-@fault("equation", "equation", "gravity")
-class GravitySlightlyOff(OtherLoad):
+@other_load("gravity", named="gravity is scaled by 1.001")
+def GravitySlightlyOff(load: Load) -> Load:
     """Gravity is 0.1 % too strong."""
-
-    def other(self, load: Load) -> Load:
-        """A thousandth more."""
-        return replace(load, gravity=1.001 * load.gravity)
+    return replace(load, gravity=1.001 * load.gravity)
 
 
 class ExtraTorque(Accelerated):
     """A torque about the centre of mass, or the pivot, that was not requested."""
 
-    def torque(self, state: State) -> Array:
+    def torque(self, system: System, state: State) -> Array:
         """(..., 3) N m, body axes."""
         return np.zeros_like(state.angular_velocity)
 
     def changed(self, state: State, sound: Acceleration) -> Acceleration:
         """The torque's omega-dot added; a pivoted body's centre of mass goes along."""
-        more = apply(inverse(moving_inertia(self.system)), self.torque(state))
+        more = apply(inverse(moving_inertia(self.system)), self.torque(self.system, state))
         angular = sound.angular + more
         if self.system.load.pivot is None:
             return Acceleration(angular, sound.linear)
         return Acceleration(angular, center_of_mass_acceleration(self.system, state, angular))
 
 
-@fault("equation", "equation", "gravity offset")
-class GravityAtOrigin(ExtraTorque):
+extra_torque = partial(fault_by, ExtraTorque, "torque", "equation", "equation")
+
+
+@extra_torque("gravity offset", named="gravity acts at the body's origin")
+def GravityAtOrigin(system: System, state: State) -> Array:
     """Gravity acts at the body's origin instead of the centre of mass."""
-
-    def torque(self, state: State) -> Array:
-        """The weight with the lever from the centre of mass back to the origin."""
-        force = rotate_inverse(state.orientation, weight(self.system))
-        return cross(-self.system.body.center_of_mass, force)
+    force = rotate_inverse(state.orientation, weight(system))
+    return cross(-system.body.center_of_mass, force)
 
 
-@fault("equation", "equation", "gravity")
+@fault("equation", "equation", "gravity", named="gravity is fixed to the body")
 class GravityInBodyAxes(Accelerated):
     """Gravity is fixed to the body instead of the world."""
 
@@ -97,65 +92,44 @@ class GravityInBodyAxes(Accelerated):
         return Acceleration(angular, center_of_mass_acceleration(system, state, angular))
 
 
-@fault("equation", "equation", "torque")
-class TorqueInWrongFrame(OtherLoad):
+@other_load("torque", named="the applied torque is taken in the wrong frame")
+def TorqueInWrongFrame(load: Load) -> Load:
     """The applied torque is taken in the wrong frame: body for world, world for body."""
-
-    def other(self, load: Load) -> Load:
-        """The two exchanged."""
-        return replace(load, torque_body=load.torque_world, torque_world=load.torque_body)
+    return replace(load, torque_body=load.torque_world, torque_world=load.torque_body)
 
 
-@fault("equation", "equation", "torque")
-class TorqueIgnored(OtherLoad):
+@other_load("torque", named="the applied torque is missing")
+def TorqueIgnored(load: Load) -> Load:
     """The applied torque does not act."""
-
-    def other(self, load: Load) -> Load:
-        """None."""
-        none = np.zeros_like(load.torque_body)
-        return replace(load, torque_body=none, torque_world=none)
+    none = np.zeros_like(load.torque_body)
+    return replace(load, torque_body=none, torque_world=none)
 
 
-@fault("equation", "equation", "damping")
-class DampingIgnored(OtherLoad):
+@other_load("damping", named="the damping is missing")
+def DampingIgnored(load: Load) -> Load:
     """The damping does not act."""
-
-    def other(self, load: Load) -> Load:
-        """None."""
-        return replace(load, damping=np.zeros_like(load.damping))
+    return replace(load, damping=np.zeros_like(load.damping))
 
 
-@fault("equation", "equation", "damping")
-class DampingReversed(OtherLoad):
+@other_load("damping", named="the damping has the wrong sign")
+def DampingReversed(load: Load) -> Load:
     """The damping drives instead of braking."""
-
-    def other(self, load: Load) -> Load:
-        """The wrong sign."""
-        return replace(load, damping=-load.damping)
+    return replace(load, damping=-load.damping)
 
 
-@fault("equation", "equation", "pivot-off-origin")
-class PivotAtOrigin(OtherLoad):
+@other_load("pivot-off-origin", named="is pivoted at its origin")
+def PivotAtOrigin(load: Load) -> Load:
     """The body is pivoted at its origin instead of the pivot."""
-
-    def other(self, load: Load) -> Load:
-        """The pivot at the origin."""
-        return replace(load, pivot=None if load.pivot is None else np.zeros_like(load.pivot))
+    return replace(load, pivot=None if load.pivot is None else np.zeros_like(load.pivot))
 
 
-@fault("equation", "equation", "pivot-off-origin")
-class PivotMirrored(OtherLoad):
+@other_load("pivot-off-origin", named="the pivot has the wrong sign")
+def PivotMirrored(load: Load) -> Load:
     """The pivot lies on the other side of the body's origin."""
-
-    def other(self, load: Load) -> Load:
-        """The wrong sign."""
-        return replace(load, pivot=None if load.pivot is None else -load.pivot)
+    return replace(load, pivot=None if load.pivot is None else -load.pivot)
 
 
-@fault("equation", "equation", "pivot")
-class PivotIgnored(OtherLoad):
+@other_load("pivot", named="the pivot is ignored")
+def PivotIgnored(load: Load) -> Load:
     """The pivot holds nothing: the body is free."""
-
-    def other(self, load: Load) -> Load:
-        """No pivot."""
-        return replace(load, pivot=None)
+    return replace(load, pivot=None)

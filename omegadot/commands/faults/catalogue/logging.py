@@ -1,16 +1,46 @@
 """Faults of logging and of memory: the motion is right, and the record or the start is not."""
 
+# ruff: noqa: D403  (omega is a symbol)
+
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Adapter, Trajectory
-from omegadot.commands.faults.fault import Spoiled, fault
+from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import State, System
+
+Run = Callable[[State, float, int, int], Trajectory]
+"""A run by one integrator: of the initial state, the step in s, the steps, and those a sample."""
+
+
+class OtherRun(Spoiled):
+    """A run is what `made` makes of the sound engine's."""
+
+    def made(self, run: Run, initial: State, timestep: float, steps: int, every: int) -> Trajectory:
+        """The wrong run."""
+        return run(initial, timestep, steps, every)
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        """As `Adapter.run`, made wrong."""
+        sound = super().run
+
+        def run(initial: State, timestep: float, steps: int, every: int) -> Trajectory:
+            return sound(initial, integrator, timestep, steps, every)
+
+        return self.made(run, initial, timestep, steps, every)
+
+
+other_run = partial(fault_by, OtherRun, "made")
+logged = partial(fault_by, Spoiled, "logged", "logging")
 
 
 def rows(state: State, which: NDArray[np.intp] | slice) -> State:
@@ -18,76 +48,56 @@ def rows(state: State, which: NDArray[np.intp] | slice) -> State:
     return State(*(values[which] for values in vars(state).values()))
 
 
-@fault("logging", "trajectory")
-class FirstSampleMissing(Spoiled):
+@logged("trajectory", named="the first sample is missing")
+def FirstSampleMissing(trajectory: Trajectory) -> Trajectory:
     """The first sample is missing."""
-
-    def logged(self, trajectory: Trajectory) -> Trajectory:
-        """From the second on."""
-        return Trajectory(trajectory.time[1:], rows(trajectory.state, slice(1, None)))
+    return Trajectory(trajectory.time[1:], rows(trajectory.state, slice(1, None)))
 
 
-@fault("logging", "scheme")
-class LastStepMissing(Spoiled):
+@other_run("logging", "scheme", named="the last step is missing")
+def LastStepMissing(
+    run: Run, initial: State, timestep: float, steps: int, every: int
+) -> Trajectory:
     """The last step is not taken: the end is reported as it was a step before."""
-
-    def run(
-        self, initial: State, integrator: str, timestep: float, steps: int, every: int
-    ) -> Trajectory:
-        """The last sample from a run that is one step shorter."""
-        found = super().run(initial, integrator, timestep, steps, every)
-        short = super().run(initial, integrator, timestep, steps - 1, every)
-        old = zip(vars(found.state).values(), vars(short.state).values(), strict=True)
-        return Trajectory(found.time, State(*(np.vstack([a[:-1], b[-1:]]) for a, b in old)))
+    found = run(initial, timestep, steps, every)
+    short = run(initial, timestep, steps - 1, every)
+    old = zip(vars(found.state).values(), vars(short.state).values(), strict=True)
+    return Trajectory(found.time, State(*(np.vstack([a[:-1], b[-1:]]) for a, b in old)))
 
 
-@fault("logging", "scheme")
-class LogsOneStepLate(Spoiled):
+@other_run("logging", "scheme", named="logged one step late")
+def LogsOneStepLate(
+    run: Run, initial: State, timestep: float, steps: int, every: int
+) -> Trajectory:
     """Every sample after the first is the state one step before."""
-
-    def run(
-        self, initial: State, integrator: str, timestep: float, steps: int, every: int
-    ) -> Trajectory:
-        """Picked from a run that keeps every step."""
-        found = super().run(initial, integrator, timestep, steps, 1)
-        kept = np.array(kept_steps(steps, every))
-        return Trajectory(kept * timestep, rows(found.state, np.maximum(kept - 1, 0)))
+    found = run(initial, timestep, steps, 1)
+    kept = np.array(kept_steps(steps, every))
+    return Trajectory(kept * timestep, rows(found.state, np.maximum(kept - 1, 0)))
 
 
-@fault("logging", "scheme")
-class LogsOneSampleLate(Spoiled):
+@logged("scheme", named="logged one sample late")
+def LogsOneSampleLate(trajectory: Trajectory) -> Trajectory:
     """Every sample after the first is the one before."""
-
-    def logged(self, trajectory: Trajectory) -> Trajectory:
-        """Shifted by one."""
-        late = np.maximum(np.arange(len(trajectory.time)) - 1, 0)
-        return Trajectory(trajectory.time, rows(trajectory.state, late))
+    late = np.maximum(np.arange(len(trajectory.time)) - 1, 0)
+    return Trajectory(trajectory.time, rows(trajectory.state, late))
 
 
-@fault("logging", "trajectory")
-class TimesShifted(Spoiled):
+@other_run("logging", "trajectory", named="s late, 1 steps")
+def TimesShifted(run: Run, initial: State, timestep: float, steps: int, every: int) -> Trajectory:
     """Times are reported at the end of the step after."""
-
-    def run(
-        self, initial: State, integrator: str, timestep: float, steps: int, every: int
-    ) -> Trajectory:
-        """One step late on the clock."""
-        found = super().run(initial, integrator, timestep, steps, every)
-        return Trajectory(found.time + timestep, found.state)
+    found = run(initial, timestep, steps, every)
+    return Trajectory(found.time + timestep, found.state)
 
 
-@fault("logging", "trajectory")
-class NotFiniteAfterAWhile(Spoiled):
+@logged("trajectory", named="angular velocity: not finite")
+def NotFiniteAfterAWhile(trajectory: Trajectory) -> Trajectory:
     """omega is NaN in the second half of a run."""
-
-    def logged(self, trajectory: Trajectory) -> Trajectory:
-        """NaN from the middle on."""
-        w = trajectory.state.angular_velocity.copy()
-        w[len(w) // 2 :] = np.nan
-        return Trajectory(trajectory.time, replace(trajectory.state, angular_velocity=w))
+    w = trajectory.state.angular_velocity.copy()
+    w[len(w) // 2 :] = np.nan
+    return Trajectory(trajectory.time, replace(trajectory.state, angular_velocity=w))
 
 
-@fault("state", "scheme")
+@fault("state", "scheme", named="left over from a run before")
 class StaleState(Spoiled):
     """A run begins where the last one ended, whatever state it is given."""
 
@@ -110,7 +120,7 @@ class StaleState(Spoiled):
         return found
 
 
-@fault("state", "model")
+@fault("state", "model", named="those of another inertia")
 class LeaksBetweenScenarios(Spoiled):
     """A tenth of a percent of the last scenario's inertia is left in the next one's."""
 
@@ -123,7 +133,7 @@ class LeaksBetweenScenarios(Spoiled):
         return replace(system, bodies=(replace(system.body, inertia=tensor),))
 
 
-@fault("state", "equation", "gravity")
+@fault("state", "equation", "gravity", named=("gravity is (", "gravity is missing"))
 class GravityOfTheLastScenario(Spoiled):
     """Gravity stays what it was in the scenario before."""
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from omegadot.commands.faults.fault import Spoiled, fault
+from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Array, Body, System
 
@@ -37,82 +38,62 @@ class OtherInertia(OtherBody):
         return replace(body, inertia=self.inertia(body.inertia))
 
 
-@fault("model", "model", "full-inertia")
-class InertiaDiagonal(OtherInertia):
+other_body = partial(fault_by, OtherBody, "body", "model", "model")
+other_inertia = partial(fault_by, OtherInertia, "inertia", "model", "model")
+
+
+@other_inertia("full-inertia", named="only the diagonal of the inertia")
+def InertiaDiagonal(tensor: Array) -> Array:
     """Only the diagonal of the inertia is used."""
-
-    def inertia(self, tensor: Array) -> Array:
-        """Its diagonal alone."""
-        return np.diag(np.diag(tensor))
+    return np.diag(np.diag(tensor))
 
 
-@fault("model", "model", "full-inertia")
-class InertiaPrincipal(OtherInertia):
+@other_inertia("full-inertia", named="the rotation of their axes is dropped")
+def InertiaPrincipal(tensor: Array) -> Array:
     """The principal moments are taken for the diagonal: the axes' rotation is dropped."""
-
-    def inertia(self, tensor: Array) -> Array:
-        """Its eigenvalues on the diagonal."""
-        return np.diag(np.linalg.eigvalsh(tensor))
+    return np.diag(np.linalg.eigvalsh(tensor))
 
 
-@fault("model", "model", "full-inertia")
-class InertiaProductsReversed(OtherInertia):
+@other_inertia("full-inertia", named="products of inertia have the wrong sign")
+def InertiaProductsReversed(tensor: Array) -> Array:
     """The products of inertia have the other sign."""
-
-    def inertia(self, tensor: Array) -> Array:
-        """Off the diagonal, the other sign."""
-        return np.asarray(2 * np.diag(np.diag(tensor)) - tensor)
+    return np.asarray(2 * np.diag(np.diag(tensor)) - tensor)
 
 
-@fault("model", "model", "full-inertia")
-class InertiaTransposedAxes(OtherInertia):
+@other_inertia("full-inertia", named="principal axes looks transposed")
+def InertiaTransposedAxes(tensor: Array) -> Array:
     """The principal axes' rotation is transposed: ``R^T D R`` stands for ``R D R^T``."""
-
-    def inertia(self, tensor: Array) -> Array:
-        """The same moments about axes turned the other way."""
-        moments, axes = np.linalg.eigh(tensor)
-        return np.asarray(axes.T @ np.diag(moments) @ axes)
+    moments, axes = np.linalg.eigh(tensor)
+    return np.asarray(axes.T @ np.diag(moments) @ axes)
 
 
-@fault("model", "model", "asymmetric")
-class InertiaPermuted(OtherInertia):
+@other_inertia("asymmetric", named="the inertia's axes are permuted")
+def InertiaPermuted(tensor: Array) -> Array:
     """The inertia's axes are permuted."""
-
-    def inertia(self, tensor: Array) -> Array:
-        """X for z, y for x, z for y."""
-        permuted: Array = tensor[np.ix_(NEXT_AXIS, NEXT_AXIS)]
-        return permuted
+    permuted: Array = tensor[np.ix_(NEXT_AXIS, NEXT_AXIS)]
+    return permuted
 
 
-@fault("model", "model")
-class InertiaInverted(OtherInertia):
+@other_inertia(named="the inertia is inverted")
+def InertiaInverted(tensor: Array) -> Array:
     """The inertia is inverted: its reciprocal tensor is used."""
-
-    def inertia(self, tensor: Array) -> Array:
-        """The inverse, in 1/(kg m^2) and taken for kg m^2."""
-        return np.linalg.inv(tensor)
+    return np.linalg.inv(tensor)
 
 
-@fault("model", "model")
-class InertiaSlightlyOff(OtherInertia):
+@other_inertia(named="the inertia is 1.001 times")
+def InertiaSlightlyOff(tensor: Array) -> Array:
     """The inertia is 0.1 % too large, which a free body's omega cannot show."""
-
-    def inertia(self, tensor: Array) -> Array:
-        """A thousandth more."""
-        return 1.001 * tensor
+    return 1.001 * tensor
 
 
-@fault("model", "model", "offset")
-class InertiaAboutOrigin(OtherBody):
+@other_body("offset", named="the inertia is about the body's origin")
+def InertiaAboutOrigin(body: Body) -> Body:
     """The inertia is that about the body's origin instead of the centre of mass."""
-
-    def body(self, body: Body) -> Body:
-        """The parallel axis added once too often."""
-        shifted = body.inertia + parallel_axis(body.mass, body.center_of_mass)
-        return replace(body, inertia=shifted)
+    shifted = body.inertia + parallel_axis(body.mass, body.center_of_mass)
+    return replace(body, inertia=shifted)
 
 
-@fault("model", "equation", "asymmetric")
+@fault("model", "equation", "asymmetric", named="those of another inertia")
 class InertiaUnseen(OtherInertia):
     """One moment is 0.1 % off in the dynamics, and the model reads back as requested."""
 
@@ -126,28 +107,19 @@ class InertiaUnseen(OtherInertia):
         return self.system.bodies
 
 
-@fault("model", "model")
-class MassSlightlyOff(OtherBody):
+@other_body(named="the mass is 1.001 times")
+def MassSlightlyOff(body: Body) -> Body:
     """The mass is 0.1 % too large."""
-
-    def body(self, body: Body) -> Body:
-        """A thousandth more, the inertia as requested."""
-        return replace(body, mass=1.001 * body.mass)
+    return replace(body, mass=1.001 * body.mass)
 
 
-@fault("model", "model", "offset")
-class CenterOfMassIgnored(OtherBody):
+@other_body("offset", named="the centre of mass is ignored")
+def CenterOfMassIgnored(body: Body) -> Body:
     """The centre of mass is put at the body's origin."""
-
-    def body(self, body: Body) -> Body:
-        """No offset."""
-        return replace(body, center_of_mass=np.zeros_like(body.center_of_mass))
+    return replace(body, center_of_mass=np.zeros_like(body.center_of_mass))
 
 
-@fault("model", "model", "offset")
-class CenterOfMassMirrored(OtherBody):
+@other_body("offset", named="the centre of mass has the wrong sign")
+def CenterOfMassMirrored(body: Body) -> Body:
     """The centre of mass lies on the other side of the body's origin."""
-
-    def body(self, body: Body) -> Body:
-        """The offset from the centre of mass taken for that to it."""
-        return replace(body, center_of_mass=-body.center_of_mass)
+    return replace(body, center_of_mass=-body.center_of_mass)

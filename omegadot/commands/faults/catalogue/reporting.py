@@ -7,37 +7,33 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
-from omegadot.commands.faults.catalogue.stepping import StepEnds
+from omegadot.commands.faults.catalogue.logging import Run, logged, other_run, rows
+from omegadot.commands.faults.catalogue.stepping import long_step_end, step_end
 from omegadot.commands.faults.fault import Spoiled, fault
 from omegadot.diagnosis import step_ends
 from omegadot.gates.scales import norm
-from omegadot.reference_impl.motion import AccelerationOf
 from omegadot.reference_impl.rotations import normalize, turn_in_body
 from omegadot.reference_impl.system import Acceleration, Array, State
 
 JITTER = 1e-9  # of omega
 DRIFT = 1e-9  # of the clock
-DIGITS = 9
 MOST = 0.5  # rad/s, of a component
 
 
-@fault("logging", "scheme")
-class AttitudeAtHalfStep(Spoiled):
+@other_run("logging", "scheme", named="the attitude reported is that of half a step before")
+def AttitudeAtHalfStep(
+    run: Run, initial: State, timestep: float, steps: int, every: int
+) -> Trajectory:
     """The attitude reported is that of half a step before."""
-
-    def run(
-        self, initial: State, integrator: str, timestep: float, steps: int, every: int
-    ) -> Trajectory:
-        """Turned back by half a step, but for the start."""
-        found = super().run(initial, integrator, timestep, steps, every)
-        back = turn_in_body(
-            found.state.orientation[1:], found.state.angular_velocity[1:], -0.5 * timestep
-        )
-        reported = np.concatenate([found.state.orientation[:1], back])
-        return Trajectory(found.time, replace(found.state, orientation=reported))
+    found = run(initial, timestep, steps, every)
+    back = turn_in_body(
+        found.state.orientation[1:], found.state.angular_velocity[1:], -0.5 * timestep
+    )
+    reported = np.concatenate([found.state.orientation[:1], back])
+    return Trajectory(found.time, replace(found.state, orientation=reported))
 
 
-@fault("logging", "scheme", "asymmetric")
+@fault("logging", "scheme", "asymmetric", named="omega is reported as of half a step before")
 class OmegaAtHalfStep(Spoiled):
     """omega is that of half a step before."""
 
@@ -52,16 +48,13 @@ class OmegaAtHalfStep(Spoiled):
         return Trajectory(found.time, replace(found.state, angular_velocity=w))
 
 
-@fault("logging", "trajectory")
-class ClockDrifts(Spoiled):
+@logged("trajectory", named="the clock runs 1e-09 too slow")
+def ClockDrifts(trajectory: Trajectory) -> Trajectory:
     """The clock runs slow by a part in 1e9."""
-
-    def logged(self, trajectory: Trajectory) -> Trajectory:
-        """Later and later."""
-        return Trajectory(trajectory.time * (1.0 + DRIFT), trajectory.state)
+    return Trajectory(trajectory.time * (1.0 + DRIFT), trajectory.state)
 
 
-@fault("logging", "scheme")
+@fault("logging", "scheme", named="omega alone is wrong in the run")
 class OmegaJitters(Spoiled):
     """Noise of a part in 1e9 lies on omega."""
 
@@ -75,48 +68,37 @@ class OmegaJitters(Spoiled):
         return Trajectory(trajectory.time, reported)
 
 
-@fault("logging", "scheme")
-class OneSampleTwice(Spoiled):
+@logged("scheme", named="the one before, reported twice")
+def OneSampleTwice(trajectory: Trajectory) -> Trajectory:
     """One sample in the middle of a run is reported twice, and the next is not."""
-
-    def logged(self, trajectory: Trajectory) -> Trajectory:
-        """The middle once more."""
-        which = np.arange(len(trajectory.time))
-        which[len(which) // 2] -= 1
-        state = State(*(values[which] for values in vars(trajectory.state).values()))
-        return Trajectory(trajectory.time, state)
+    which = np.arange(len(trajectory.time))
+    which[len(which) // 2] -= 1
+    return Trajectory(trajectory.time, rows(trajectory.state, which))
 
 
-@fault("logging", "scheme")
-class NineDigits(Spoiled):
+@logged("scheme", named="have 9 digits")
+def NineDigits(trajectory: Trajectory) -> Trajectory:
     """What is reported of a run went through text of nine digits."""
-
-    def logged(self, trajectory: Trajectory) -> Trajectory:
-        """Printed and read."""
-        fields = {k: digits(v, DIGITS) for k, v in vars(trajectory.state).items()}
-        return Trajectory(trajectory.time, State(**fields))
+    rounded = np.vectorize(lambda value: float(f"{value:.9g}"))
+    return Trajectory(trajectory.time, State(*map(rounded, vars(trajectory.state).values())))
 
 
-def digits(values: Array, count: int) -> Array:
-    """Numbers as text of so many significant digits reports them."""
-    reported = [float(f"{value:.{count}g}") for value in np.ravel(values)]
-    return np.reshape(np.array(reported), np.shape(values))
-
-
-@fault("logging", "trajectory")
-class StartInSinglePrecision(Spoiled):
+@other_run("logging", "trajectory", named="is sound from where it begins")
+def StartInSinglePrecision(
+    run: Run, initial: State, timestep: float, steps: int, every: int
+) -> Trajectory:
     """Runs begin at the state rounded to single precision, and are sound from there."""
-
-    def run(
-        self, initial: State, integrator: str, timestep: float, steps: int, every: int
-    ) -> Trajectory:
-        """From the rounded state."""
-        fields = {k: v.astype(np.float32).astype(float) for k, v in vars(initial).items()}
-        fields["orientation"] = normalize(fields["orientation"])
-        return super().run(State(**fields), integrator, timestep, steps, every)
+    fields = {k: v.astype(np.float32).astype(float) for k, v in vars(initial).items()}
+    fields["orientation"] = normalize(fields["orientation"])
+    return run(State(**fields), timestep, steps, every)
 
 
-@fault("logging", "trajectory", "asymmetric")
+@fault(
+    "logging",
+    "trajectory",
+    "asymmetric",
+    named="the omega-dot reported along the run is that of the sample before",
+)
 class OmegaDotOfTheSampleBefore(Spoiled):
     """The omega-dot reported along a run is that of the sample before; it is right when queried."""
 
@@ -144,53 +126,33 @@ class OmegaDotOfTheSampleBefore(Spoiled):
         return Acceleration(angular, found.linear)
 
 
-@fault("stepping", "trajectory", "free")
-class NormInSinglePrecision(StepEnds):
+@long_step_end("trajectory", "free", named="not of unit length")
+def NormInSinglePrecision(before: State, after: State, dt: float | Array) -> State:
     """The quaternion is made unit with a norm of single precision."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """As long as the straight step's quaternion over its rounded norm."""
-        length = norm(step_ends.straight_quaternion(before, after, dt).orientation)[..., None]
-        rounded = np.asarray(length.astype(np.float32), dtype=float)
-        return replace(after, orientation=normalize(after.orientation) * (length / rounded))
-
-    def acceleration(self) -> AccelerationOf:
-        """Evaluated at the unit quaternion of the same direction, as engines do."""
-        sound = self.sound_acceleration()
-        return lambda state: sound(replace(state, orientation=normalize(state.orientation)))
+    length = norm(step_ends.straight_quaternion(before, after, dt).orientation)[..., None]
+    rounded = np.asarray(length.astype(np.float32), dtype=float)
+    return replace(after, orientation=normalize(after.orientation) * (length / rounded))
 
 
-@fault("stepping", "scheme", "fast")
-class OmegaClampedByComponent(StepEnds):
+@step_end("scheme", "fast", named="each component of omega is held within 0.5")
+def OmegaClampedByComponent(before: State, after: State, dt: float | Array) -> State:
     """Each component of omega is held within 0.5 rad/s."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """No component beyond it."""
-        return step_ends.clipped_at(MOST)(before, after, dt)
+    return step_ends.clipped_at(MOST)(before, after, dt)
 
 
-@fault("stepping", "scheme", "free")
-class VelocityIsDamped(StepEnds):
+@step_end("scheme", "free", named="the linear velocity")
+def VelocityIsDamped(before: State, after: State, dt: float | Array) -> State:
     """The linear velocity loses a part in 1e6 in every step."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """A little slower."""
-        return replace(after, linear_velocity=(1.0 - 1e-6) * after.linear_velocity)
+    return replace(after, linear_velocity=(1.0 - 1e-6) * after.linear_velocity)
 
 
-@fault("stepping", "scheme")
-class AttitudeInSinglePrecision(StepEnds):
+@step_end("scheme", named="attitude is kept in single precision")
+def AttitudeInSinglePrecision(before: State, after: State, dt: float | Array) -> State:
     """The attitude alone is kept in single precision."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """Rounded."""
-        return replace(after, orientation=after.orientation.astype(np.float32).astype(float))
+    return replace(after, orientation=after.orientation.astype(np.float32).astype(float))
 
 
-@fault("stepping", "scheme", "free gravity")
-class PositionByFirstVelocity(StepEnds):
+@step_end("scheme", "free gravity", named="the position alone is wrong")
+def PositionByFirstVelocity(before: State, after: State, dt: float | Array) -> State:
     """The position goes with the velocity at the beginning of a step."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """One velocity for the whole step."""
-        return replace(after, position=before.position + dt * before.linear_velocity)
+    return replace(after, position=before.position + dt * before.linear_velocity)

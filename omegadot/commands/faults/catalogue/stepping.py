@@ -1,14 +1,18 @@
 """Faults of the stepping: the equation is right, and what is made of it is not."""
 
+# ruff: noqa: D403  (omega is a symbol)
+
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
 from omegadot.commands.faults.catalogue.load import ExtraTorque
-from omegadot.commands.faults.fault import Spoiled, fault
+from omegadot.commands.faults.catalogue.logging import Run, other_run
+from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.diagnosis import step_ends
 from omegadot.gates.scales import norm
@@ -18,16 +22,16 @@ from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.motion import AccelerationOf
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
-from omegadot.reference_impl.system import Acceleration, Array, State
+from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 SECRET_DAMPING = 1e-4  # N m s/rad
 
 
-@fault("stepping", "scheme")
+@fault("stepping", "scheme", named="a damping of 0.0001")
 class SecretDamping(ExtraTorque):
     """A damping of 1e-4 N m s/rad that was not requested acts in the steps."""
 
-    def torque(self, state: State) -> Array:
+    def torque(self, system: System, state: State) -> Array:
         """Against omega."""
         return -SECRET_DAMPING * state.angular_velocity
 
@@ -48,22 +52,8 @@ class StepEnds(Restepped):
         return step_ends.with_end(declared, self.end)
 
 
-@fault("stepping", "scheme")
-class AttitudeLeftMultiplied(StepEnds):
-    """The attitude's change in body axes is multiplied from the left."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """The change from the left."""
-        return step_ends.left_multiplied(before, after, dt)
-
-
-@fault("stepping", "scheme")
-class QuaternionDrifts(StepEnds):
-    """The attitude is stepped as ``q + h/2 q omega`` and never normalised."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """A straight step of the quaternion."""
-        return step_ends.straight_quaternion(before, after, dt)
+class LongStepEnds(StepEnds):
+    """The same where `end` makes quaternions that are not of unit length."""
 
     def acceleration(self) -> AccelerationOf:
         """Evaluated at the unit quaternion of the same direction, as engines do."""
@@ -71,43 +61,47 @@ class QuaternionDrifts(StepEnds):
         return lambda state: sound(replace(state, orientation=normalize(state.orientation)))
 
 
-@fault("stepping", "scheme", "order-4")
-class AttitudeByLastOmega(StepEnds):
+step_end = partial(fault_by, StepEnds, "end", "stepping")
+long_step_end = partial(fault_by, LongStepEnds, "end", "stepping")
+
+
+@step_end("scheme", named="multiplied from the left")
+def AttitudeLeftMultiplied(before: State, after: State, dt: float | Array) -> State:
+    """The attitude's change in body axes is multiplied from the left."""
+    return step_ends.left_multiplied(before, after, dt)
+
+
+@long_step_end("scheme", named="q + h/2 q omega and not normalised")
+def QuaternionDrifts(before: State, after: State, dt: float | Array) -> State:
+    """The attitude is stepped as ``q + h/2 q omega`` and never normalised."""
+    return step_ends.straight_quaternion(before, after, dt)
+
+
+@step_end("scheme", "order-4", named="the attitude turns by the step's last omega")
+def AttitudeByLastOmega(before: State, after: State, dt: float | Array) -> State:
     """The attitude turns by the step's last omega, whatever the scheme made of omega."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """The exponential of the end's omega."""
-        return step_ends.turned_by_last_omega(before, after, dt)
+    return step_ends.turned_by_last_omega(before, after, dt)
 
 
-@fault("stepping", "scheme")
-class SinglePrecision(StepEnds):
+@step_end("scheme", named="single precision")
+def SinglePrecision(before: State, after: State, dt: float | Array) -> State:
     """The state is kept in single precision."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """Rounded."""
-        return step_ends.single_precision(before, after, dt)
+    return step_ends.single_precision(before, after, dt)
 
 
-@fault("stepping", "scheme", "slow")
-class FallsAsleep(StepEnds):
+@step_end("scheme", "slow", named="the body is put to sleep")
+def FallsAsleep(before: State, after: State, dt: float | Array) -> State:
     """Below 0.05 rad/s the body is put to rest."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """At rest."""
-        return step_ends.asleep_below(SLEEPY)(before, after, dt)
+    return step_ends.asleep_below(SLEEPY)(before, after, dt)
 
 
-@fault("stepping", "scheme", "fast")
-class OmegaClamped(StepEnds):
+@step_end("scheme", "fast", named="omega is held below 1 rad/s")
+def OmegaClamped(before: State, after: State, dt: float | Array) -> State:
     """omega is held below 1 rad/s."""
-
-    def end(self, before: State, after: State, dt: float | Array) -> State:
-        """No faster than the limit."""
-        return step_ends.held_below(FASTEST)(before, after, dt)
+    return step_ends.held_below(FASTEST)(before, after, dt)
 
 
-@fault("stepping", "scheme", "torque-free")
+@fault("stepping", "scheme", "torque-free", named="rescaled so that the kinetic energy")
 class EnergyCorrected(Spoiled):
     """omega is rescaled so that the kinetic energy of rotation looks conserved."""
 
@@ -121,7 +115,7 @@ class EnergyCorrected(Spoiled):
         return Trajectory(trajectory.time, replace(state, angular_velocity=w))
 
 
-@fault("stepping", "scheme", "torque-free")
+@fault("stepping", "scheme", "torque-free", named="rescaled so that the angular momentum")
 class MomentumCorrected(Spoiled):
     """omega is rescaled so that the size of the angular momentum looks conserved."""
 
@@ -133,19 +127,16 @@ class MomentumCorrected(Spoiled):
         return Trajectory(trajectory.time, replace(state, angular_velocity=w))
 
 
-@fault("stepping", "scheme")
-class StepSlightlyLong(Spoiled):
+@other_run("stepping", "scheme", named="steps are 0.1 % too long")
+def StepSlightlyLong(
+    run: Run, initial: State, timestep: float, steps: int, every: int
+) -> Trajectory:
     """Steps are 0.1 % longer than requested."""
-
-    def run(
-        self, initial: State, integrator: str, timestep: float, steps: int, every: int
-    ) -> Trajectory:
-        """As requested, with a longer step under the same times."""
-        found = super().run(initial, integrator, 1.001 * timestep, steps, every)
-        return Trajectory(found.time / 1.001, found.state)
+    found = run(initial, 1.001 * timestep, steps, every)
+    return Trajectory(found.time / 1.001, found.state)
 
 
-@fault("stepping", "scheme", "order-4")
+@fault("stepping", "scheme", "order-4", named="it is stepped by semi-implicit-euler")
 class EulerAsRungeKutta(Restepped):
     """Runge-Kutta of order 4 is declared, and semi-implicit Euler is stepped."""
 
@@ -154,7 +145,7 @@ class EulerAsRungeKutta(Restepped):
         return SCHEMES["semi-implicit-euler"]
 
 
-@fault("stepping", "scheme", "order-4")
+@fault("stepping", "scheme", "order-4", named="it is stepped by lie-rk4-naive")
 class AttitudeOfOrderTwo(Restepped):
     """The attitude is of order 2 under a declared 4: the stages' rotations do not commute."""
 
