@@ -15,9 +15,8 @@ import pytest
 from omegadot.adapters.protocol import Adapter, Description, Integrator, Trajectory
 from omegadot.adapters.reference.adapter import FEATURES, ReferenceAdapter
 from omegadot.commands.faults.catalogue.every import FAULTS
-from omegadot.commands.faults.detect import Judgement, judge
+from omegadot.commands.faults.detect import Judgement, Nameless, judge, without_scheme
 from omegadot.commands.faults.prepared import Pool
-from omegadot.commands.faults.undeclared import Nameless, without_scheme
 from omegadot.gates.case import Sweep
 from omegadot.gates.restart import restart_of
 from omegadot.reference_impl.coordinates import from_coordinates

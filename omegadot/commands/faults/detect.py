@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from omegadot.adapters.protocol import Adapter, Integrator
+from omegadot.adapters.protocol import Adapter, Description, Integrator
+from omegadot.commands.faults.fault import Spoiled
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.rows import Row
 from omegadot.gates.verdicts import UNDECIDED
@@ -27,6 +28,31 @@ class Judgement:
     rows: tuple[Row, ...]
     result: CaseResult
     runs: tuple[JudgedRun, ...]
+
+    @property
+    def accused(self) -> bool:
+        """Whether a gate failed, or an answer did."""
+        return bool(self.failed) or bool(self.broken)
+
+
+class Nameless(Spoiled):
+    """An engine whose integrators declare their orders and no scheme, otherwise as it is."""
+
+    @property
+    def description(self) -> Description:
+        """The engine's, without its schemes."""
+        found = self.inner.description
+        return replace(found, integrators=tuple(map(without_scheme, found.integrators)))
+
+
+def without_scheme(integrator: Integrator) -> Integrator:
+    """The integrator with its orders alone."""
+    return replace(integrator, scheme=None)
+
+
+def nameless_integrators(engine: Adapter) -> tuple[Integrator, ...]:
+    """Those by which an engine with declared schemes is judged, without them."""
+    return tuple(map(without_scheme, chosen_integrators(engine.description.integrators)))
 
 
 def chosen_integrators(integrators: tuple[Integrator, ...]) -> tuple[Integrator, ...]:

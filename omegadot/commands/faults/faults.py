@@ -26,12 +26,7 @@ class FaultsResult:
     @property
     def unseen(self) -> tuple[str, ...]:
         """The faults that no gate catches on some body, as ``engine: fault``."""
-        return tuple(
-            f"{matrix.engine}: {row.fault.name}"
-            for matrix in self.matrices
-            for row in matrix.rows
-            if row.judged and row.any < 1.0
-        )
+        return tuple(f"{m.engine}: {name}" for m in self.matrices for name in m.missed)
 
     @property
     def passed(self) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -14,12 +14,18 @@ import numpy as np
 from omegadot.adapters.protocol import Adapter, Integrator
 from omegadot.adapters.registry import BUILT_IN, build_adapter
 from omegadot.commands.faults.catalogue.every import ORDERED
-from omegadot.commands.faults.detect import GATES, Judgement, chosen_integrators, judge
+from omegadot.commands.faults.detect import (
+    GATES,
+    Judgement,
+    Nameless,
+    chosen_integrators,
+    judge,
+    nameless_integrators,
+)
 from omegadot.commands.faults.fault import Fault
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.commands.faults.published import Published
 from omegadot.commands.faults.published_checks import PUBLISHED
-from omegadot.commands.faults.undeclared import Nameless, nameless_integrators
 from omegadot.diagnosis.diagnose import diagnose
 
 OF_ENGINE = frozenset({"order-4"})  # needs that are an engine's, not a scenario's
@@ -65,6 +71,11 @@ class EngineMatrix:
     published_accuse: tuple[str, ...]
     rows: tuple[Detection, ...]
 
+    @property
+    def missed(self) -> list[str]:
+        """The faults that no gate catches on some body."""
+        return [row.fault.name for row in self.rows if row.judged and row.any < 1.0]
+
 
 @contextmanager
 def quiet_engines() -> Iterator[None]:
@@ -85,65 +96,64 @@ def engine_matrix(engine: str, pool: Pool, bodies: int) -> EngineMatrix:
     sound = build_adapter(BUILT_IN[engine])
     chosen = chosen_integrators(sound.description.integrators)
     has = OF_ENGINE if any(i.orders["attitude"] == 4 for i in chosen) else frozenset()
-    count = SOUND * bodies
-    accused = sum(_fails(pool, pool.prepare(n), engine, sound) for n in range(count))
+    cases = [pool.prepare(number) for number in range(SOUND * bodies)]
     bare, without = Nameless(sound), nameless_integrators(sound)
-    accused_bare = sum(_fails(pool, pool.prepare(n), engine, bare, without) for n in range(count))
     usable = [check for check in PUBLISHED if check.integrator_of(sound)]
-    accusing = tuple(c.name for c in usable if _score(c, sound, sound, pool.seed, bodies) > 0.0)
-    missing = [one.name for one in ORDERED if not one.needs & OF_ENGINE <= has]
-    rows = [detection(one, engine, pool, bodies) for one in ORDERED if one.needs & OF_ENGINE <= has]
-    names = tuple(integrator.name for integrator in chosen)
-    version = sound.description.version
+    suited = [one for one in ORDERED if one.needs & OF_ENGINE <= has]
     return EngineMatrix(
-        engine, version, names, count, accused, accused_bare, tuple(missing), accusing, tuple(rows)
+        engine=engine,
+        version=sound.description.version,
+        integrators=tuple(integrator.name for integrator in chosen),
+        sound=len(cases),
+        accused=sum(judge(pool, case, engine, sound).accused for case in cases),
+        accused_nameless=sum(judge(pool, case, engine, bare, without).accused for case in cases),
+        skipped=tuple(one.name for one in ORDERED if one not in suited),
+        published_accuse=tuple(
+            check.name for check in usable if _fails_sound(check, engine, pool.seed, bodies)
+        ),
+        rows=tuple(detection(one, engine, pool, bodies) for one in suited),
     )
 
 
-def _fails(
-    pool: Pool,
-    prepared: Prepared,
-    engine: str,
-    adapter: Adapter,
-    integrators: tuple[Integrator, ...] = (),
-) -> bool:
-    found = judge(pool, prepared, engine, adapter, integrators)
-    return bool(found.failed) or bool(found.broken)
-
-
 def detection(fault: Fault, engine: str, pool: Pool, bodies: int) -> Detection:
-    """One fault over one engine, on the first bodies that have what it needs.
-
-    The engine has been loaded with another body before, as in any run of several scenarios.
-    """
-    adapter = fault.wrap(build_adapter(BUILT_IN[engine]))
+    """One fault over one engine, on the first bodies that have what it needs."""
+    adapter, bare = (fault.wrap(build_adapter(BUILT_IN[engine])) for _ in range(2))
     numbers = pool.having(fault.needs - OF_ENGINE, bodies)
-    adapter.load(pool.prepare(numbers[-1] + 1).case.system)
-    found = [(n, judge(pool, pool.prepare(n), engine, adapter)) for n in numbers]
-    judged = [(n, one) for n, one in found if not one.broken]
-    count = max(1, len(judged))
+    judged = _judged(pool, numbers, engine, adapter)
+    nameless = _judged(pool, numbers, engine, Nameless(bare), nameless_integrators(bare.inner))
     return Detection(
         fault=fault,
         judged=len(judged),
-        broken=len(found) - len(judged),
-        gates={gate: sum(gate in one.failed for _, one in judged) / count for gate in GATES},
-        any=sum(bool(one.failed) for _, one in judged) / count,
-        named=sum(_named(fault, pool.prepare(n), one) for n, one in judged) / count,
-        no_scheme=_caught_nameless(fault, engine, pool, numbers),
+        broken=len(numbers) - len(judged),
+        gates={gate: _share(gate in one.failed for one in judged.values()) for gate in GATES},
+        any=_share(bool(one.failed) for one in judged.values()),
+        named=_share(_named(fault, pool.prepare(n), one) for n, one in judged.items()),
+        no_scheme=_share(bool(one.failed) for one in nameless.values()),
         published={
-            check.name: _published(check, fault, engine, pool, bodies) for check in PUBLISHED
+            check.name: _published(check, fault, engine, pool.seed, bodies) for check in PUBLISHED
         },
     )
 
 
-def _caught_nameless(fault: Fault, engine: str, pool: Pool, numbers: list[int]) -> float:
-    """The share of bodies on which the fault is caught without a declared scheme."""
-    sound = build_adapter(BUILT_IN[engine])
-    adapter, integrators = Nameless(fault.wrap(sound)), nameless_integrators(sound)
+def _judged(
+    pool: Pool,
+    numbers: list[int],
+    engine: str,
+    adapter: Adapter,
+    integrators: tuple[Integrator, ...] = (),
+) -> dict[int, Judgement]:
+    """By the number of a case, those that the engine answers for.
+
+    The engine has been loaded with another body before, as in any run of several scenarios.
+    """
     adapter.load(pool.prepare(numbers[-1] + 1).case.system)
-    found = [judge(pool, pool.prepare(n), engine, adapter, integrators) for n in numbers]
-    judged = [one for one in found if not one.broken]
-    return sum(bool(one.failed) for one in judged) / max(1, len(judged))
+    found = {n: judge(pool, pool.prepare(n), engine, adapter, integrators) for n in numbers}
+    return {n: one for n, one in found.items() if not one.broken}
+
+
+def _share(caught: Iterable[bool]) -> float:
+    every = list(caught)
+    return sum(every) / max(1, len(every))
 
 
 def _named(fault: Fault, prepared: Prepared, judgement: Judgement) -> bool:
@@ -153,13 +163,13 @@ def _named(fault: Fault, prepared: Prepared, judgement: Judgement) -> bool:
     return fault.is_named(causes)
 
 
-def _published(check: Published, fault: Fault, engine: str, pool: Pool, poses: int) -> float | None:
+def _published(check: Published, fault: Fault, engine: str, seed: int, poses: int) -> float | None:
     adapter = fault.wrap(build_adapter(BUILT_IN[engine]))
     if not fault.needs <= check.has or check.integrator_of(adapter.inner) is None:
         return None
-    if _fails_sound(check, engine, pool.seed, poses):
+    if _fails_sound(check, engine, seed, poses):
         return None
-    return _score(check, adapter, adapter.inner, pool.seed, poses)
+    return _score(check, adapter, adapter.inner, seed, poses)
 
 
 @cache
@@ -173,8 +183,6 @@ def _score(check: Published, adapter: Adapter, sound: Adapter, seed: int, poses:
     """The share of attitudes from which a check's bounds are broken."""
     integrator = check.integrator_of(sound)
     assert integrator is not None
-    caught = 0
+    draws = (np.random.default_rng([seed, pose]) for pose in range(poses))
     with np.errstate(all="ignore"):
-        for pose in range(poses):
-            caught += check.caught(adapter, integrator, np.random.default_rng([seed, pose]))
-    return caught / poses
+        return _share(check.caught(adapter, integrator, random) for random in draws)

@@ -10,14 +10,7 @@ from omegadot.commands.faults.detect import GATES
 from omegadot.commands.faults.matrix import Detection, EngineMatrix
 from omegadot.commands.faults.published_checks import PUBLISHED
 
-HEADS = (
-    "fault",
-    *GATES,
-    "any gate",
-    "cause named",
-    "no scheme",
-    *(check.name for check in PUBLISHED),
-)
+HEADS = ("fault", *GATES, "any gate", "cause named", "no scheme", *(c.name for c in PUBLISHED))
 
 
 @dataclass(frozen=True)
@@ -44,32 +37,21 @@ def share(value: float | None) -> str:
 
 def line_of(row: Detection) -> tuple[str, ...]:
     """One fault's line."""
-    gates = (share(row.gates[gate]) for gate in GATES)
-    published = (share(row.published[check.name]) for check in PUBLISHED)
-    return (
-        row.fault.name,
-        *gates,
-        share(row.any),
-        share(row.named),
-        share(row.no_scheme),
-        *published,
-    )
+    shares = (*row.gates.values(), row.any, row.named, row.no_scheme, *row.published.values())
+    return (row.fault.name, *map(share, shares))
 
 
 def summary_of(matrix: EngineMatrix) -> list[str]:
     """The table in sentences, one a line."""
     rows = matrix.rows
-    missed = [row.fault.name for row in rows if row.judged and row.any < 1.0]
     unseen = [row.fault.name for row in rows if row.judged and row.no_scheme < 1.0]
     named = sum(row.judged > 0 and row.named == 1.0 for row in rows)
     integrators = " and ".join(matrix.integrators)
     lines = [
         f"{matrix.engine} {matrix.version}, {integrators}: {len(rows)} faults, of which "
-        f"{len(rows) - len(missed)} were caught on every body"
-        + (f"; not always: {', '.join(missed)}." if missed else "."),
+        f"{_caught(matrix, matrix.missed)}",
         f"The cause was named on every body for {named} of them.",
-        f"Without a declared scheme, {len(rows) - len(unseen)} were caught on every body"
-        + (f"; not always: {', '.join(unseen)}." if unseen else "."),
+        f"Without a declared scheme, {_caught(matrix, unseen)}",
         f"Without a fault, {matrix.accused} of {matrix.sound} bodies were accused, and without a "
         f"declared scheme {matrix.accused_nameless}.",
     ]
@@ -83,22 +65,20 @@ def summary_of(matrix: EngineMatrix) -> list[str]:
     return lines
 
 
+def _caught(matrix: EngineMatrix, missed: list[str]) -> str:
+    more = f"; not always: {', '.join(missed)}." if missed else "."
+    return f"{len(matrix.rows) - len(missed)} were caught on every body{more}"
+
+
 def plain(settings: Settings, matrices: Sequence[EngineMatrix]) -> dict[str, Any]:
     """Everything, for machines."""
-    return {
-        "bodies": settings.bodies,
-        "seed": settings.seed,
-        "published": [
-            {"name": check.name, "bound": check.bound, "source": check.source}
-            for check in PUBLISHED
-        ],
-        "engines": [_plain_engine(matrix) for matrix in matrices],
-    }
-
-
-def _plain_engine(matrix: EngineMatrix) -> dict[str, Any]:
-    kept = {k: v for k, v in vars(matrix).items() if k != "rows"}
-    return {**kept, "faults": [_plain_row(row) for row in matrix.rows]}
+    checks = [{"name": c.name, "bound": c.bound, "source": c.source} for c in PUBLISHED]
+    engines = []
+    for matrix in matrices:
+        kept = {k: v for k, v in vars(matrix).items() if k != "rows"}
+        engines.append({**kept, "faults": [_plain_row(row) for row in matrix.rows]})
+    found = {"bodies": settings.bodies, "seed": settings.seed}
+    return {**found, "published": checks, "engines": engines}
 
 
 def _plain_row(row: Detection) -> dict[str, Any]:

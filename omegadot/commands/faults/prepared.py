@@ -22,10 +22,9 @@ MOST_DRAWN = 1000  # for each case that is wanted: rarer features are as good as
 
 @dataclass(frozen=True)
 class Prepared:
-    """A case with its features, its exact trajectory and its evaluation states."""
+    """A case with its exact trajectory and its evaluation states."""
 
     case: Case
-    features: frozenset[str]
     truth: Truth
     evaluation_states: EvaluationStates
 
@@ -49,12 +48,12 @@ class Pool:
     def prepare(self, index: int) -> Prepared:
         """The case of this number, solved. Raises RuntimeError where it has no exact trajectory."""
         if index not in self._prepared:
-            case, features = self._draw(index)
+            case, _ = self._draw(index)
             truth = case_truth(self._exact, case)
             if isinstance(truth, str):
                 raise RuntimeError(f"{case.name}: {truth}")
             evaluation_states = evaluation_states_of(case, truth, self.seed)
-            self._prepared[index] = Prepared(case, features, truth, evaluation_states)
+            self._prepared[index] = Prepared(case, truth, evaluation_states)
         return self._prepared[index]
 
     def having(self, needs: Iterable[str], count: int) -> list[int]:

@@ -15,10 +15,12 @@ from functools import partial
 import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
-from omegadot.commands.faults.fault import Spoiled, fault, fault_by
+from omegadot.commands.faults.fault import Spoiled, fault, fault_by, logged
 from omegadot.reference_impl.kinematics import at_point
 from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
 from omegadot.reference_impl.system import State
+
+Way = Callable[[Spoiled, State], State]
 
 
 class Misread(Spoiled):
@@ -43,35 +45,33 @@ class Throughout(Misread):
     ways: what is made of a state on its way in and on its way out, each the inverse of the other.
     """
 
-    ways: tuple[Callable[[State], State], Callable[[State], State]]
+    ways: tuple[Way, Way]
 
     def into(self, state: State) -> State:
         """Misread."""
-        return self.ways[0](state)
+        return self.ways[0](self, state)
 
     def reported(self, state: State) -> State:
         """Misread the same way."""
-        return self.ways[1](state)
+        return self.ways[1](self, state)
 
 
 misread = partial(fault_by, Misread, "reported", "convention", "model")
 
 
 @fault_by(Spoiled, "read_back", "convention", "model", named="omega looks like world axes")
-def OmegaInWorldReadBack(state: State) -> State:
+def OmegaInWorldReadBack(self: Spoiled, state: State) -> State:
     """omega is read back in world axes."""
     return replace(state, angular_velocity=rotate(state.orientation, state.angular_velocity))
 
 
-@fault_by(
-    Spoiled, "logged", "convention", "scheme", named="in the run, omega looks like world axes"
-)
-def OmegaInWorldInRuns(trajectory: Trajectory) -> Trajectory:
+@logged("convention", "scheme", named="in the run, omega looks like world axes")
+def OmegaInWorldInRuns(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """omega is logged in world axes during a run."""
-    return Trajectory(trajectory.time, OmegaInWorldReadBack(trajectory.state))
+    return Trajectory(trajectory.time, OmegaInWorldReadBack(self, trajectory.state))
 
 
-def omega_in_body(state: State) -> State:
+def omega_in_body(self: Spoiled, state: State) -> State:
     """Omega turned from world to body axes."""
     w = rotate_inverse(state.orientation, state.angular_velocity)
     return replace(state, angular_velocity=w)
@@ -89,7 +89,7 @@ class OmegaInWorldThroughout(Throughout):
 
 
 @misread(named="the rotation looks transposed")
-def RotationTransposed(state: State) -> State:
+def RotationTransposed(self: Spoiled, state: State) -> State:
     """The rotation is reported transposed."""
     return replace(state, orientation=conjugate(state.orientation))
 
@@ -102,12 +102,12 @@ class RotationTransposedThroughout(Throughout):
 
 
 @misread(named="the quaternion looks like (x, y, z, w)")
-def QuaternionScalarLast(state: State) -> State:
+def QuaternionScalarLast(self: Spoiled, state: State) -> State:
     """The quaternion is reported as x, y, z, w."""
     return replace(state, orientation=np.roll(state.orientation, -1, axis=-1))
 
 
-def scalar_first(state: State) -> State:
+def scalar_first(self: Spoiled, state: State) -> State:
     """The inverse of `QuaternionScalarLast`."""
     return replace(state, orientation=np.roll(state.orientation, 1, axis=-1))
 
@@ -120,43 +120,32 @@ class QuaternionScalarLastThroughout(Throughout):
 
 
 @misread(named="not of unit length")
-def QuaternionNotUnit(state: State) -> State:
+def QuaternionNotUnit(self: Spoiled, state: State) -> State:
     """The quaternion reported is a millionth too long."""
     return replace(state, orientation=(1.0 + 1e-6) * state.orientation)
 
 
-@fault("convention", "model", "offset", named="the position looks like that of the body's origin")
-class PositionOfOrigin(Misread):
+@misread("offset", named="the position looks like that of the body's origin")
+def PositionOfOrigin(self: Spoiled, state: State) -> State:
     """The position reported is that of the body's origin, not of the centre of mass."""
-
-    def reported(self, state: State) -> State:
-        """At the origin."""
-        return replace(state, position=at_point(state, -self.system.body.center_of_mass).position)
+    return replace(state, position=at_point(state, -self.system.body.center_of_mass).position)
 
 
-@fault(
-    "convention",
-    "model",
-    "offset",
-    named="the linear velocity looks like that of the body's origin",
-)
-class VelocityOfOrigin(Misread):
+@misread("offset", named="the linear velocity looks like that of the body's origin")
+def VelocityOfOrigin(self: Spoiled, state: State) -> State:
     """The velocity reported is that of the body's origin, not of the centre of mass."""
-
-    def reported(self, state: State) -> State:
-        """At the origin."""
-        velocity = at_point(state, -self.system.body.center_of_mass).linear_velocity
-        return replace(state, linear_velocity=velocity)
+    velocity = at_point(state, -self.system.body.center_of_mass).linear_velocity
+    return replace(state, linear_velocity=velocity)
 
 
 @misread("free", named="the linear velocity looks like body axes")
-def VelocityInBodyAxes(state: State) -> State:
+def VelocityInBodyAxes(self: Spoiled, state: State) -> State:
     """The velocity is reported in body axes."""
     velocity = rotate_inverse(state.orientation, state.linear_velocity)
     return replace(state, linear_velocity=velocity)
 
 
 @misread(named="degrees per second")
-def OmegaInDegrees(state: State) -> State:
+def OmegaInDegrees(self: Spoiled, state: State) -> State:
     """omega is reported in degrees per second."""
     return replace(state, angular_velocity=np.rad2deg(state.angular_velocity))

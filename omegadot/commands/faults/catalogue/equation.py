@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from omegadot.commands.faults.catalogue.load import extra_torque
-from omegadot.commands.faults.fault import Spoiled, fault
+from omegadot.commands.faults.fault import Spoiled, fault_by
 from omegadot.diagnosis.restep import on_rows, step_again
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.cross_product import cross
@@ -14,6 +16,9 @@ from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+forward_dynamics = partial(fault_by, Spoiled, "forward_dynamics", "equation", "equation")
+inverse_dynamics = partial(fault_by, Spoiled, "inverse_dynamics", "equation", "equation")
 
 
 def gyroscopic_term(system: System, state: State) -> Array:
@@ -52,57 +57,42 @@ def GyroscopicSlightlyOff(system: System, state: State) -> Array:
     return (1.0 - 1.0001) * gyroscopic_term(system, state)
 
 
-@fault("equation", "equation", "asymmetric", named="omega-dot looks like world axes")
-class OmegaDotInWorld(Spoiled):
+@forward_dynamics("asymmetric", named="omega-dot looks like world axes")
+def OmegaDotInWorld(self: Spoiled, states: State) -> Acceleration:
     """omega-dot is right and reported in world axes."""
-
-    def forward_dynamics(self, states: State) -> Acceleration:
-        """Turned into the world."""
-        found = super().forward_dynamics(states)
-        return Acceleration(rotate(states.orientation, found.angular), found.linear)
+    found = self.inner.forward_dynamics(states)
+    return Acceleration(rotate(states.orientation, found.angular), found.linear)
 
 
-@fault("equation", "equation", "asymmetric", named="omega-dot is the same at every state")
-class OmegaDotConstant(Spoiled):
+@forward_dynamics("asymmetric", named="omega-dot is the same at every state")
+def OmegaDotConstant(self: Spoiled, states: State) -> Acceleration:
     """omega-dot is that of the first state requested, whatever comes after."""
-
-    def forward_dynamics(self, states: State) -> Acceleration:
-        """The first for all."""
-        found = super().forward_dynamics(states)
-        return Acceleration(np.broadcast_to(found.angular[:1], found.angular.shape), found.linear)
+    found = self.inner.forward_dynamics(states)
+    return Acceleration(np.broadcast_to(found.angular[:1], found.angular.shape), found.linear)
 
 
-@fault("equation", "equation", "asymmetric", named="a difference quotient")
-class OmegaDotByDifference(Spoiled):
+@forward_dynamics("asymmetric", named="a difference quotient")
+def OmegaDotByDifference(self: Spoiled, states: State) -> Acceleration:
     """omega-dot is a difference quotient over a short step, passed off as exact."""
-
-    def forward_dynamics(self, states: State) -> Acceleration:
-        """``(omega(t + h) - omega(t)) / h`` with h a ten-thousandth of a radian's time."""
-        found = super().forward_dynamics(states)
-        h = float(1e-4 / np.max(norm(states.angular_velocity)))
-        how = (self.system, on_rows(super().forward_dynamics), SCHEMES["lie-rk4"])
-        moved = step_again(*how, "com-world", states, (h, 1, 1))[1].angular_velocity[-1]
-        quotient = (moved - states.angular_velocity) / h
-        return Acceleration(quotient, found.linear)
+    found = self.inner.forward_dynamics(states)
+    h = float(1e-4 / np.max(norm(states.angular_velocity)))
+    how = (self.system, on_rows(self.inner.forward_dynamics), SCHEMES["lie-rk4"])
+    moved = step_again(*how, "com-world", states, (h, 1, 1))[1].angular_velocity[-1]
+    quotient = (moved - states.angular_velocity) / h
+    return Acceleration(quotient, found.linear)
 
 
-@fault("equation", "equation", "offset", named="acceleration looks like that of the body's origin")
-class AccelerationOfOrigin(Spoiled):
+@forward_dynamics("offset", named="acceleration looks like that of the body's origin")
+def AccelerationOfOrigin(self: Spoiled, states: State) -> Acceleration:
     """The linear acceleration reported is that of the body's origin."""
-
-    def forward_dynamics(self, states: State) -> Acceleration:
-        """Back along the lever to the origin."""
-        found, w = super().forward_dynamics(states), states.angular_velocity
-        c = self.system.body.center_of_mass
-        lever = cross(found.angular, c) + cross(w, cross(w, c))
-        return Acceleration(found.angular, found.linear - rotate(states.orientation, lever))
+    found, w = self.inner.forward_dynamics(states), states.angular_velocity
+    c = self.system.body.center_of_mass
+    lever = cross(found.angular, c) + cross(w, cross(w, c))
+    return Acceleration(found.angular, found.linear - rotate(states.orientation, lever))
 
 
-@fault("equation", "equation", "asymmetric", named="inverse dynamics leave out the gyroscopic term")
-class InverseWithoutGyroscopic(Spoiled):
+@inverse_dynamics("asymmetric", named="inverse dynamics leave out the gyroscopic term")
+def InverseWithoutGyroscopic(self: Spoiled, states: State, acceleration: Acceleration) -> Array:
     """Inverse dynamics leaves out the gyroscopic term; all else is sound."""
-
-    def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
-        """The torque less ``omega x I omega``."""
-        found = super().inverse_dynamics(states, acceleration)
-        return found - gyroscopic_term(self.system, states)
+    found = self.inner.inverse_dynamics(states, acceleration)
+    return found - gyroscopic_term(self.system, states)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
-from omegadot.commands.faults.catalogue.equation import gyroscopic_term
+from omegadot.commands.faults.catalogue.equation import gyroscopic_term, inverse_dynamics
 from omegadot.commands.faults.catalogue.load import extra_torque, other_load
-from omegadot.commands.faults.fault import Spoiled, fault
+from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
@@ -20,6 +21,7 @@ from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 
+FIRST_STEPS = "only the first steps are wrong"
 ASIDE = np.array([1e-6, 0.0, 0.0])  # m
 
 
@@ -70,27 +72,24 @@ class Timed(Restepped):
         return Acceleration(sound.angular + more, sound.linear)
 
 
-@fault("stepping", "scheme", "gravity", named="only the first steps are wrong")
-class GravityOffInFirstStep(Timed):
+first_step = partial(fault_by, Timed, "wrong", "stepping", "scheme", named=FIRST_STEPS)
+
+
+@first_step("gravity")
+def GravityOffInFirstStep(self: Timed, state: State, sound: Acceleration) -> Acceleration:
     """Gravity does not act yet in the first step."""
-
-    def wrong(self, state: State, sound: Acceleration) -> Acceleration:
-        """Without weight."""
-        if self.system.load.pivot is None:
-            return Acceleration(sound.angular, sound.linear - self.system.load.gravity)
-        return self.pushed(sound, -gravity_torque(self.system, state))
+    if self.system.load.pivot is None:
+        return Acceleration(sound.angular, sound.linear - self.system.load.gravity)
+    return self.pushed(sound, -gravity_torque(self.system, state))
 
 
-@fault("stepping", "scheme", "torque", named="only the first steps are wrong")
-class TorqueOneStepLate(Timed):
+@first_step("torque")
+def TorqueOneStepLate(self: Timed, state: State, sound: Acceleration) -> Acceleration:
     """The applied torque acts one step late, and so not at all in the first."""
-
-    def wrong(self, state: State, sound: Acceleration) -> Acceleration:
-        """Without the torque."""
-        return self.pushed(sound, -applied_torque(self.system, state))
+    return self.pushed(sound, -applied_torque(self.system, state))
 
 
-@fault("stepping", "scheme", "asymmetric order-4", named="only the first steps are wrong")
+@fault("stepping", "scheme", "asymmetric order-4", named=FIRST_STEPS)
 class FirstStepByEuler(Timed):
     """The first step is one of Euler's, whatever is declared."""
 
@@ -152,11 +151,8 @@ def TorqueOverMass(system: System, state: State) -> Array:
     return (1.0 / system.body.mass - 1.0) * torque(system, state)
 
 
-@fault("equation", "equation", "pivot gravity", named="inverse dynamics leave out gravity")
-class InverseWithoutGravity(Spoiled):
+@inverse_dynamics("pivot gravity", named="inverse dynamics leave out gravity")
+def InverseWithoutGravity(self: Spoiled, states: State, acceleration: Acceleration) -> Array:
     """Inverse dynamics leave out gravity; all else is sound."""
-
-    def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
-        """The torque as if there were no weight."""
-        found = super().inverse_dynamics(states, acceleration)
-        return np.asarray(found + gravity_torque(self.system, states))
+    found = self.inner.inverse_dynamics(states, acceleration)
+    return np.asarray(found + gravity_torque(self.system, states))

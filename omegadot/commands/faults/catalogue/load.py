@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from omegadot.commands.faults.fault import Spoiled, fault, fault_by
+from omegadot.commands.faults.fault import Spoiled, fault_by
 from omegadot.commands.faults.restepped import Accelerated
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
@@ -21,7 +21,8 @@ from omegadot.reference_impl.system import Acceleration, Array, Load, State, Sys
 class OtherLoad(Spoiled):
     """The engine is given the load that `other` makes of the one requested."""
 
-    def other(self, load: Load) -> Load:
+    @staticmethod
+    def other(load: Load) -> Load:
         """The wrong load."""
         return load
 
@@ -54,7 +55,8 @@ def GravitySlightlyOff(load: Load) -> Load:
 class ExtraTorque(Accelerated):
     """A torque about the centre of mass, or the pivot, that was not requested."""
 
-    def torque(self, system: System, state: State) -> Array:
+    @staticmethod
+    def torque(system: System, state: State) -> Array:
         """(..., 3) N m, body axes."""
         return np.zeros_like(state.angular_velocity)
 
@@ -77,19 +79,18 @@ def GravityAtOrigin(system: System, state: State) -> Array:
     return cross(-system.body.center_of_mass, force)
 
 
-@fault("equation", "equation", "gravity", named="gravity is fixed to the body")
-class GravityInBodyAxes(Accelerated):
+@fault_by(
+    Accelerated, "changed", "equation", "equation", "gravity", named="gravity is fixed to the body"
+)
+def GravityInBodyAxes(self: Accelerated, state: State, sound: Acceleration) -> Acceleration:
     """Gravity is fixed to the body instead of the world."""
-
-    def changed(self, state: State, sound: Acceleration) -> Acceleration:
-        """The weight turned along with the body."""
-        system, g = self.system, self.system.load.gravity
-        if system.load.pivot is None:
-            return Acceleration(sound.angular, sound.linear - g + rotate(state.orientation, g))
-        r = system.body.center_of_mass - system.load.pivot
-        wrong = cross(r, system.body.mass * (g - rotate_inverse(state.orientation, g)))
-        angular = sound.angular + apply(inverse(moving_inertia(system)), wrong)
-        return Acceleration(angular, center_of_mass_acceleration(system, state, angular))
+    system, g = self.system, self.system.load.gravity
+    if system.load.pivot is None:
+        return Acceleration(sound.angular, sound.linear - g + rotate(state.orientation, g))
+    r = system.body.center_of_mass - system.load.pivot
+    wrong = cross(r, system.body.mass * (g - rotate_inverse(state.orientation, g)))
+    angular = sound.angular + apply(inverse(moving_inertia(system)), wrong)
+    return Acceleration(angular, center_of_mass_acceleration(system, state, angular))
 
 
 @other_load("torque", named="the applied torque is taken in the wrong frame")

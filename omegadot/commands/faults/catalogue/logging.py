@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Adapter, Trajectory
-from omegadot.commands.faults.fault import Spoiled, fault, fault_by
+from omegadot.commands.faults.fault import Spoiled, fault, fault_by, logged
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import State, System
 
@@ -23,9 +23,10 @@ Run = Callable[[State, float, int, int], Trajectory]
 class OtherRun(Spoiled):
     """A run is what `made` makes of the sound engine's."""
 
-    def made(self, run: Run, initial: State, timestep: float, steps: int, every: int) -> Trajectory:
+    @staticmethod
+    def made(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
         """The wrong run."""
-        return run(initial, timestep, steps, every)
+        return run(initial, h, steps, every)
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
@@ -33,14 +34,13 @@ class OtherRun(Spoiled):
         """As `Adapter.run`, made wrong."""
         sound = super().run
 
-        def run(initial: State, timestep: float, steps: int, every: int) -> Trajectory:
-            return sound(initial, integrator, timestep, steps, every)
+        def run(initial: State, h: float, steps: int, every: int) -> Trajectory:
+            return sound(initial, integrator, h, steps, every)
 
         return self.made(run, initial, timestep, steps, every)
 
 
 other_run = partial(fault_by, OtherRun, "made")
-logged = partial(fault_by, Spoiled, "logged", "logging")
 
 
 def rows(state: State, which: NDArray[np.intp] | slice) -> State:
@@ -48,49 +48,45 @@ def rows(state: State, which: NDArray[np.intp] | slice) -> State:
     return State(*(values[which] for values in vars(state).values()))
 
 
-@logged("trajectory", named="the first sample is missing")
-def FirstSampleMissing(trajectory: Trajectory) -> Trajectory:
+@logged("logging", "trajectory", named="the first sample is missing")
+def FirstSampleMissing(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """The first sample is missing."""
     return Trajectory(trajectory.time[1:], rows(trajectory.state, slice(1, None)))
 
 
 @other_run("logging", "scheme", named="the last step is missing")
-def LastStepMissing(
-    run: Run, initial: State, timestep: float, steps: int, every: int
-) -> Trajectory:
+def LastStepMissing(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """The last step is not taken: the end is reported as it was a step before."""
-    found = run(initial, timestep, steps, every)
-    short = run(initial, timestep, steps - 1, every)
+    found = run(initial, h, steps, every)
+    short = run(initial, h, steps - 1, every)
     old = zip(vars(found.state).values(), vars(short.state).values(), strict=True)
     return Trajectory(found.time, State(*(np.vstack([a[:-1], b[-1:]]) for a, b in old)))
 
 
 @other_run("logging", "scheme", named="logged one step late")
-def LogsOneStepLate(
-    run: Run, initial: State, timestep: float, steps: int, every: int
-) -> Trajectory:
+def LogsOneStepLate(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """Every sample after the first is the state one step before."""
-    found = run(initial, timestep, steps, 1)
+    found = run(initial, h, steps, 1)
     kept = np.array(kept_steps(steps, every))
-    return Trajectory(kept * timestep, rows(found.state, np.maximum(kept - 1, 0)))
+    return Trajectory(kept * h, rows(found.state, np.maximum(kept - 1, 0)))
 
 
-@logged("scheme", named="logged one sample late")
-def LogsOneSampleLate(trajectory: Trajectory) -> Trajectory:
+@logged("logging", "scheme", named="logged one sample late")
+def LogsOneSampleLate(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """Every sample after the first is the one before."""
     late = np.maximum(np.arange(len(trajectory.time)) - 1, 0)
     return Trajectory(trajectory.time, rows(trajectory.state, late))
 
 
 @other_run("logging", "trajectory", named="s late, 1 steps")
-def TimesShifted(run: Run, initial: State, timestep: float, steps: int, every: int) -> Trajectory:
+def TimesShifted(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """Times are reported at the end of the step after."""
-    found = run(initial, timestep, steps, every)
-    return Trajectory(found.time + timestep, found.state)
+    found = run(initial, h, steps, every)
+    return Trajectory(found.time + h, found.state)
 
 
-@logged("trajectory", named="angular velocity: not finite")
-def NotFiniteAfterAWhile(trajectory: Trajectory) -> Trajectory:
+@logged("logging", "trajectory", named="angular velocity: not finite")
+def NotFiniteAfterAWhile(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """omega is NaN in the second half of a run."""
     w = trajectory.state.angular_velocity.copy()
     w[len(w) // 2 :] = np.nan

@@ -9,7 +9,7 @@ import numpy as np
 
 from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.reference_impl.inertia import parallel_axis
-from omegadot.reference_impl.system import Array, Body, System
+from omegadot.reference_impl.system import Body, System
 
 NEXT_AXIS = np.array([1, 2, 0])
 
@@ -17,7 +17,8 @@ NEXT_AXIS = np.array([1, 2, 0])
 class OtherBody(Spoiled):
     """The engine is given the body that `body` makes of the one requested."""
 
-    def body(self, body: Body) -> Body:
+    @staticmethod
+    def body(body: Body) -> Body:
         """The wrong body."""
         return body
 
@@ -26,64 +27,50 @@ class OtherBody(Spoiled):
         return replace(system, bodies=tuple(self.body(one) for one in system.bodies))
 
 
-class OtherInertia(OtherBody):
-    """The engine is given the tensor that `inertia` makes of the one requested."""
-
-    def inertia(self, tensor: Array) -> Array:
-        """The wrong tensor."""
-        return tensor
-
-    def body(self, body: Body) -> Body:
-        """The body with the wrong tensor."""
-        return replace(body, inertia=self.inertia(body.inertia))
-
-
 other_body = partial(fault_by, OtherBody, "body", "model", "model")
-other_inertia = partial(fault_by, OtherInertia, "inertia", "model", "model")
 
 
-@other_inertia("full-inertia", named="only the diagonal of the inertia")
-def InertiaDiagonal(tensor: Array) -> Array:
+@other_body("full-inertia", named="only the diagonal of the inertia")
+def InertiaDiagonal(body: Body) -> Body:
     """Only the diagonal of the inertia is used."""
-    return np.diag(np.diag(tensor))
+    return replace(body, inertia=np.diag(np.diag(body.inertia)))
 
 
-@other_inertia("full-inertia", named="the rotation of their axes is dropped")
-def InertiaPrincipal(tensor: Array) -> Array:
+@other_body("full-inertia", named="the rotation of their axes is dropped")
+def InertiaPrincipal(body: Body) -> Body:
     """The principal moments are taken for the diagonal: the axes' rotation is dropped."""
-    return np.diag(np.linalg.eigvalsh(tensor))
+    return replace(body, inertia=np.diag(np.linalg.eigvalsh(body.inertia)))
 
 
-@other_inertia("full-inertia", named="products of inertia have the wrong sign")
-def InertiaProductsReversed(tensor: Array) -> Array:
+@other_body("full-inertia", named="products of inertia have the wrong sign")
+def InertiaProductsReversed(body: Body) -> Body:
     """The products of inertia have the other sign."""
-    return np.asarray(2 * np.diag(np.diag(tensor)) - tensor)
+    return replace(body, inertia=2 * np.diag(np.diag(body.inertia)) - body.inertia)
 
 
-@other_inertia("full-inertia", named="principal axes looks transposed")
-def InertiaTransposedAxes(tensor: Array) -> Array:
+@other_body("full-inertia", named="principal axes looks transposed")
+def InertiaTransposedAxes(body: Body) -> Body:
     """The principal axes' rotation is transposed: ``R^T D R`` stands for ``R D R^T``."""
-    moments, axes = np.linalg.eigh(tensor)
-    return np.asarray(axes.T @ np.diag(moments) @ axes)
+    moments, axes = np.linalg.eigh(body.inertia)
+    return replace(body, inertia=axes.T @ np.diag(moments) @ axes)
 
 
-@other_inertia("asymmetric", named="the inertia's axes are permuted")
-def InertiaPermuted(tensor: Array) -> Array:
+@other_body("asymmetric", named="the inertia's axes are permuted")
+def InertiaPermuted(body: Body) -> Body:
     """The inertia's axes are permuted."""
-    permuted: Array = tensor[np.ix_(NEXT_AXIS, NEXT_AXIS)]
-    return permuted
+    return replace(body, inertia=body.inertia[np.ix_(NEXT_AXIS, NEXT_AXIS)])
 
 
-@other_inertia(named="the inertia is inverted")
-def InertiaInverted(tensor: Array) -> Array:
+@other_body(named="the inertia is inverted")
+def InertiaInverted(body: Body) -> Body:
     """The inertia is inverted: its reciprocal tensor is used."""
-    return np.linalg.inv(tensor)
+    return replace(body, inertia=np.linalg.inv(body.inertia))
 
 
-@other_inertia(named="the inertia is 1.001 times")
-def InertiaSlightlyOff(tensor: Array) -> Array:
+@other_body(named="the inertia is 1.001 times")
+def InertiaSlightlyOff(body: Body) -> Body:
     """The inertia is 0.1 % too large, which a free body's omega cannot show."""
-    return 1.001 * tensor
+    return replace(body, inertia=1.001 * body.inertia)
 
 
 @other_body("offset", named="the inertia is about the body's origin")
@@ -94,13 +81,14 @@ def InertiaAboutOrigin(body: Body) -> Body:
 
 
 @fault("model", "equation", "asymmetric", named="those of another inertia")
-class InertiaUnseen(OtherInertia):
+class InertiaUnseen(OtherBody):
     """One moment is 0.1 % off in the dynamics, and the model reads back as requested."""
 
-    def inertia(self, tensor: Array) -> Array:
+    @staticmethod
+    def body(body: Body) -> Body:
         """One moment, in its own axes."""
-        moments, axes = np.linalg.eigh(tensor)
-        return np.asarray(axes @ np.diag(moments * [1.0, 1.001, 1.0]) @ axes.T)
+        moments, axes = np.linalg.eigh(body.inertia)
+        return replace(body, inertia=axes @ np.diag(moments * [1.0, 1.001, 1.0]) @ axes.T)
 
     def model(self) -> tuple[Body, ...]:
         """What was requested."""

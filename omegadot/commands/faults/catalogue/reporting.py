@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.adapters.protocol import Trajectory
-from omegadot.commands.faults.catalogue.logging import Run, logged, other_run, rows
+from omegadot.commands.faults.catalogue.logging import Run, other_run, rows
 from omegadot.commands.faults.catalogue.stepping import long_step_end, step_end
-from omegadot.commands.faults.fault import Spoiled, fault
+from omegadot.commands.faults.fault import Spoiled, fault, logged
 from omegadot.diagnosis import step_ends
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.rotations import normalize, turn_in_body
@@ -21,14 +21,10 @@ MOST = 0.5  # rad/s, of a component
 
 
 @other_run("logging", "scheme", named="the attitude reported is that of half a step before")
-def AttitudeAtHalfStep(
-    run: Run, initial: State, timestep: float, steps: int, every: int
-) -> Trajectory:
+def AttitudeAtHalfStep(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """The attitude reported is that of half a step before."""
-    found = run(initial, timestep, steps, every)
-    back = turn_in_body(
-        found.state.orientation[1:], found.state.angular_velocity[1:], -0.5 * timestep
-    )
+    found = run(initial, h, steps, every)
+    back = turn_in_body(found.state.orientation[1:], found.state.angular_velocity[1:], -0.5 * h)
     reported = np.concatenate([found.state.orientation[:1], back])
     return Trajectory(found.time, replace(found.state, orientation=reported))
 
@@ -48,8 +44,8 @@ class OmegaAtHalfStep(Spoiled):
         return Trajectory(found.time, replace(found.state, angular_velocity=w))
 
 
-@logged("trajectory", named="the clock runs 1e-09 too slow")
-def ClockDrifts(trajectory: Trajectory) -> Trajectory:
+@logged("logging", "trajectory", named="the clock runs 1e-09 too slow")
+def ClockDrifts(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """The clock runs slow by a part in 1e9."""
     return Trajectory(trajectory.time * (1.0 + DRIFT), trajectory.state)
 
@@ -68,16 +64,16 @@ class OmegaJitters(Spoiled):
         return Trajectory(trajectory.time, reported)
 
 
-@logged("scheme", named="the one before, reported twice")
-def OneSampleTwice(trajectory: Trajectory) -> Trajectory:
+@logged("logging", "scheme", named="the one before, reported twice")
+def OneSampleTwice(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """One sample in the middle of a run is reported twice, and the next is not."""
     which = np.arange(len(trajectory.time))
     which[len(which) // 2] -= 1
     return Trajectory(trajectory.time, rows(trajectory.state, which))
 
 
-@logged("scheme", named="have 9 digits")
-def NineDigits(trajectory: Trajectory) -> Trajectory:
+@logged("logging", "scheme", named="have 9 digits")
+def NineDigits(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """What is reported of a run went through text of nine digits."""
     rounded = np.vectorize(lambda value: float(f"{value:.9g}"))
     return Trajectory(trajectory.time, State(*map(rounded, vars(trajectory.state).values())))
@@ -85,12 +81,12 @@ def NineDigits(trajectory: Trajectory) -> Trajectory:
 
 @other_run("logging", "trajectory", named="is sound from where it begins")
 def StartInSinglePrecision(
-    run: Run, initial: State, timestep: float, steps: int, every: int
+    run: Run, initial: State, h: float, steps: int, every: int
 ) -> Trajectory:
     """Runs begin at the state rounded to single precision, and are sound from there."""
     fields = {k: v.astype(np.float32).astype(float) for k, v in vars(initial).items()}
     fields["orientation"] = normalize(fields["orientation"])
-    return run(State(**fields), timestep, steps, every)
+    return run(State(**fields), h, steps, every)
 
 
 @fault(

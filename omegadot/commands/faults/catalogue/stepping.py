@@ -12,7 +12,7 @@ import numpy as np
 from omegadot.adapters.protocol import Trajectory
 from omegadot.commands.faults.catalogue.load import ExtraTorque
 from omegadot.commands.faults.catalogue.logging import Run, other_run
-from omegadot.commands.faults.fault import Spoiled, fault, fault_by
+from omegadot.commands.faults.fault import Spoiled, fault, fault_by, logged
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.diagnosis import step_ends
 from omegadot.gates.scales import norm
@@ -31,7 +31,8 @@ SECRET_DAMPING = 1e-4  # N m s/rad
 class SecretDamping(ExtraTorque):
     """A damping of 1e-4 N m s/rad that was not requested acts in the steps."""
 
-    def torque(self, system: System, state: State) -> Array:
+    @staticmethod
+    def torque(system: System, state: State) -> Array:
         """Against omega."""
         return -SECRET_DAMPING * state.angular_velocity
 
@@ -43,7 +44,8 @@ class SecretDamping(ExtraTorque):
 class StepEnds(Restepped):
     """Every step ends in a state that `end` makes of the right one."""
 
-    def end(self, before: State, after: State, dt: float | Array) -> State:
+    @staticmethod
+    def end(before: State, after: State, dt: float | Array) -> State:
         """The wrong state."""
         return after
 
@@ -63,6 +65,7 @@ class LongStepEnds(StepEnds):
 
 step_end = partial(fault_by, StepEnds, "end", "stepping")
 long_step_end = partial(fault_by, LongStepEnds, "end", "stepping")
+otherwise_stepped = partial(fault_by, Restepped, "scheme", "stepping", "scheme", "order-4")
 
 
 @step_end("scheme", named="multiplied from the left")
@@ -101,54 +104,40 @@ def OmegaClamped(before: State, after: State, dt: float | Array) -> State:
     return step_ends.held_below(FASTEST)(before, after, dt)
 
 
-@fault("stepping", "scheme", "torque-free", named="rescaled so that the kinetic energy")
-class EnergyCorrected(Spoiled):
+@logged("stepping", "scheme", "torque-free", named="rescaled so that the kinetic energy")
+def EnergyCorrected(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """omega is rescaled so that the kinetic energy of rotation looks conserved."""
-
-    def logged(self, trajectory: Trajectory) -> Trajectory:
-        """Every sample has the energy of the first."""
-        state = trajectory.state
-        still = replace(state, linear_velocity=np.zeros_like(state.linear_velocity))
-        no_gravity = replace(self.system, load=replace(self.system.load, gravity=np.zeros(3)))
-        energy = total_energy(no_gravity, still)
-        w = state.angular_velocity * np.sqrt(energy[0] / energy)[:, None]
-        return Trajectory(trajectory.time, replace(state, angular_velocity=w))
+    state = trajectory.state
+    still = replace(state, linear_velocity=np.zeros_like(state.linear_velocity))
+    no_gravity = replace(self.system, load=replace(self.system.load, gravity=np.zeros(3)))
+    energy = total_energy(no_gravity, still)
+    w = state.angular_velocity * np.sqrt(energy[0] / energy)[:, None]
+    return Trajectory(trajectory.time, replace(state, angular_velocity=w))
 
 
-@fault("stepping", "scheme", "torque-free", named="rescaled so that the angular momentum")
-class MomentumCorrected(Spoiled):
+@logged("stepping", "scheme", "torque-free", named="rescaled so that the angular momentum")
+def MomentumCorrected(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """omega is rescaled so that the size of the angular momentum looks conserved."""
-
-    def logged(self, trajectory: Trajectory) -> Trajectory:
-        """Every sample has the momentum of the first."""
-        state = trajectory.state
-        size = norm(angular_momentum(self.system, state))
-        w = state.angular_velocity * (size[0] / size)[:, None]
-        return Trajectory(trajectory.time, replace(state, angular_velocity=w))
+    state = trajectory.state
+    size = norm(angular_momentum(self.system, state))
+    w = state.angular_velocity * (size[0] / size)[:, None]
+    return Trajectory(trajectory.time, replace(state, angular_velocity=w))
 
 
 @other_run("stepping", "scheme", named="steps are 0.1 % too long")
-def StepSlightlyLong(
-    run: Run, initial: State, timestep: float, steps: int, every: int
-) -> Trajectory:
+def StepSlightlyLong(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """Steps are 0.1 % longer than requested."""
-    found = run(initial, 1.001 * timestep, steps, every)
+    found = run(initial, 1.001 * h, steps, every)
     return Trajectory(found.time / 1.001, found.state)
 
 
-@fault("stepping", "scheme", "order-4", named="it is stepped by semi-implicit-euler")
-class EulerAsRungeKutta(Restepped):
+@otherwise_stepped(named="it is stepped by semi-implicit-euler")
+def EulerAsRungeKutta(self: Restepped, declared: Scheme) -> Scheme:
     """Runge-Kutta of order 4 is declared, and semi-implicit Euler is stepped."""
-
-    def scheme(self, declared: Scheme) -> Scheme:
-        """Euler."""
-        return SCHEMES["semi-implicit-euler"]
+    return SCHEMES["semi-implicit-euler"]
 
 
-@fault("stepping", "scheme", "order-4", named="it is stepped by lie-rk4-naive")
-class AttitudeOfOrderTwo(Restepped):
+@otherwise_stepped(named="it is stepped by lie-rk4-naive")
+def AttitudeOfOrderTwo(self: Restepped, declared: Scheme) -> Scheme:
     """The attitude is of order 2 under a declared 4: the stages' rotations do not commute."""
-
-    def scheme(self, declared: Scheme) -> Scheme:
-        """The mean of omega in one exponential."""
-        return SCHEMES["lie-rk4-naive"] if declared.orders["attitude"] == 4 else declared
+    return SCHEMES["lie-rk4-naive"] if declared.orders["attitude"] == 4 else declared
