@@ -15,7 +15,7 @@ from omegadot.commands.score.exact_trajectory import exact_trajectory
 from omegadot.commands.score.judged import Making, judge_trace
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.score import case_given
-from omegadot.commands.score.settings import Declaration, reading_of
+from omegadot.commands.score.settings import reading_of
 
 TUMBLE = """
 schema = 1
@@ -170,8 +170,7 @@ def test_every_convention_is_read_to_the_floor(thrown, tmp_path_factory, how):
     _, case, exact = thrown
     path = tmp_path_factory.getbasetemp() / "written.csv"
     write(path, how, case, exact)
-    arguments = Declaration(how.columns(), None, how.options())
-    reading = reading_of(arguments, read_table(path))
+    reading = reading_of(read_table(path), how.columns(), None, how.options())
     found = judge_trace(case, reading, Making())
     for channel, error in found.measured.error.items():
         assert np.max(error - found.bound[channel]) <= 0.0, channel
@@ -198,8 +197,8 @@ def test_a_wrong_declaration_is_not_at_the_floor(thrown, tmp_path, part):
     path = tmp_path / "written.csv"
     write(path, RIGHT, case, exact)
     wrong = Written(**{**vars(RIGHT), part: WRONG[part]})
-    arguments = Declaration(wrong.columns(), None, wrong.options())
-    found = judge_trace(case, reading_of(arguments, read_table(path)), Making())
+    reading = reading_of(read_table(path), wrong.columns(), None, wrong.options())
+    found = judge_trace(case, reading, Making())
     assert any(np.max(e) > 1e-3 for e in found.measured.error.values())
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from omegadot.commands.score.columns import GROUPS
+from omegadot.commands.score.columns import GROUPS, Columns
+from omegadot.commands.score.convention import Convention
 from omegadot.commands.score.table import Column, Table, TraceError
 from omegadot.gates.scales import norm
+from omegadot.reference_impl.rotations import conjugate, quaternion_product
 from omegadot.reference_impl.system import Array
 
 # Farther from a rotation than this it was misread; nearer, it has drifted, and that is measured.
@@ -66,3 +68,26 @@ def group_of(table: Table, columns: dict[str, str], group: str) -> list[Column]:
     if GROUPS[group][0] not in columns:
         return []
     return [table.column(columns[role]) for role in GROUPS[group]]
+
+
+def attitude_of(table: Table, columns: Columns, how: Convention) -> Angles | None:
+    """world_R_body between the scenario's axes, or None."""
+    found: Angles | None = None
+    if parts := group_of(table, columns, "q"):
+        found = from_quaternions(table, parts)
+    elif parts := group_of(table, columns, "e"):
+        found = from_euler(parts, how.euler, how.scale_of("angle"))
+    elif parts := group_of(table, columns, "r"):
+        found = from_matrices(table, parts)
+    if found is None:
+        return None
+    q = found[0] if how.attitude_is == "world-from-body" else conjugate(found[0])
+    return _in_our_axes(q, how.world_axes, how.body_axes), found[1]
+
+
+def _in_our_axes(q: Array, world: Array, body: Array) -> Array:
+    """``world q body^-1``, (n, 4): an attitude between their axes, reported between ours."""
+    if np.array_equal(world, np.eye(3)) and np.array_equal(body, np.eye(3)):
+        return q
+    turns = [_wxyz(Rotation.from_matrix(m)) for m in (world, body)]
+    return quaternion_product(quaternion_product(turns[0], q), conjugate(turns[1]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
@@ -11,6 +11,13 @@ from omegadot.commands.options import Format, command_line, on_a_terminal
 
 if TYPE_CHECKING:
     from omegadot.commands.score.result import ScoreResult
+
+
+Text = str | None
+
+
+def _option(metavar: str, text: str) -> Any:
+    return typer.Option(metavar=metavar, help=text)
 
 
 def score(
@@ -32,75 +39,48 @@ def score(
     map_file: Annotated[
         Path | None, typer.Option("--map", metavar="FILE", help="Columns and units in TOML.")
     ] = None,
-    time_unit: Annotated[
-        str | None, typer.Option(metavar="UNIT", help="Unit of time: s, ms, us, ns, min or h.")
-    ] = None,
-    angle_unit: Annotated[
-        str | None, typer.Option(metavar="UNIT", help="Unit of angles: rad, deg, mrad or rev.")
-    ] = None,
-    rate_unit: Annotated[
-        str | None, typer.Option(metavar="UNIT", help="Unit of omega: rad/s, deg/s, rpm, ...")
-    ] = None,
+    time_unit: Annotated[Text, _option("UNIT", "Unit of time: s, ms, us, ns, min or h.")] = None,
+    angle_unit: Annotated[Text, _option("UNIT", "Unit of angles: rad, deg, mrad or rev.")] = None,
+    rate_unit: Annotated[Text, _option("UNIT", "Unit of omega: rad/s, deg/s, rpm, ...")] = None,
     length_unit: Annotated[
-        str | None, typer.Option(metavar="UNIT", help="Unit of lengths: m, ft, in, cm, mm or km.")
+        Text, _option("UNIT", "Unit of lengths: m, ft, in, cm, mm or km.")
     ] = None,
-    omega_frame: Annotated[
-        str | None, typer.Option(metavar="FRAME", help="Frame of omega: body or world.")
-    ] = None,
+    omega_frame: Annotated[Text, _option("FRAME", "Frame of omega: body or world.")] = None,
     attitude_is: Annotated[
-        str | None,
-        typer.Option(
-            metavar="SENSE", help="Sense of the attitude: world-from-body or body-from-world."
-        ),
+        Text, _option("SENSE", "Sense of the attitude: world-from-body or body-from-world.")
     ] = None,
     euler: Annotated[
-        str | None,
-        typer.Option(metavar="ZYX", help="Sequence of Euler angles: ZYX intrinsic, zyx extrinsic."),
+        Text, _option("ZYX", "Sequence of Euler angles: ZYX intrinsic, zyx extrinsic.")
     ] = None,
     quaternion: Annotated[
-        str | None, typer.Option(metavar="ORDER", help="Order of the columns of q: wxyz or xyzw.")
+        Text, _option("ORDER", "Order of the columns of q: wxyz or xyzw.")
     ] = None,
     point: Annotated[
-        str | None,
-        typer.Option(metavar="POINT", help="Point of the position: center-of-mass or origin."),
+        Text, _option("POINT", "Point of the position: center-of-mass or origin.")
     ] = None,
     world_axes: Annotated[
-        str | None,
-        typer.Option(metavar="x,-y,-z", help="The scenario's world axes, named by the trace's."),
+        Text, _option("x,-y,-z", "The scenario's world axes, named by the trace's.")
     ] = None,
     body_axes: Annotated[
-        str | None,
-        typer.Option(metavar="x,-y,-z", help="The scenario's body axes, named by the trace's."),
+        Text, _option("x,-y,-z", "The scenario's body axes, named by the trace's.")
     ] = None,
     time_offset: Annotated[
         float | None,
         typer.Option(metavar="S", help="Time in the trace at which the scenario starts."),
     ] = None,
     integrator_scheme: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Integration scheme that produced the trace.")
+        Text, _option("NAME", "Integration scheme that produced the trace.")
     ] = None,
     timestep: Annotated[
         float | None, typer.Option(metavar="S", help="Time step that produced the trace, s.")
     ] = None,
-    attitude: Annotated[
-        str | None, typer.Option(metavar="0.1deg", help="Required: the largest attitude error.")
-    ] = None,
-    omega: Annotated[
-        str | None, typer.Option(metavar="1e-3deg/s", help="Required: the largest omega error.")
-    ] = None,
-    position: Annotated[
-        str | None, typer.Option(metavar="1mm", help="Required: the largest position error.")
-    ] = None,
-    energy: Annotated[
-        str | None,
-        typer.Option(metavar="1e-6", help="Required: the largest relative energy error."),
-    ] = None,
-    momentum: Annotated[
-        str | None, typer.Option(metavar="1e-6", help="Required: of angular momentum, relative.")
-    ] = None,
+    attitude: Annotated[Text, _option("0.1deg", "Required: the largest attitude error.")] = None,
+    omega: Annotated[Text, _option("1e-3deg/s", "Required: the largest omega error.")] = None,
+    position: Annotated[Text, _option("1mm", "Required: the largest position error.")] = None,
+    energy: Annotated[Text, _option("1e-6", "Required: the largest relative energy error.")] = None,
+    momentum: Annotated[Text, _option("1e-6", "Required: of angular momentum, relative.")] = None,
     flip_time: Annotated[
-        str | None,
-        typer.Option(metavar="1ms", help="Required: the largest error of a flip time."),
+        Text, _option("1ms", "Required: the largest error of a flip time.")
     ] = None,
     name: Annotated[
         str, typer.Option(metavar="NAME", help="Name of the trace in the report.")
@@ -127,6 +107,9 @@ def score(
     produced the trace, or (--detect) no single convention fits, 2 wrong usage or input, 3 an engine
     run with it crashed, timed out or could not be started.
     """
+    given = {**locals()}
+    for name_apart in ("column", "with_engine", "detect", "output"):
+        del given[name_apart]
     if detect:
         from omegadot.commands.score.detection.detect import detect as detect_conventions
         from omegadot.commands.score.detection.print_detected import print_detected
@@ -140,33 +123,9 @@ def score(
 
     try:
         result = score_trace(
-            trace,
-            scenario,
+            **given,
             columns=column or [],
-            map_file=map_file,
-            time_unit=time_unit,
-            angle_unit=angle_unit,
-            rate_unit=rate_unit,
-            length_unit=length_unit,
-            omega_frame=omega_frame,
-            attitude_is=attitude_is,
-            euler=euler,
-            quaternion=quaternion,
-            point=point,
-            world_axes=world_axes,
-            body_axes=body_axes,
-            time_offset=time_offset,
-            integrator_scheme=integrator_scheme,
-            timestep=timestep,
-            attitude=attitude,
-            omega=omega,
-            position=position,
-            energy=energy,
-            momentum=momentum,
-            flip_time=flip_time,
-            name=name,
             engines=with_engine or [],
-            out=out,
             command=command_line(),
             progress=on_a_terminal(),
         )

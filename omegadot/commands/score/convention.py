@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -12,9 +13,11 @@ from omegadot.commands.units import UNITS, unit_named
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
 
-FRAMES = ("body", "world")
-DIRECTIONS = ("world-from-body", "body-from-world")
-POINTS = ("center-of-mass", "origin")
+CHOICES = {
+    "omega_frame": ("body", "world"),
+    "attitude_is": ("world-from-body", "body-from-world"),
+    "point": ("center-of-mass", "origin"),
+}
 _SEQUENCE = re.compile(r"([xyz]{3}|[XYZ]{3})$")
 _AXIS = re.compile(r"([+-]?)([xyz])$")
 
@@ -25,13 +28,15 @@ def _same() -> Array:
 
 @dataclass(frozen=True)
 class Convention:
-    """What the numbers of a trace mean.
+    """What the numbers of a trace mean. A field is named as the option that declares it.
 
+    attitude_is: what the angles, the quaternion or the matrix turns into what.
     euler: three axes as SciPy's Rotation takes them, capitals intrinsic (each about the axes that
-    have turned already), small letters extrinsic.  attitude: what the angles, the quaternion or
-    the matrix turns into what.  point: whose position and velocity are given.
-    world and body: (3, 3), a vector's components in the scenario's axes are ``world @ theirs`` and
-    ``body @ theirs``.  time_offset: s, the trace's time at the scenario's start.
+    have turned already), small letters extrinsic.  quaternion: the order of its columns.
+    point: whose position and velocity are given.
+    world_axes and body_axes: (3, 3), a vector's components in the scenario's axes are
+    ``world_axes @ theirs`` and ``body_axes @ theirs``.
+    time_offset: s, the trace's time at the scenario's start.
     """
 
     time_unit: str = "s"
@@ -39,11 +44,12 @@ class Convention:
     rate_unit: str = "rad/s"
     length_unit: str = "m"
     omega_frame: str = "body"
-    attitude: str = "world-from-body"
+    attitude_is: str = "world-from-body"
     euler: str = "ZYX"
+    quaternion: str = "wxyz"
     point: str = "center-of-mass"
-    world: Array = field(default_factory=_same)
-    body: Array = field(default_factory=_same)
+    world_axes: Array = field(default_factory=_same)
+    body_axes: Array = field(default_factory=_same)
     time_offset: float = 0.0
 
     def scale_of(self, kind: str) -> float:
@@ -51,42 +57,40 @@ class Convention:
         return UNITS[kind][getattr(self, f"{kind}_unit")]
 
 
-def check_convention(found: Convention) -> Convention:
-    """The convention with its units as UNITS spells them. Raises UsageError."""
+SETTINGS = tuple(f.name.replace("_", "-") for f in fields(Convention))
+"""The options that declare a convention, without their dashes in front."""
+
+
+def option_of(name: str) -> str:
+    """The option that declares a field of the convention."""
+    return "--" + name.replace("_", "-")
+
+
+def convention_of(settings: Mapping[str, Any]) -> Convention:
+    """The convention of settings by option, with its units as UNITS spells them.
+
+    Raises UsageError.
+    """
+    given = {key.replace("-", "_"): value for key, value in settings.items()}
+    for name in {"world_axes", "body_axes"} & set(given):
+        given[name] = axes_of(given[name], option_of(name))
+    found = Convention(**given)
     units: dict[str, Any] = {
         f"{kind}_unit": unit_named(getattr(found, f"{kind}_unit"), kind, f"--{kind}-unit")
         for kind in ("time", "angle", "rate", "length")
     }
-    for name, allowed in (
-        ("omega_frame", FRAMES),
-        ("attitude", DIRECTIONS),
-        ("point", POINTS),
-    ):
+    for name, allowed in CHOICES.items():
         argument = getattr(found, name)
         if argument not in allowed:
-            option = OPTIONS[name]
-            raise UsageError(f"{option} {argument}: no such choice; {nearest(argument, allowed)}.")
-    check_sequence(found.euler)
-    return replace(found, **units)
-
-
-OPTIONS = {
-    **{f.name: "--" + f.name.replace("_", "-") for f in fields(Convention)},
-    "attitude": "--attitude-is",
-    "world": "--world-axes",
-    "body": "--body-axes",
-}
-
-
-def check_sequence(text: str) -> str:
-    """An Euler sequence: three axes of one case, neighbours different. Raises UsageError."""
-    different = text[:1] != text[1:2] and text[1:2] != text[2:3]
-    if not (_SEQUENCE.match(text) and different):
+            advice = nearest(argument, allowed)
+            raise UsageError(f"{option_of(name)} {argument}: no such choice; {advice}.")
+    axes = found.euler
+    if not (_SEQUENCE.match(axes) and axes[0] != axes[1] != axes[2]):
         raise UsageError(
-            f"--euler {text}: not a sequence of three axes; write ZYX for intrinsic "
+            f"--euler {axes}: not a sequence of three axes; write ZYX for intrinsic "
             "yaw-pitch-roll, small letters for extrinsic turns."
         )
-    return text
+    return replace(found, **units)
 
 
 def axes_of(text: str, option: str) -> Array:

@@ -2,97 +2,24 @@
 
 from __future__ import annotations
 
+import csv
 import re
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from itertools import chain
 
-import numpy as np
 import polars as pl
 
-from omegadot.commands.score.csv_lines import (
-    COMMENT,
-    DECIMAL_COMMA,
-    NOT_FINITE,
-    NUMBER,
-    cells_of,
-    comment_names,
-    decimal_of,
-    delimiter_of,
-    is_sample,
-    names_of,
-    raw_cells_of,
-    split_lines,
-    text_of,
-)
-from omegadot.commands.score.digits import open_of
-from omegadot.commands.score.table import (
-    LARGEST_NUMBER,
-    MOST_SAMPLES,
-    Column,
-    TraceError,
-    check_alone,
-)
-from omegadot.reference_impl.system import Array
+from omegadot.commands.score.digits import DECIMAL_COMMA, NOT_FINITE, NUMBER
+from omegadot.commands.score.table import MOST_SAMPLES, Table, TraceError
 
+DELIMITERS = ",;\t|"
+COMMENT = r"^\s*(#|%|//|!)"
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+$")
 # So many lines show the delimiter and the decimal sign.
 LOOKED_AT = 50
 
 
-@dataclass(frozen=True)
-class CsvTable:
-    """The cells of a CSV file. rows: lists of texts.  lines: the line that each row stands in."""
-
-    file: str
-    names: tuple[str, ...]
-    rows: pl.Series
-    lines: pl.Series
-    decimal: str = "."
-
-    def __len__(self) -> int:
-        """How many samples there are."""
-        return len(self.rows)
-
-    def place(self, sample: int) -> str:
-        """The line that a sample stands in."""
-        return f"line {self.lines[sample]}"
-
-    def _read(self, name: str) -> tuple[list[str], Array]:
-        """One column's texts, with decimal points, and its numbers. Raises TraceError."""
-        check_alone(self, name)
-        place = self.names.index(name) if name in self.names else int(name[1:]) - 1
-        written = self.rows.list.get(place, null_on_oob=True).fill_null("").str.strip_chars()
-        texts = written.str.replace(self.decimal, ".", literal=True)
-        numbers = texts.str.replace("[dD]", "e").cast(pl.Float64, strict=False)
-        values = numbers.fill_null(float("nan")).to_numpy()
-        well = written.str.contains(NUMBER.replace(r"\.", re.escape(self.decimal))).to_numpy()
-        bad = np.flatnonzero(~(well & (np.abs(values) <= LARGEST_NUMBER)))
-        if len(bad):
-            more = f", and {len(bad) - 1} more" if len(bad) > 1 else ""
-            line, text = self.place(int(bad[0])), str(written[int(bad[0])])
-            raise TraceError(f"{self.file}: {line}: {name!r} {self._found(text)}{more}.")
-        return texts.to_list(), values
-
-    def cells(self, name: str) -> list[str]:
-        """One column's texts, with decimal points. Raises TraceError where one is no number."""
-        return self._read(name)[0]
-
-    def column(self, name: str) -> Column:
-        """One column's numbers. Raises TraceError."""
-        texts, values = self._read(name)
-        return Column(values, open_of(texts, values))
-
-    def _found(self, text: str) -> str:
-        if not text:
-            return "is empty, a number was expected"
-        if self.decimal == "." and DECIMAL_COMMA.match(text):
-            return f"is {text[:20]!r}; write it with a decimal point"
-        if self.decimal == "," and "." in text:
-            return f"is {text[:20]!r}; write it with a decimal comma, as the others"
-        if NOT_FINITE.match(text) or re.match(NUMBER, text.replace(self.decimal, ".")):
-            return f"is {text[:20]}, a finite number of sensible size was expected"
-        return f"is {text[:20]!r}, a number was expected"
-
-
-def csv_table(file: str, content: bytes) -> CsvTable:
+def csv_table(file: str, content: bytes) -> Table:
     """The table in a CSV file's bytes. Raises TraceError."""
     texts = text_of(file, content).splitlines()
     whole = pl.DataFrame({"line": range(1, len(texts) + 1), "text": texts})
@@ -114,9 +41,9 @@ def csv_table(file: str, content: bytes) -> CsvTable:
         raise TraceError(f"{file}: no line of numbers; it has a header at most, give samples too.")
     above = whole.filter(is_comment, pl.col("line") < samples["line"][0])["text"].to_list()
     names = _names(heads, above, samples["text"][0], delimiter)
-    return CsvTable(
-        file, names, _rows(file, samples, delimiter, len(names)), samples["line"], decimal
-    )
+    rows = _rows(file, samples, delimiter, len(names))
+    cells = [rows.list.get(place, null_on_oob=True) for place in range(len(names))]
+    return Table(file, names, cells, samples["line"], decimal)
 
 
 def _names(heads: list[str], comments: list[str], sample: str, delimiter: str) -> tuple[str, ...]:
@@ -146,3 +73,96 @@ def _rows(file: str, samples: pl.DataFrame, delimiter: str, width: int) -> pl.Se
             f"{file}: line {line} has {count} columns, {width} were expected; correct or remove it."
         )
     return rows
+
+
+def text_of(file: str, content: bytes) -> str:
+    """The file's text. Raises TraceError where it is no UTF-8 text."""
+    if b"\0" in content:
+        raise TraceError(f"{file}: neither CSV nor Parquet (binary, or text that is not UTF-8).")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise TraceError(
+            f"{file}: not UTF-8 text (byte 0x{content[error.start]:02x} in line {line}); "
+            "save it in UTF-8."
+        ) from None
+
+
+def delimiter_of(lines: Sequence[str]) -> str:
+    """The delimiter that splits most lines into equally many, at least two; else blanks."""
+    best, most = "", (0, 0)
+    for delimiter in (*DELIMITERS, ""):
+        counts = [len(cells_of(line, delimiter)) for line in lines]
+        common = max(set(counts), key=counts.count)
+        # A decimal comma splits too, but then less regularly, or a semicolon splits as well.
+        found = (counts.count(common), -("\t;|,".find(delimiter) if delimiter else 9))
+        if common > 1 and found > most:
+            best, most = delimiter, found
+    return best
+
+
+def raw_cells_of(line: str, delimiter: str) -> list[str]:
+    """The cells of a line as they stand; with no delimiter, what stands between blanks."""
+    return next(csv.reader([line], delimiter=delimiter), []) if delimiter else line.split()
+
+
+def cells_of(line: str, delimiter: str) -> list[str]:
+    """The cells of a line, without the blanks around them."""
+    row = [cell.strip() for cell in raw_cells_of(line, delimiter)]
+    # A delimiter at the end of a line makes no column.
+    return row[:-1] if len(row) > 1 and not row[-1] else row
+
+
+def split_lines(lines: pl.Series, delimiter: str) -> pl.Series:
+    """`raw_cells_of` every line, all at once: lists of texts."""
+    if not delimiter:
+        return lines.str.strip_chars().str.replace_all(r"\s+", " ").str.split(" ")
+    if lines.str.contains('"', literal=True).any():  # a delimiter may stand within quotes
+        cells = [raw_cells_of(line, delimiter) for line in lines]
+        return pl.Series(cells, dtype=pl.List(pl.String))
+    return lines.str.split(delimiter)
+
+
+def decimal_of(file: str, rows: Iterable[Sequence[str]]) -> str:
+    """The decimal sign: a comma where numbers have one and none has a point.
+
+    Raises TraceError where it may as well group thousands.
+    """
+    cells = list(chain.from_iterable(rows))
+    commas = [cell for cell in cells if DECIMAL_COMMA.match(cell)]
+    if not commas or any("." in cell and re.match(NUMBER, cell) for cell in cells):
+        return "."
+    if all(_THOUSANDS.match(cell) for cell in commas):
+        raise TraceError(
+            f"{file}: {commas[0]!r} may be {commas[0].replace(',', '.')} or "
+            f"{commas[0].replace(',', '')}; write it with a decimal point, or without a comma."
+        )
+    return ","
+
+
+def is_sample(row: Sequence[str]) -> bool:
+    """A row that is of numbers: more than half of it, so that one bad cell does not hide it."""
+    numbers = [
+        c for c in row if re.match(NUMBER, c) or DECIMAL_COMMA.match(c) or NOT_FINITE.match(c)
+    ]
+    return 2 * len(numbers) > len(row)
+
+
+def names_of(line: str, delimiter: str, widths: Sequence[int]) -> list[str]:
+    """The names that a line gives to so many columns, one of the numbers given; else none.
+
+    Between blanks, a name may have a unit behind a single one: ``wx (deg/s)   wy (deg/s)``.
+    """
+    rows = [cells_of(line, delimiter)]
+    rows += [] if delimiter else [re.split(r"\s{2,}|\t", line.strip())]
+    return next((row for row in rows if len(row) in widths), [])
+
+
+def comment_names(comments: Sequence[str], delimiter: str, width: int) -> list[str]:
+    """Names in the last of these comments that has some, as NumPy writes them; else none."""
+    for text in reversed(comments):
+        row = names_of(re.sub(COMMENT, "", text).strip(), delimiter, [width])
+        if len(set(row)) == width and not is_sample(row):
+            return row
+    return []

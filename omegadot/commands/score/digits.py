@@ -21,6 +21,9 @@ EPS = float(np.finfo(float).eps)
 MOST_LOOKED_AT = 4000
 # A double has this many digits, enough to identify it: it was printed whole.
 ALL_DIGITS = 16
+NUMBER = r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eEdD][+-]?[0-9]+)?$"
+NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity|1\.#\w+|na|null|none)$", re.IGNORECASE)
+DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eEdD][+-]?\d+)?$")
 _NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eEdD]([+-]?\d+))?$")
 
 

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from omegadot.commands.score.bounds import Rounding, digits_open, joined, reading_bound
-from omegadot.commands.score.columns import Columns
-from omegadot.commands.score.convention import Convention
 from omegadot.commands.score.exact_trajectory import ExactTrajectory, exact_trajectory, truth_at
 from omegadot.commands.score.measured import Measured, flips_of, measure_trace
 from omegadot.commands.score.plausible import check_duration, check_units
 from omegadot.commands.score.require import Requirement
+from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.shift import Shift, best_shift
 from omegadot.commands.score.steps import (
     Compared,
@@ -20,21 +19,11 @@ from omegadot.commands.score.steps import (
     compare_schemes,
     declared_of,
 )
-from omegadot.commands.score.table import Table
 from omegadot.commands.score.trace import Trace, trace_of
 from omegadot.commands.score.verdicts import Judgement, judgement_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
-
-
-@dataclass(frozen=True)
-class Reading:
-    """A trace's file and how it is read."""
-
-    table: Table
-    columns: Columns
-    how: Convention
 
 
 @dataclass(frozen=True)

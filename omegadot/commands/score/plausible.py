@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from omegadot.commands.score.columns import GROUPS, Columns
-from omegadot.commands.score.convention import OPTIONS, Convention
+from omegadot.commands.score.convention import Convention, option_of
 from omegadot.commands.score.table import Table, TraceError
 from omegadot.commands.score.trace import Trace, trace_of
 from omegadot.commands.units import UNITS
@@ -63,7 +63,7 @@ def check_units(
             other = with_unit(how, kind, unit)
             misfit = _misfit(kind, trace_of(table, columns, other, system), truth)
             if misfit * NEARER < declared and misfit < GROSS:
-                option, given = OPTIONS[f"{kind}_unit"], getattr(how, f"{kind}_unit")
+                option, given = option_of(f"{kind}_unit"), getattr(how, f"{kind}_unit")
                 raise TraceError(
                     f"{table.file}: {_WHAT[kind]} {_times(units[given] / units[unit])} what "
                     f"{given} would give here, and looks like {unit}; give {option} {unit}."

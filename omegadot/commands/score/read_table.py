@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
+import polars as pl
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 from omegadot.commands.score.csv_table import csv_table
-from omegadot.commands.score.parquet_table import parquet_table
-from omegadot.commands.score.table import Table, TraceError
+from omegadot.commands.score.table import MOST_SAMPLES, Table, TraceError
 
 LARGEST_FILE = 500_000_000  # bytes
 PARQUET_MAGIC = b"PAR1"
@@ -43,3 +47,18 @@ def _read(path: Path) -> bytes:
     if not content.strip():
         raise TraceError(f"{path}: is empty; give a trace with at least two samples.")
     return content
+
+
+def parquet_table(file: str, content: bytes) -> Table:
+    """The table in a Parquet file's bytes. Raises TraceError."""
+    try:
+        frame = pl.DataFrame(pl.from_arrow(pq.read_table(io.BytesIO(content))))
+    except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
+        raise TraceError(
+            f"{file}: not a readable Parquet file (truncated or damaged); write it again."
+        ) from error
+    if frame.is_empty():
+        raise TraceError(f"{file}: has no rows; give a trace with at least two samples.")
+    if len(frame) > MOST_SAMPLES:
+        raise TraceError(f"{file}: {len(frame):,} samples; give at most {MOST_SAMPLES:,}.")
+    return Table(file, tuple(frame.columns), frame.get_columns())

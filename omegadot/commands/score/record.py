@@ -67,9 +67,9 @@ def conventions_of(how: Convention) -> list[str]:
     clauses = [
         f"time in {how.time_unit}, angles in {how.angle_unit}, rates in {how.rate_unit}, "
         f"lengths in {how.length_unit}",
-        f"omega in {how.omega_frame} axes, attitude {how.attitude}",
+        f"omega in {how.omega_frame} axes, attitude {how.attitude_is}",
     ]
-    for kind, axes in (("world", how.world), ("body", how.body)):
+    for kind, axes in (("world", how.world_axes), ("body", how.body_axes)):
         if not np.array_equal(axes, np.eye(3)):
             exact = bool(np.all(np.isin(axes, (-1.0, 0.0, 1.0))))
             clauses.append(f"{kind} axes turned" + (f": {axes_text(axes)}" if exact else ""))

@@ -8,13 +8,14 @@ from pathlib import Path
 
 from omegadot.commands.progress import Reporting, reporting
 from omegadot.commands.run.result import RunInterrupted, result_of
+from omegadot.commands.score.convention import SETTINGS
 from omegadot.commands.score.judged import Making, judge_trace
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.record import scored_record
-from omegadot.commands.score.require import requirements_of
+from omegadot.commands.score.require import KINDS, requirements_of
 from omegadot.commands.score.result import ScoreResult
 from omegadot.commands.score.rows import rows_of
-from omegadot.commands.score.settings import Columns, Declaration, reading_of
+from omegadot.commands.score.settings import GivenColumns, reading_of
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of, engine_choices, scenarios_of, several
 from omegadot.harness.engine_target import EngineLike
@@ -31,7 +32,7 @@ def score(
     trace: str | os.PathLike[str],
     scenario: ScenarioLike,
     *,
-    columns: Columns = (),
+    columns: GivenColumns = (),
     map_file: str | os.PathLike[str] | None = None,
     time_unit: str | None = None,
     angle_unit: str | None = None,
@@ -70,35 +71,15 @@ def score(
     Raises UsageError, TraceError (a UsageError), ScenarioError, RecordError, NoTruthError, and
     RunInterrupted on Ctrl-C.
     """
-    settings = {
-        "time-unit": time_unit,
-        "angle-unit": angle_unit,
-        "rate-unit": rate_unit,
-        "length-unit": length_unit,
-        "omega-frame": omega_frame,
-        "attitude-is": attitude_is,
-        "euler": euler,
-        "quaternion": quaternion,
-        "point": point,
-        "world-axes": world_axes,
-        "body-axes": body_axes,
-        "time-offset": time_offset,
-    }
-    required = {
-        "attitude": attitude,
-        "omega": omega,
-        "position": position,
-        "energy": energy,
-        "momentum": momentum,
-        "flip-time": flip_time,
-    }
+    given = locals()
+    settings = {key: given[key.replace("-", "_")] for key in SETTINGS}
+    requirements = requirements_of({key: given[key.replace("-", "_")] for key in KINDS})
     case, choices = case_given(scenario), _choices(name, several(engines))
     if out is not None:
         check_folder(Path(out))
-    requirements = tuple(requirements_of(required))
-    declared = Declaration(columns, Path(map_file) if map_file else None, settings)
-    reading = reading_of(declared, read_table(Path(trace)))
-    found = judge_trace(case, reading, Making(integrator_scheme, timestep, requirements))
+    mapped = Path(map_file) if map_file else None
+    reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
+    found = judge_trace(case, reading, Making(integrator_scheme, timestep, tuple(requirements)))
     rows = rows_of(found)
     with reporting(progress) as report:
         record = scored_record(found, rows, name, choices, command, report)

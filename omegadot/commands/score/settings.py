@@ -1,75 +1,89 @@
-"""How a trace is declared to be read: columns and settings, in the arguments and in a map."""
+"""How a trace is declared to be read: columns and settings, in the arguments and in a TOML file."""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from omegadot.commands.score.columns import assignments_of, columns_of
-from omegadot.commands.score.convention import (
-    Convention,
-    axes_of,
-    check_convention,
-    check_sequence,
-)
-from omegadot.commands.score.judged import Reading
-from omegadot.commands.score.map_file import read_map
+from omegadot.commands.score.columns import Columns, assignments_of, columns_of
+from omegadot.commands.score.convention import SETTINGS, Convention, convention_of
 from omegadot.commands.score.table import Table
+from omegadot.harness.usage import UsageError, nearest
 
-DEFAULT_ORDER = "wxyz"
-Columns = Mapping[str, str | Sequence[str]] | Sequence[str]
+GivenColumns = Mapping[str, str | Sequence[str]] | Sequence[str]
 """Names by role, ``{"t": "time", "w": ["p", "q", "r"]}``, or texts such as ``w=p,q,r``."""
+Assigned = list[tuple[str, list[str]]]
+"""Pairs of a role, or a group of roles, and the names of its columns."""
 
 
 @dataclass(frozen=True)
-class Declaration:
-    """Columns, a map, and settings by option name; None where nothing is declared."""
+class Reading:
+    """A trace's file and how it is read."""
 
-    columns: Columns = ()
-    map_file: Path | None = None
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    table: Table
+    columns: Columns
+    how: Convention
 
 
-def settings_of(declaration: Declaration) -> tuple[list[tuple[str, list[str]]], dict[str, Any]]:
-    """Columns and settings, those declared here before the map's. Raises UsageError."""
-    if isinstance(declaration.columns, Mapping):
-        own = [(role, _names(names)) for role, names in declaration.columns.items()]
+def reading_of(
+    table: Table, columns: GivenColumns, map_file: Path | None, settings: Mapping[str, Any]
+) -> Reading:
+    """The trace's columns and convention. Raises UsageError and TraceError."""
+    assigned, declared = settings_of(columns, map_file, settings)
+    how = convention_of(declared)
+    return Reading(table, columns_of(table, assigned, how.quaternion, how.euler), how)
+
+
+def settings_of(
+    columns: GivenColumns, map_file: Path | None, settings: Mapping[str, Any]
+) -> tuple[Assigned, dict[str, Any]]:
+    """Columns and settings, those given here before the map's. Raises UsageError.
+
+    settings: by option, None where nothing is declared.
+    """
+    if isinstance(columns, Mapping):
+        own = [(role, _names(names)) for role, names in columns.items()]
     else:
-        own = assignments_of(_names(declaration.columns))
-    given = {key: value for key, value in declaration.settings.items() if value is not None}
-    if declaration.map_file is None:
+        own = assignments_of(_names(columns))
+    given = {key: value for key, value in settings.items() if value is not None}
+    if map_file is None:
         return own, given
-    mapped = read_map(declaration.map_file)
+    mapped, more = _read_map(map_file)
     declared = {role for role, _ in own}
-    kept = [(role, names) for role, names in mapped.columns if role not in declared]
-    return own + kept, {**mapped.settings, **given}
+    return own + [pair for pair in mapped if pair[0] not in declared], {**more, **given}
 
 
 def _names(names: str | Sequence[str]) -> list[str]:
     return [names] if isinstance(names, str) else list(names)
 
 
-def convention_of(settings: Mapping[str, Any]) -> Convention:
-    """The convention that the settings declare. Raises UsageError."""
-    fields = {
-        key.replace("-", "_"): value
-        for key, value in settings.items()
-        if key not in ("quaternion", "world-axes", "body-axes", "attitude-is")
-    }
-    if "attitude-is" in settings:
-        fields["attitude"] = settings["attitude-is"]
-    for key in ("world", "body"):
-        if f"{key}-axes" in settings:
-            fields[key] = axes_of(settings[f"{key}-axes"], f"--{key}-axes")
-    return check_convention(Convention(**fields))
-
-
-def reading_of(declaration: Declaration, table: Table) -> Reading:
-    """The trace's columns and convention. Raises UsageError and TraceError."""
-    columns, settings = settings_of(declaration)
-    how = convention_of(settings)
-    check_sequence(how.euler)
-    order = settings.get("quaternion", DEFAULT_ORDER)
-    return Reading(table, columns_of(table, columns, order, how.euler), how)
+def _read_map(path: Path) -> tuple[Assigned, dict[str, Any]]:
+    """Columns and settings of a TOML file. Raises UsageError."""
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise UsageError(f"--map {path}: not readable ({error.strerror or error}).") from error
+    except (ValueError, RecursionError) as error:
+        reason = str(error).splitlines()[0].rstrip(".")
+        raise UsageError(f"--map {path}: not valid TOML ({reason}).") from error
+    columns = data.pop("columns", {})
+    if not isinstance(columns, dict):
+        raise UsageError(f"--map {path}: columns must be a table, like [columns] with t = 'time'.")
+    for key, value in data.items():
+        if key not in SETTINGS:
+            raise UsageError(f"--map {path}: there is no key {key!r}; {nearest(key, SETTINGS)}.")
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not (number if key == "time-offset" else isinstance(value, str)):
+            expected = "a number" if key == "time-offset" else "a text"
+            raise UsageError(f"--map {path}: {key} is {value!r}; give {expected}.")
+    for role, value in columns.items():
+        names = value if isinstance(value, list) else [value]
+        if not names or not all(isinstance(name, str) and name for name in names):
+            raise UsageError(
+                f"--map {path}: columns.{role} is {value!r}; give a column's name or a list of "
+                "them."
+            )
+    return [(role, _names(value)) for role, value in columns.items()], data

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
+import numpy as np
+import polars as pl
+
+from omegadot.commands.score.digits import (
+    DECIMAL_COMMA,
+    EPS,
+    NOT_FINITE,
+    NUMBER,
+    open_of,
+    open_time,
+)
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
 
@@ -19,36 +30,86 @@ class TraceError(UsageError):
 
 @dataclass(frozen=True)
 class Column:
-    """One column. values: (n,).  open: (n,), their resolution, by the digits as written."""
+    """One column. values: (n,).  texts: as written; None of binary numbers, of relative `eps`."""
 
     values: Array
-    open: Array
-
-
-class Table(Protocol):
-    """What the two kinds of file have in common."""
+    texts: Sequence[str] | None = None
+    eps: float = EPS
 
     @property
-    def file(self) -> str:
-        """Its name, for errors."""
-        ...
+    def open(self) -> Array:
+        """(n,), the resolution by the digits as written."""
+        if self.texts is None:
+            return 0.5 * self.eps * np.abs(self.values)
+        return open_of(self.texts, self.values)
 
     @property
-    def names(self) -> tuple[str, ...]:
-        """The names of its columns."""
-        ...
+    def open_time(self) -> Array:
+        """(n,), the same of time stamps."""
+        return self.open if self.texts is None else open_time(self.texts, self.values)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A trace's file. cells: by column, the texts of a CSV file, or the values of a Parquet file.
+
+    lines: those that a CSV file's samples stand in, None of a Parquet file.  decimal: its sign.
+    """
+
+    file: str
+    names: tuple[str, ...]
+    cells: list[pl.Series]
+    lines: pl.Series | None = None
+    decimal: str = "."
 
     def __len__(self) -> int:
         """How many samples there are."""
-        ...
+        return len(self.cells[0])
 
     def place(self, sample: int) -> str:
         """Where a sample stands in the file: "line 7" or "row 7"."""
-        ...
+        return f"row {sample + 1}" if self.lines is None else f"line {self.lines[sample]}"
 
     def column(self, name: str) -> Column:
         """One column's numbers. Raises TraceError where it holds anything else."""
-        ...
+        check_alone(self, name)
+        cells = self.cells[self.names.index(name) if name in self.names else int(name[1:]) - 1]
+        if self.lines is None:
+            if not cells.dtype.is_numeric():
+                raise TraceError(f"{self.file}: {name!r} holds {cells.dtype}, not numbers.")
+            eps = float(np.finfo(np.float32).eps) if cells.dtype == pl.Float32 else EPS
+            values = cells.cast(pl.Float64).fill_null(float("nan")).to_numpy()
+            self._check(name, cells, np.abs(values) <= LARGEST_NUMBER)
+            return Column(values, eps=eps)
+        cells = cells.fill_null("").str.strip_chars()
+        texts = cells.str.replace(self.decimal, ".", literal=True)
+        numbers = texts.str.replace("[dD]", "e").cast(pl.Float64, strict=False)
+        values = numbers.fill_null(float("nan")).to_numpy()
+        well = cells.str.contains(NUMBER.replace(r"\.", re.escape(self.decimal))).to_numpy()
+        self._check(name, cells, well & (np.abs(values) <= LARGEST_NUMBER))
+        return Column(values, texts.to_list())
+
+    def _check(self, name: str, cells: pl.Series, well: Array) -> None:
+        bad = np.flatnonzero(~well)
+        if len(bad):
+            more = f", and {len(bad) - 1} more" if len(bad) > 1 else ""
+            place, fault = self.place(int(bad[0])), self._fault(cells[int(bad[0])])
+            raise TraceError(f"{self.file}: {place}: {name!r} {fault}{more}.")
+
+    def _fault(self, cell: object) -> str:
+        text = "" if cell is None else str(cell)
+        if self.lines is None:
+            found = text or "empty"
+            return f"is {found}, a finite number of sensible size was expected"
+        if not text:
+            return "is empty, a number was expected"
+        if self.decimal == "." and DECIMAL_COMMA.match(text):
+            return f"is {text[:20]!r}; write it with a decimal point"
+        if self.decimal == "," and "." in text:
+            return f"is {text[:20]!r}; write it with a decimal comma, as the others"
+        if NOT_FINITE.match(text) or re.match(NUMBER, text.replace(self.decimal, ".")):
+            return f"is {text[:20]}, a finite number of sensible size was expected"
+        return f"is {text[:20]!r}, a number was expected"
 
 
 def find_column(table: Table, wanted: str, role: str) -> str:

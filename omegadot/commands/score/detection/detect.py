@@ -10,7 +10,7 @@ from omegadot.commands.score.detection.search import Detected, time_column
 from omegadot.commands.score.detection.search import detect as search
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.score import case_given
-from omegadot.commands.score.settings import Columns, Declaration, settings_of
+from omegadot.commands.score.settings import GivenColumns, settings_of
 from omegadot.commands.score.table import Table, find_column
 from omegadot.scenarios import ScenarioLike
 
@@ -19,7 +19,7 @@ def detect(
     trace: str | os.PathLike[str],
     scenario: ScenarioLike,
     *,
-    columns: Columns = (),
+    columns: GivenColumns = (),
     map_file: str | os.PathLike[str] | None = None,
 ) -> Detected:
     """Which conventions a trace can be read in so that it is the scenario's motion.
@@ -30,8 +30,8 @@ def detect(
     Raises UsageError, TraceError (a UsageError) and ScenarioError.
     """
     case, table = case_given(scenario), read_table(Path(trace))
-    declared = Declaration(columns, Path(map_file) if map_file else None)
-    column, names = _looked_at(table, settings_of(declared)[0])
+    assigned, _ = settings_of(columns, Path(map_file) if map_file else None, {})
+    column, names = _looked_at(table, assigned)
     return search(case, table, column, names)
 
 
