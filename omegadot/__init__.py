@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from omegadot.commands.schemes.schemes import SchemesResult, schemes
     from omegadot.commands.score.detection.detect import detect
     from omegadot.commands.score.detection.search import Detected
-    from omegadot.commands.score.result import ChannelScore, ScoreResult
+    from omegadot.commands.score.judged import ChannelScore
+    from omegadot.commands.score.result import ScoreResult
     from omegadot.commands.score.score import score
     from omegadot.commands.score.table import TraceError
     from omegadot.commands.versions.result import VersionChange, VersionsResult
@@ -57,7 +58,8 @@ _PLACES = {
     "commands.schemes.schemes": ("SchemesResult", "schemes"),
     "commands.score.detection.detect": ("detect",),
     "commands.score.detection.search": ("Detected",),
-    "commands.score.result": ("ChannelScore", "ScoreResult"),
+    "commands.score.judged": ("ChannelScore",),
+    "commands.score.result": ("ScoreResult",),
     "commands.score.score": ("score",),
     "commands.score.table": ("TraceError",),
     "commands.versions.result": ("VersionChange", "VersionsResult"),

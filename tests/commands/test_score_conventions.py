@@ -12,7 +12,7 @@ from score_line import run_score
 
 from omegadot.commands.score.convention import axes_of
 from omegadot.commands.score.exact_trajectory import exact_trajectory
-from omegadot.commands.score.judged import Making, judge_trace
+from omegadot.commands.score.judged import judge_trace
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.score import case_given
 from omegadot.commands.score.settings import reading_of
@@ -171,10 +171,10 @@ def test_every_convention_is_read_to_the_floor(thrown, tmp_path_factory, how):
     path = tmp_path_factory.getbasetemp() / "written.csv"
     write(path, how, case, exact)
     reading = reading_of(read_table(path), how.columns(), None, how.options())
-    found = judge_trace(case, reading, Making())
-    for channel, error in found.measured.error.items():
+    found = judge_trace(case, reading)
+    for channel, error in found.error.items():
         assert np.max(error - found.bound[channel]) <= 0.0, channel
-    assert not found.measured.absent
+    assert not found.absent
 
 
 WRONG = {
@@ -198,8 +198,8 @@ def test_a_wrong_declaration_is_not_at_the_floor(thrown, tmp_path, part):
     write(path, RIGHT, case, exact)
     wrong = Written(**{**vars(RIGHT), part: WRONG[part]})
     reading = reading_of(read_table(path), wrong.columns(), None, wrong.options())
-    found = judge_trace(case, reading, Making())
-    assert any(np.max(e) > 1e-3 for e in found.measured.error.values())
+    found = judge_trace(case, reading)
+    assert any(np.max(e) > 1e-3 for e in found.error.values())
 
 
 def test_a_map_equals_the_options_and_these_come_first(thrown, tmp_path, capsys):

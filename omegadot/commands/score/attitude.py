@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from omegadot.commands.score.columns import GROUPS, Columns
-from omegadot.commands.score.convention import Convention
+from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import Column, Table, TraceError
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.rotations import conjugate, quaternion_product
@@ -18,7 +17,8 @@ Angles = tuple[Array, Array]
 """(n, 4) quaternions as the trace has them, and (n,) rad, the resolution by their digits."""
 
 
-def _wxyz(rotation: Rotation) -> Array:
+def wxyz(rotation: Rotation) -> Array:
+    """(..., 4), as the project writes quaternions."""
     found: Array = np.roll(rotation.as_quat(), 1, axis=-1)
     return found
 
@@ -40,7 +40,7 @@ def from_euler(parts: list[Column], sequence: str, unit: float) -> Angles:
     """Three angles in the order of their sequence; their openings add up."""
     angles = unit * np.stack([part.values for part in parts], axis=-1)
     opening = unit * np.sum([part.open for part in parts], axis=0)
-    return _wxyz(Rotation.from_euler(sequence, angles)), np.asarray(opening)
+    return wxyz(Rotation.from_euler(sequence, angles)), np.asarray(opening)
 
 
 def from_matrices(table: Table, parts: list[Column]) -> Angles:
@@ -60,34 +60,27 @@ def from_matrices(table: Table, parts: list[Column]) -> Angles:
         )
     left, _, right = np.linalg.svd(given)
     opening = np.sqrt(2.0) * norm(np.stack([part.open for part in parts], axis=-1))
-    return _wxyz(Rotation.from_matrix(left @ right)), opening
+    return wxyz(Rotation.from_matrix(left @ right)), opening
 
 
-def group_of(table: Table, columns: dict[str, str], group: str) -> list[Column]:
-    """The columns of one group, in the order of its roles; none where it is not given."""
-    if GROUPS[group][0] not in columns:
-        return []
-    return [table.column(columns[role]) for role in GROUPS[group]]
-
-
-def attitude_of(table: Table, columns: Columns, how: Convention) -> Angles | None:
+def attitude_of(reading: Reading) -> Angles | None:
     """world_R_body between the scenario's axes, or None."""
-    found: Angles | None = None
-    if parts := group_of(table, columns, "q"):
-        found = from_quaternions(table, parts)
-    elif parts := group_of(table, columns, "e"):
-        found = from_euler(parts, how.euler, how.scale_of("angle"))
-    elif parts := group_of(table, columns, "r"):
-        found = from_matrices(table, parts)
-    if found is None:
+    how = reading.how
+    if parts := reading.group("q"):
+        q, opening = from_quaternions(reading.table, parts)
+    elif parts := reading.group("e"):
+        q, opening = from_euler(parts, how.euler, how.scale_of("angle"))
+    elif parts := reading.group("r"):
+        q, opening = from_matrices(reading.table, parts)
+    else:
         return None
-    q = found[0] if how.attitude_is == "world-from-body" else conjugate(found[0])
-    return _in_our_axes(q, how.world_axes, how.body_axes), found[1]
+    own = q if how.attitude_is == "world-from-body" else conjugate(q)
+    return _in_our_axes(own, how.world_axes, how.body_axes), opening
 
 
 def _in_our_axes(q: Array, world: Array, body: Array) -> Array:
     """``world q body^-1``, (n, 4): an attitude between their axes, reported between ours."""
     if np.array_equal(world, np.eye(3)) and np.array_equal(body, np.eye(3)):
         return q
-    turns = [_wxyz(Rotation.from_matrix(m)) for m in (world, body)]
+    turns = [wxyz(Rotation.from_matrix(m)) for m in (world, body)]
     return quaternion_product(quaternion_product(turns[0], q), conjugate(turns[1]))

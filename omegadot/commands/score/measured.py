@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from omegadot.commands.score.bounds import Rounding
-from omegadot.commands.score.exact_trajectory import ExactTrajectory
+from omegadot.commands.score.bounds import Rounding, digits_open, joined, reading_bound
+from omegadot.commands.score.exact_trajectory import ExactTrajectory, exact_trajectory
 from omegadot.commands.score.trace import Trace
+from omegadot.gates.case import Case
 from omegadot.gates.interpolation import Hermite
 from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.phase import flip_rows
@@ -24,27 +25,25 @@ class Measured:
     """A trace measured. state: with the exact trajectory's values where the trace gives none.
 
     error: (n,) by channel, of those given.  absent: why the others are not.  remarks: how a channel
-    that only a part of the trace bears on was measured.
+    that only a part of the trace bears on was measured.  digits: (n,) by channel, the resolution.
+    bound: digits, rounding and floor together.
     """
 
+    case: Case
+    trace: Trace
+    truth: Truth
+    trajectory: ExactTrajectory
     state: State
     error: dict[str, Array]
     absent: dict[str, str]
     remarks: dict[str, str]
+    digits: Rounding
+    bound: Rounding
 
-
-def filled(trace: Trace, exact: State) -> State:
-    """The trace's state, and the exact one where it gives nothing."""
-
-    def own(found: Array | None, instead: Array) -> Array:
-        return instead if found is None else found
-
-    return State(
-        own(trace.orientation, exact.orientation),
-        own(trace.angular_velocity, exact.angular_velocity),
-        own(trace.position, exact.position),
-        own(trace.linear_velocity, exact.linear_velocity),
-    )
+    @property
+    def rate(self) -> float:
+        """rad/s, which omega's errors are relative to."""
+        return self.truth.yardstick.rate
 
 
 def absent_channels(trace: Trace, truth: Truth) -> dict[str, str]:
@@ -70,19 +69,23 @@ def absent_channels(trace: Trace, truth: Truth) -> dict[str, str]:
     return found
 
 
-def measure_trace(trace: Trace, truth: Truth) -> Measured:
-    """The distances from the exact trajectory."""
+def measure_trace(case: Case, trace: Trace, truth: Truth) -> Measured:
+    """The distances from the exact trajectory, and what of them digits and rounding account for."""
     absent, exact = absent_channels(trace, truth), truth.state
-    state = filled(trace, exact)
+    given = {name: getattr(trace, name) for name in vars(exact)}
+    state = replace(exact, **{name: own for name, own in given.items() if own is not None})
     error = {c: distance(truth, trace, c, state, exact) for c in CHANNELS if c not in absent}
     remarks = {}
     if "angular_momentum" in error and trace.orientation is None:
         remarks["angular_momentum"] = "its length alone, the attitude is not given"
     if "energy" in error and trace.linear_velocity is None:
-        load = truth.yardstick.system.load
+        load = case.system.load
         if load.pivot is None and (np.any(exact.linear_velocity) or np.any(load.gravity)):
             remarks["energy"] = "of the rotation alone, the velocity is not given"
-    return Measured(state, error, absent, remarks)
+    digits = digits_open(truth, trace)
+    bound = joined(digits, reading_bound(truth))
+    trajectory = exact_trajectory(case.system, case.initial)
+    return Measured(case, trace, truth, trajectory, state, error, absent, remarks, digits, bound)
 
 
 def distance(truth: Truth, trace: Trace, channel: str, one: State, other: State) -> Array:
@@ -94,19 +97,18 @@ def distance(truth: Truth, trace: Trace, channel: str, one: State, other: State)
     return yardstick.distance(channel, one, other)
 
 
-def flips_of(
-    truth: Truth, trajectory: ExactTrajectory, trace: Trace, measured: Measured, bound: Rounding
-) -> list[Row]:
+def flips_of(found: Measured) -> list[Row]:
     """The largest error of a flip's time; none without omega, or where nothing flips.
 
     Both trajectories are interpolated alike between the trace's samples. What that leaves open is
     the cubic's own error, found half-way between the samples on the exact trajectory.
     """
-    if trace.angular_velocity is None or len(trace.times) < 3:
+    truth, times = found.truth, found.trace.times
+    if found.trace.angular_velocity is None or len(times) < 3:
         return []
     exact = Hermite(truth.times, truth.state.angular_velocity, truth.omega_dot)
-    middle = 0.5 * (trace.times[1:] + trace.times[:-1])
-    gap = float(np.max(norm(exact.at(middle)[0] - trajectory(middle).angular_velocity)))
-    rounding = truth.yardstick.rate * float(np.max(bound["omega"]))
+    middle = 0.5 * (times[1:] + times[:-1])
+    gap = float(np.max(norm(exact.at(middle)[0] - found.trajectory(middle).angular_velocity)))
+    rounding = found.rate * float(np.max(found.bound["omega"]))
     with np.errstate(all="ignore"):
-        return flip_rows(truth.yardstick.system, exact, measured.state, rounding + gap, rounding)
+        return flip_rows(found.case.system, exact, found.state, rounding + gap, rounding)

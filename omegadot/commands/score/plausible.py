@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.commands.score.columns import GROUPS, Columns
-from omegadot.commands.score.convention import Convention, option_of
-from omegadot.commands.score.table import Table, TraceError
+from omegadot.commands.score.columns import GROUPS
+from omegadot.commands.score.convention import option_of
+from omegadot.commands.score.settings import Reading
+from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import Trace, trace_of
 from omegadot.commands.units import UNITS
 from omegadot.gates.scales import norm
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.rotations import attitude_angle, normalize
-from omegadot.reference_impl.system import System
 
 # Wrong beyond doubt: a twentieth of the motion's size off, and twenty times nearer otherwise.
 GROSS = 0.05
@@ -25,8 +25,9 @@ LONGEST = 20.0  # times the scenario's duration
 FIRST = 0.25
 
 
-def check_duration(table: Table, trace: Trace, how: Convention, duration: float) -> None:
+def check_duration(reading: Reading, trace: Trace, duration: float) -> None:
     """Raise TraceError where the time stamps run far from the scenario's."""
+    table, how = reading.table, reading.how
     first, end = float(trace.times[0]), float(trace.times[-1])
     if first < 0.0:
         raise TraceError(
@@ -48,32 +49,25 @@ def check_duration(table: Table, trace: Trace, how: Convention, duration: float)
     )
 
 
-def check_units(
-    table: Table, columns: Columns, how: Convention, system: System, trace: Trace, truth: Truth
-) -> None:
+def check_units(reading: Reading, trace: Trace, truth: Truth) -> None:
     """Raise TraceError where another unit than the declared one fits, and that one does not."""
+    how, system = reading.how, truth.yardstick.system
     for kind, group in (("rate", "w"), ("angle", "e"), ("length", "p")):
-        units = UNITS[kind]
-        if GROUPS[group][0] not in columns:
-            continue
+        units, field = UNITS[kind], f"{kind}_unit"
         declared = _misfit(kind, trace, truth)
-        if declared <= GROSS:
+        if GROUPS[group][0] not in reading.columns or declared <= GROSS:
             continue
         for unit in units:
-            other = with_unit(how, kind, unit)
-            misfit = _misfit(kind, trace_of(table, columns, other, system), truth)
+            changed: dict[str, Any] = {field: unit}
+            other = replace(reading, how=replace(how, **changed))
+            misfit = _misfit(kind, trace_of(other, system), truth)
             if misfit * NEARER < declared and misfit < GROSS:
-                option, given = option_of(f"{kind}_unit"), getattr(how, f"{kind}_unit")
+                given = getattr(how, field)
                 raise TraceError(
-                    f"{table.file}: {_WHAT[kind]} {_times(units[given] / units[unit])} what "
-                    f"{given} would give here, and looks like {unit}; give {option} {unit}."
+                    f"{reading.table.file}: {_WHAT[kind]} {_times(units[given] / units[unit])} "
+                    f"what {given} would give here, and looks like {unit}; give "
+                    f"{option_of(field)} {unit}."
                 )
-
-
-def with_unit(how: Convention, kind: str, unit: str) -> Convention:
-    """The convention with another unit of ``time``, ``angle``, ``rate`` or ``length``."""
-    changed: dict[str, Any] = {f"{kind}_unit": unit}
-    return replace(how, **changed)
 
 
 _WHAT = {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 
-import numpy as np
 import typer
 from rich.console import Console
 from rich.table import Table
@@ -54,17 +53,14 @@ def _table(found: Judged) -> Table:
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
     for head in ("channel", "largest", "at the end", "rms", "resolution", "unit", "", "why"):
         table.add_column(head, no_wrap=True)
-    for channel, error in found.measured.error.items():
-        factor, unit = factor_of(found, channel)
-        rms = float(np.sqrt(np.mean(error**2)))
-        shown = (np.max(error), error[-1], rms, np.max(found.bound[channel]))
-        judgement = found.judgement[channel]
+    for channel in found.error:
+        score = found.score(channel, *factor_of(found, channel))
         table.add_row(
             channel.replace("_", " "),
-            *(f"{factor * float(value):.4g}" for value in shown),
-            unit,
-            Text(judgement.verdict, STYLES[judgement.verdict]),
-            Text(judgement.note),
+            *(f"{value:.4g}" for value in (score.max, score.end, score.rms, score.bound)),
+            score.unit,
+            Text(score.verdict, STYLES[score.verdict]),
+            Text(score.note),
         )
     return table
 
@@ -82,7 +78,7 @@ def print_json(result: ScoreResult) -> None:
         "attitude_after": shift.attitude_after,
         "noise": scatter(shift),
         "explains": shift.explains,
-        "note": shift.as_text if shift.seen else "neither late nor early",
+        "note": shift.note,
     }
     printed = {
         "schema": result.record.run["schema"],

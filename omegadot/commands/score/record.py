@@ -128,10 +128,7 @@ def sentence_of(found: Judged, rows: list[Row], name: str) -> str:
     failed = [row for row in rows if row.verdict == "fail"]
     if failed:
         return f"{name} fails on {found.case.name}: {failed[0].channel}, {failed[0].note}."
-    parts = [
-        f"{channel.replace('_', ' ')} by {largest(found, channel)}"
-        for channel in found.measured.error
-    ]
+    parts = [f"{channel.replace('_', ' ')} by {largest(found, channel)}" for channel in found.error]
     late = found.shift is not None and found.shift.explains
     why = f" It is {found.shift.as_text}, and that is its error." if late and found.shift else ""
     return f"{name} on {found.case.name} is off at most: {', '.join(parts[:3])}.{why}"

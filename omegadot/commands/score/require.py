@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
-from omegadot.commands.score.measured import Measured
+from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.verdicts import GATES
 from omegadot.commands.units import UNITS, quantity, unit_written
 from omegadot.gates.rows import Row
@@ -49,30 +47,25 @@ def requirements_of(texts: Mapping[str, str | None]) -> list[Requirement]:
     ]
 
 
-def requirement_rows(
-    wanted: list[Requirement], measured: Measured, rate: float, flips: list[Row]
-) -> list[Row]:
-    """One row a requirement, pass or fail. Raises UsageError where the trace cannot decide.
+def requirement_rows(wanted: list[Requirement], found: Judged) -> list[Row]:
+    """One row a requirement, pass or fail. Raises UsageError where the trace cannot decide."""
+    return [_row(one, found) for one in wanted]
 
-    rate: rad/s, which omega's errors are relative to.  flips: the row of the flips' error, if any.
-    """
-    found = []
-    for one in wanted:
-        channel = one.channel
-        if channel == "time":
-            if not flips:
-                raise UsageError(
-                    f"--flip-time {one.text}: the motion does not flip about its middle axis, or "
-                    "omega is not given; leave it out."
-                )
-            value, unit, gate = flips[0].value, "s", "trajectory"
-        else:
-            if channel in measured.absent:
-                raise UsageError(f"--{one.name} {one.text}: {measured.absent[channel]}.")
-            factor = rate if channel == "omega" else 1.0
-            value, gate = factor * float(np.max(measured.error[channel])), GATES[channel]
-            unit = {"omega": "rad/s", "attitude": "rad", "position": "m"}.get(channel, "1")
-        verdict = "pass" if value <= one.limit else "fail"
-        note = f"required: at most {one.text}, found {one.as_text(value)}"
-        found.append(Row(gate, channel, "requirement", value, unit, one.limit, verdict, note))
-    return found
+
+def _row(one: Requirement, found: Judged) -> Row:
+    channel, flips = one.channel, found.flips
+    if channel == "time" and not flips:
+        raise UsageError(
+            f"--flip-time {one.text}: the motion does not flip about its middle axis, or "
+            "omega is not given; leave it out."
+        )
+    if channel in found.absent:
+        raise UsageError(f"--{one.name} {one.text}: {found.absent[channel]}.")
+    if channel == "time":
+        value, unit, gate = flips[0].value, "s", "trajectory"
+    else:
+        score, gate = found.in_si(channel), GATES[channel]
+        value, unit = score.max, score.unit
+    verdict = "pass" if value <= one.limit else "fail"
+    note = f"required: at most {one.text}, found {one.as_text(value)}"
+    return Row(gate, channel, "requirement", value, unit, one.limit, verdict, note)

@@ -9,7 +9,7 @@ from pathlib import Path
 from omegadot.commands.progress import Reporting, reporting
 from omegadot.commands.run.result import RunInterrupted, result_of
 from omegadot.commands.score.convention import SETTINGS
-from omegadot.commands.score.judged import Making, judge_trace
+from omegadot.commands.score.judged import judge_trace
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.record import scored_record
 from omegadot.commands.score.require import KINDS, requirements_of
@@ -79,8 +79,8 @@ def score(
         check_folder(Path(out))
     mapped = Path(map_file) if map_file else None
     reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
-    found = judge_trace(case, reading, Making(integrator_scheme, timestep, tuple(requirements)))
-    rows = rows_of(found)
+    found = judge_trace(case, reading, integrator_scheme, timestep)
+    rows = rows_of(found, requirements)
     with reporting(progress) as report:
         record = scored_record(found, rows, name, choices, command, report)
     held = result_of(RunRecord.of(record), choices, out)

@@ -17,7 +17,7 @@ def factor_of(found: Judged, channel: str) -> tuple[float, str]:
     how = found.reading.how
     if channel == "omega":
         unit = how.rate_unit
-        return found.truth.yardstick.rate / UNITS["rate"][unit], unit
+        return found.rate / UNITS["rate"][unit], unit
     if channel == "attitude":
         unit = how.angle_unit if "e1" in found.reading.columns else "rad"
         return 1.0 / UNITS["angle"][unit], unit
@@ -29,7 +29,7 @@ def factor_of(found: Judged, channel: str) -> tuple[float, str]:
 def largest(found: Judged, channel: str) -> str:
     """The largest error of a channel with its unit: ``0.003 deg/s``."""
     factor, unit = factor_of(found, channel)
-    value = factor * float(np.max(found.measured.error[channel]))
+    value = factor * float(np.max(found.error[channel]))
     return f"{value:.3g}" + ("" if unit == "relative" else f" {unit}")
 
 
@@ -77,7 +77,7 @@ def _start(found: Judged) -> list[str]:
     if found.trace.times[0] > 0.0:
         lines.append(f"The first sample is {found.trace.times[0]:g} s after the scenario's start.")
     for channel in ("attitude", "omega", "position"):
-        error = found.measured.error.get(channel)
+        error = found.error.get(channel)
         if error is not None and error[0] > found.bound[channel][0]:
             factor, unit = factor_of(found, channel)
             lines.append(
@@ -110,7 +110,7 @@ def _notes(rows: list[Row]) -> list[str]:
 def _digits(found: Judged) -> list[str]:
     parts = []
     for channel in ("omega", "attitude", "position"):
-        if channel in found.measured.error:
+        if channel in found.error:
             factor, unit = factor_of(found, channel)
             resolution = factor * float(np.max(found.digits[channel]))
             parts.append(f"{resolution:.1g} {unit} of {channel}")
@@ -119,8 +119,8 @@ def _digits(found: Judged) -> list[str]:
 
 def _absent(found: Judged) -> list[str]:
     lines = []
-    if found.measured.absent:
-        names = ", ".join(name.replace("_", " ") for name in found.measured.absent)
+    if found.absent:
+        names = ", ".join(name.replace("_", " ") for name in found.absent)
         lines.append(f"Not given, so not judged: {names}.")
     lacking = [] if found.trace.omega_dot is not None else ["equation (no omega-dot)"]
     if found.declared is None:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from omegadot.commands.score.columns import Columns, assignments_of, columns_of
+from omegadot.commands.score.columns import GROUPS, Columns, assignments_of, columns_of
 from omegadot.commands.score.convention import SETTINGS, Convention, convention_of
-from omegadot.commands.score.table import Table
+from omegadot.commands.score.table import Column, Table
 from omegadot.harness.usage import UsageError, nearest
 
 GivenColumns = Mapping[str, str | Sequence[str]] | Sequence[str]
@@ -26,6 +26,11 @@ class Reading:
     table: Table
     columns: Columns
     how: Convention
+
+    def group(self, name: str) -> list[Column]:
+        """The columns of one group, in the order of its roles; none where it is not given."""
+        given = GROUPS[name][0] in self.columns
+        return [self.table.column(self.columns[role]) for role in GROUPS[name] if given]
 
 
 def reading_of(

@@ -10,13 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.commands.score.exact_trajectory import ExactTrajectory
-from omegadot.commands.score.trace import Trace
+from omegadot.commands.score.measured import Measured
 from omegadot.gates.phase import FARTHEST, MOST_ITERATIONS
 from omegadot.gates.scales import EPS, norm
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, normalize, rotation_between
-from omegadot.reference_impl.system import Array, System
+from omegadot.reference_impl.system import Array
 
 MOST_COMPARED = 400  # samples, and as many shifts to either side, when a first shift is sought
 # A shift that leaves a tenth of the error or less is what was wrong; more left, and more was.
@@ -58,35 +57,43 @@ class Shift:
         """``late by 3.20e-04 s``."""
         return f"{'late' if self.seconds < 0.0 else 'early'} by {abs(self.seconds):.3e} s"
 
+    @property
+    def note(self) -> str:
+        """The same, or that it cannot be seen."""
+        return self.as_text if self.seen else "neither late nor early"
 
-def _residual(
-    system: System, trajectory: ExactTrajectory, trace: Trace, shift: float
-) -> tuple[Array, Array]:
+
+def shift_of(found: Measured) -> Shift | None:
+    """By omega; by the attitude where no omega is given, or where it is constant."""
+    by_omega = _best(found, "omega") if "omega" in found.error else None
+    if by_omega is None and "attitude" in found.error:
+        return _best(found, "attitude")
+    return by_omega
+
+
+def _residual(found: Measured, of: str, shift: float) -> tuple[Array, Array]:
     """(m, 3): trace minus exact at the samples that a shift leaves inside, and the rate of change.
 
-    Of omega where it is given, else of the attitude as a rotation vector in body axes.
+    Of omega, or of the attitude as a rotation vector in body axes.
     """
-    inside = trace.times + shift >= 0.0
-    exact = trajectory(trace.times[inside] + shift)
-    if trace.angular_velocity is not None:
-        slope = forward_dynamics(system, exact).angular
-        return trace.angular_velocity[inside] - exact.angular_velocity, slope
-    assert trace.orientation is not None
-    own = normalize(trace.orientation[inside])
+    inside = found.trace.times + shift >= 0.0
+    exact = found.trajectory(found.trace.times[inside] + shift)
+    if of == "omega":
+        slope = forward_dynamics(found.case.system, exact).angular
+        return found.state.angular_velocity[inside] - exact.angular_velocity, slope
+    own = normalize(found.state.orientation[inside])
     return rotation_between(exact.orientation, own), exact.angular_velocity
 
 
-def _start(trajectory: ExactTrajectory, trace: Trace, open_gap: float) -> float:
+def _start(found: Measured, open_gap: float) -> float:
     """A shift to begin with: the smallest that fits as well as any, half a gap allowed for."""
-    omega = trace.angular_velocity
-    if omega is None:
-        return 0.0
+    trace, omega = found.trace, found.state.angular_velocity
     rows = np.unique(np.linspace(0, len(trace.times) - 1, MOST_COMPARED).round().astype(int))
     times, duration = trace.times[rows], float(trace.times[-1])
     gap = max(FARTHEST * duration / MOST_COMPARED, open_gap)
     shifts = gap * np.arange(-MOST_COMPARED, MOST_COMPARED + 1)
     grid = gap * np.arange(int(np.ceil(1.25 * duration / gap)) + 2)
-    exact = trajectory(grid).angular_velocity
+    exact = found.trajectory(grid).angular_velocity
     wanted = times[None, :] + shifts[:, None]
     inside = wanted >= 0.0
     place = np.clip(wanted / gap, 0.0, len(grid) - 2.0)
@@ -102,40 +109,34 @@ def _start(trajectory: ExactTrajectory, trace: Trace, open_gap: float) -> float:
     return float(fitting[np.argmin(np.abs(fitting))])
 
 
-def best_shift(
-    system: System, trajectory: ExactTrajectory, trace: Trace, bound: Array, rate: float
-) -> Shift | None:
-    """The shift that minimises the squares, by Gauss-Newton; None where nothing changes in time.
-
-    bound: (n,), what rounding and digits leave open of omega relative to `rate`, or of the
-    attitude in rad.
-    """
-    unit = rate if trace.angular_velocity is not None else 1.0
-    limit = unit * float(np.max(bound))
-    before, slope = _residual(system, trajectory, trace, 0.0)
+def _best(found: Measured, of: str) -> Shift | None:
+    """The shift that minimises the squares, by Gauss-Newton; None where nothing changes in time."""
+    trace, unit = found.trace, found.rate if of == "omega" else 1.0
+    limit = unit * float(np.max(found.bound[of]))
+    before, slope = _residual(found, of, 0.0)
     change = float(np.sqrt(np.mean(np.sum(slope * slope, axis=-1))))
     duration = float(trace.times[-1])
     if not change * duration > limit or len(trace.times) < 3:
         return None
-    shift, farthest = _start(trajectory, trace, EPS * duration), FARTHEST * duration
+    farthest = FARTHEST * duration
+    shift = _start(found, EPS * duration) if of == "omega" else 0.0
     step = farthest / MOST_COMPARED
     for _ in range(2 * MOST_ITERATIONS):
-        residual, slope = _residual(system, trajectory, trace, shift)
-        found = float(np.sum(residual * slope) / np.sum(slope * slope))
-        found = float(np.clip(found, -step, step))
-        if not abs(shift + found) <= farthest or abs(found) <= EPS * duration:
+        residual, slope = _residual(found, of, shift)
+        more = float(np.sum(residual * slope) / np.sum(slope * slope))
+        more = float(np.clip(more, -step, step))
+        if not abs(shift + more) <= farthest or abs(more) <= EPS * duration:
             break
-        shift += found
-    left, slope = _residual(system, trajectory, trace, shift)
+        shift += more
+    left, slope = _residual(found, of, shift)
     # What is left moves the fit as well: four standard errors of it.
     spread = 4.0 * float(np.sqrt(np.mean(left * left) / np.sum(slope * slope)))
     attitude = None
     if trace.orientation is not None:
         inside = trace.times + shift >= 0.0
-        exact = trajectory(trace.times[inside] + shift).orientation
+        exact = found.trajectory(trace.times[inside] + shift).orientation
         attitude = float(np.max(attitude_angle(exact, normalize(trace.orientation[inside]))))
     largest, after = float(np.max(norm(before))), float(np.max(norm(left)))
-    of = "omega" if trace.angular_velocity is not None else "attitude"
     return Shift(of, shift, limit / change + spread, largest, after, limit, left, attitude)
 
 

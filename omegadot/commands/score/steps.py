@@ -13,7 +13,6 @@ from omegadot.commands.score.exact_trajectory import part_of
 from omegadot.commands.score.measured import Measured, distance
 from omegadot.commands.score.trace import Trace
 from omegadot.gates.likeness import Likeness, likeness
-from omegadot.gates.truth import Truth
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.coordinates import Coordinates, distinct
@@ -50,26 +49,6 @@ class Comparison:
     own_start: bool = False
 
 
-@dataclass(frozen=True)
-class Compared:
-    """What a scheme is compared with. bound: (n,) by channel, of an exact trace."""
-
-    truth: Truth
-    initial: State
-    trace: Trace
-    measured: Measured
-    digits: Rounding
-    bound: Rounding
-    declared: Declared
-
-    @property
-    def starts_elsewhere(self) -> bool:
-        """Whether a first sample at the start of all is not the scenario's state."""
-        known = [c for c in ("omega", "attitude") if c in self.measured.error]
-        off = any(self.measured.error[c][0] > self.bound[c][0] for c in known)
-        return bool(self.trace.times[0] == 0.0 and len(known) == 2 and off)
-
-
 def declared_of(trace: Trace, scheme: str | None, timestep: float | None) -> Declared | None:
     """The declaration, if there is one and it can be. Raises UsageError."""
     if scheme is not None and scheme not in SCHEMES:
@@ -100,47 +79,65 @@ def declared_of(trace: Trace, scheme: str | None, timestep: float | None) -> Dec
     return Declared(scheme, timestep, numbers)
 
 
-def compare_schemes(held: Compared) -> list[Comparison]:
+def compare_schemes(held: Measured, declared: Declared) -> list[Comparison]:
     """The scheme that is declared; every scheme if none is, or if it is another that was stepped.
 
     The declared one comes first; from the trace's own start, where that makes it agree.
     """
-    named = held.declared.scheme
-    first = [] if named is None else [_against(held, named)]
-    if named is not None and not first[0].found.agree and held.starts_elsewhere:
-        own = _against(held, named, own_start=True)
+    named = declared.scheme
+    first = [] if named is None else [_against(held, declared, named)]
+    if named is not None and not first[0].found.agree and _starts_elsewhere(held):
+        own = _against(held, declared, named, own_start=True)
         first = [own] if own.found.agree else first
-    if (first and first[0].found.agree) or held.declared.numbers[-1] > MOST_STEPS_OF_ALL:
+    if (first and first[0].found.agree) or declared.numbers[-1] > MOST_STEPS_OF_ALL:
         return first
-    return first + [_against(held, name) for name in SCHEMES if name != named]
+    return first + [_against(held, declared, name) for name in SCHEMES if name != named]
 
 
-def _against(held: Compared, scheme: str, own_start: bool = False) -> Comparison:
+def _starts_elsewhere(held: Measured) -> bool:
+    """Whether a first sample at the start of all is not the scenario's state."""
+    known = [c for c in ("omega", "attitude") if c in held.error]
+    off = any(held.error[c][0] > held.bound[c][0] for c in known)
+    return bool(held.trace.times[0] == 0.0 and len(known) == 2 and off)
+
+
+def _against(
+    held: Measured, declared: Declared, scheme: str, own_start: bool = False
+) -> Comparison:
     """The nearest of the coordinates in which the scheme's steps differ."""
-    ways = distinct(held.truth.yardstick.system)
-    found = [_stepped(held, scheme, own_start, w) for w in ways if w in SCHEMES[scheme].coordinates]
+    start = held.case.initial
+    if own_start:
+        start = part_of(held.state, 0)
+        start = replace(start, orientation=normalize(start.orientation))
+    found = [
+        _stepped(held, declared, scheme, start, own_start, way)
+        for way in distinct(held.case.system)
+        if way in SCHEMES[scheme].coordinates
+    ]
     return min(found, key=lambda one: sum(np.any(one.left[c] > one.bound[c]) for c in one.left))
 
 
-def _stepped(held: Compared, scheme: str, own_start: bool, way: Coordinates) -> Comparison:
-    declared, yardstick, error = held.declared, held.truth.yardstick, held.measured.error
-    numbers = declared.numbers.astype(int)
+def _stepped(
+    held: Measured,
+    declared: Declared,
+    scheme: str,
+    start: State,
+    own_start: bool,
+    way: Coordinates,
+) -> Comparison:
+    numbers, yardstick = declared.numbers.astype(int), held.truth.yardstick
     every = reduce(gcd, (int(n) for n in numbers), 0) or 1
     plan = [Steps(declared.timestep, int(numbers[-1]), every)]
-    initial = held.initial
-    if own_start:
-        initial = part_of(held.measured.state, 0)
-        initial = replace(initial, orientation=normalize(initial.orientation))
     # A scheme that blows up at this step is infinitely far off.
     with np.errstate(over="ignore", invalid="ignore"):
-        run = companion(yardstick.system, initial, scheme, yardstick.rate, plan, way)[0]
+        run = companion(held.case.system, start, scheme, held.rate, plan, way)[0]
         rows = numbers // every
         state, growth = part_of(run.state, rows), run.growth[rows]
         rounding = yardstick.round_off(declared.timestep, declared.numbers, growth)
         bound = joined(rounding, held.digits)
         if own_start:
             bound = joined(bound, _start_open(held.digits, growth))
-        left = {c: distance(held.truth, held.trace, c, held.measured.state, state) for c in error}
+        left = {c: distance(held.truth, held.trace, c, held.state, state) for c in held.error}
         spins = {c: left[c] for c in left if c in ("omega", "attitude")} or left
         still = dict.fromkeys(("omega", "attitude"), np.zeros(len(rows)))
         found = likeness({**still, **spins}, bound)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from omegadot.commands.score.attitude import attitude_of, group_of
-from omegadot.commands.score.columns import Columns
-from omegadot.commands.score.convention import Convention
-from omegadot.commands.score.table import Column, Table, TraceError
+from omegadot.commands.score.attitude import attitude_of
+from omegadot.commands.score.settings import Reading
+from omegadot.commands.score.table import Column, TraceError
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
@@ -31,37 +30,34 @@ class Trace:
 
     times: Array
     orientation: Array | None
-    angular_velocity: Array | None
-    position: Array | None
-    linear_velocity: Array | None
-    omega_dot: Array | None
-    open: dict[str, Array]
+    angular_velocity: Array | None = None
+    position: Array | None = None
+    linear_velocity: Array | None = None
+    omega_dot: Array | None = None
+    open: dict[str, Array] = field(default_factory=dict)
 
 
-def trace_of(table: Table, columns: Columns, how: Convention, system: System) -> Trace:
+def trace_of(reading: Reading, system: System) -> Trace:
     """The trace read as the convention states. Raises TraceError."""
-    times, open_times = _stamps(table, columns["t"], how)
-    opened = {"times": open_times}
-    attitude = attitude_of(table, columns, how)
-    orientation = None
+    how = reading.how
+    times, open_times = _stamps(reading)
+    opened, moved = {"times": open_times}, dict[str, Array]()
+    attitude, orientation = attitude_of(reading), None
     if attitude is not None:
         orientation, opened["orientation"] = attitude
-    spins: dict[str, Array | None] = {"angular_velocity": None, "omega_dot": None}
     for name, group in (("angular_velocity", "w"), ("omega_dot", "a")):
-        parts = group_of(table, columns, group)
-        if parts:
-            spin, rounding = _spin(table, parts, how.scale_of("rate"), how, orientation)
+        if parts := reading.group(group):
+            values, rounding = _stacked(parts, how.scale_of("rate"))
+            moved[name] = _in_body(reading, values, orientation)
             if how.omega_frame == "world":
-                rounding = rounding + norm(spin) * opened["orientation"]
-            spins[name], opened[name] = spin, rounding
-    moved: dict[str, Array | None] = {"position": None, "linear_velocity": None}
+                rounding = rounding + norm(moved[name]) * opened["orientation"]
+            opened[name] = rounding
     for name, group in (("position", "p"), ("linear_velocity", "v")):
-        parts = group_of(table, columns, group)
-        if parts:
-            moved[name], opened[name] = _world(parts, how.scale_of("length"), how.world_axes)
-    if how.point == "origin":
-        moved = _to_center(table, system, moved, orientation, spins["angular_velocity"])
-    return Trace(times, orientation, **spins, **moved, open=opened)
+        if parts := reading.group(group):
+            values, opened[name] = _stacked(parts, how.scale_of("length"))
+            moved[name] = values @ how.world_axes.T
+    trace = Trace(times, orientation, **moved, open=opened)
+    return _at_center(reading, system, trace) if how.point == "origin" else trace
 
 
 def _stacked(parts: list[Column], unit: float) -> tuple[Array, Array]:
@@ -69,29 +65,42 @@ def _stacked(parts: list[Column], unit: float) -> tuple[Array, Array]:
     return values, unit * norm(np.stack([part.open for part in parts], axis=-1))
 
 
-def _spin(
-    table: Table, parts: list[Column], unit: float, how: Convention, orientation: Array | None
-) -> tuple[Array, Array]:
+def _in_body(reading: Reading, values: Array, orientation: Array | None) -> Array:
     """Angular velocity or omega-dot in body axes; both turn from the world alike."""
-    values, opened = _stacked(parts, unit)
+    how = reading.how
     if how.omega_frame == "body":
-        return values @ how.body_axes.T, opened
+        return values @ how.body_axes.T
     if orientation is None:
         raise TraceError(
-            f"{table.file}: omega is in world axes and the attitude is not given, so it cannot be "
-            "reported in body axes; map the attitude too."
+            f"{reading.table.file}: omega is in world axes and the attitude is not given, so it "
+            "cannot be reported in body axes; map the attitude too."
         )
-    return rotate_inverse(normalize(orientation), values @ how.world_axes.T), opened
+    return rotate_inverse(normalize(orientation), values @ how.world_axes.T)
 
 
-def _world(parts: list[Column], unit: float, world: Array) -> tuple[Array, Array]:
-    values, opened = _stacked(parts, unit)
-    return values @ world.T, opened
+def _at_center(reading: Reading, system: System, trace: Trace) -> Trace:
+    """From the body's origin to its centre of mass: ``x + R c`` and ``v + R (omega x c)``."""
+    c, omega = system.body.center_of_mass, trace.angular_velocity
+    position, velocity = trace.position, trace.linear_velocity
+    if not np.any(c) or (position is None and velocity is None):
+        return trace
+    if trace.orientation is None or (velocity is not None and omega is None):
+        raise TraceError(
+            f"{reading.table.file}: it is the origin's position that is given, and the attitude or "
+            "omega, which place the centre of mass, is not; map them too."
+        )
+    q = normalize(trace.orientation)
+    if position is not None:
+        position = position + rotate(q, np.broadcast_to(c, position.shape))
+    if velocity is not None and omega is not None:
+        velocity = velocity + rotate(q, cross(omega, np.broadcast_to(c, omega.shape)))
+    return replace(trace, position=position, linear_velocity=velocity)
 
 
-def _stamps(table: Table, name: str, how: Convention) -> tuple[Array, Array]:
+def _stamps(reading: Reading) -> tuple[Array, Array]:
     """(n,) s from the scenario's start, and what is open of each. Raises TraceError."""
-    column = table.column(name)
+    table, how = reading.table, reading.how
+    column = table.column(reading.columns["t"])
     unit, raw = how.scale_of("time"), column.values
     if len(raw) < FEWEST_SAMPLES:
         raise TraceError(f"{table.file}: has one sample only; give a trace with at least two.")
@@ -114,31 +123,3 @@ def _stamps(table: Table, name: str, how: Convention) -> tuple[Array, Array]:
 
 def _more(count: int) -> str:
     return f", and {count} times more" if count else ""
-
-
-def _to_center(
-    table: Table,
-    system: System,
-    moved: dict[str, Array | None],
-    orientation: Array | None,
-    omega: Array | None,
-) -> dict[str, Array | None]:
-    """From the body's origin to its centre of mass: ``x + R c`` and ``v + R (omega x c)``."""
-    c = system.body.center_of_mass
-    position, velocity = moved["position"], moved["linear_velocity"]
-    if not np.any(c):
-        return moved
-    needed = [orientation] if velocity is None else [orientation, omega]
-    if position is None and velocity is None:
-        return moved
-    if orientation is None or any(part is None for part in needed):
-        raise TraceError(
-            f"{table.file}: it is the origin's position that is given, and the attitude or omega, "
-            "which place the centre of mass, is not; map them too."
-        )
-    q = normalize(orientation)
-    if position is not None:
-        position = position + rotate(q, np.broadcast_to(c, position.shape))
-    if velocity is not None and omega is not None:
-        velocity = velocity + rotate(q, cross(omega, np.broadcast_to(c, omega.shape)))
-    return {"position": position, "linear_velocity": velocity}

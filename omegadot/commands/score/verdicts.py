@@ -6,15 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.commands.score.bounds import Rounding
 from omegadot.commands.score.measured import Measured
 from omegadot.commands.score.steps import Comparison, Declared
 from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.measures import INVARIANT_CHANNELS
 from omegadot.gates.verdicts import Finding
 from omegadot.reference_impl.system import Array
 
-INVARIANTS = ("energy", "angular_momentum", "linear_momentum")
-GATES = {c: "invariants" if c in INVARIANTS else "trajectory" for c in CHANNELS}
+GATES = {c: "invariants" if c in INVARIANT_CHANNELS else "trajectory" for c in CHANNELS}
 
 
 @dataclass(frozen=True)
@@ -38,7 +37,7 @@ def _finding(error: Array, bound: Array, own: Comparison | None, channel: str) -
 
 
 def judgement_of(
-    measured: Measured, bound: Rounding, declared: Declared | None, schemes: list[Comparison]
+    measured: Measured, declared: Declared | None, schemes: list[Comparison]
 ) -> dict[str, Judgement]:
     """Every given channel judged.
 
@@ -48,7 +47,7 @@ def judgement_of(
     own = schemes[0] if declared is not None and declared.scheme is not None else None
     agreeing = next((one for one in schemes if one.found.agree), None)
     findings = {
-        channel: _finding(error, bound[channel], own or agreeing, channel)
+        channel: _finding(error, measured.bound[channel], own or agreeing, channel)
         for channel, error in measured.error.items()
     }
     found = {}
