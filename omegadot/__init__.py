@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from omegadot.commands.score.detection.detect import detect
     from omegadot.commands.score.detection.search import Detected
     from omegadot.commands.score.judged import ChannelScore
-    from omegadot.commands.score.result import ScoreResult
-    from omegadot.commands.score.score import score
+    from omegadot.commands.score.score import ScoreResult, score
     from omegadot.commands.score.table import TraceError
     from omegadot.commands.versions.result import VersionChange, VersionsResult
     from omegadot.commands.versions.versions import versions
@@ -59,8 +58,7 @@ _PLACES = {
     "commands.score.detection.detect": ("detect",),
     "commands.score.detection.search": ("Detected",),
     "commands.score.judged": ("ChannelScore",),
-    "commands.score.result": ("ScoreResult",),
-    "commands.score.score": ("score",),
+    "commands.score.score": ("ScoreResult", "score"),
     "commands.score.table": ("TraceError",),
     "commands.versions.result": ("VersionChange", "VersionsResult"),
     "commands.versions.versions": ("versions",),

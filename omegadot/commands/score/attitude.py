@@ -43,15 +43,25 @@ def from_euler(parts: list[Column], sequence: str, unit: float) -> Angles:
     return wxyz(Rotation.from_euler(sequence, angles)), np.asarray(opening)
 
 
+def off_rotation(nine: Array) -> Array:
+    """(n,): how far matrices, row by row in (n, 9), are off unit columns at right angles.
+
+    At least 2 where one mirrors.
+    """
+    given = nine.reshape(-1, 3, 3)
+    gram = np.abs(np.swapaxes(given, -1, -2) @ given - np.eye(3))
+    mirrors = np.where(np.linalg.det(given) > 0.0, 0.0, 2.0)
+    return np.asarray(np.maximum(np.max(gram, axis=(-1, -2)), mirrors))
+
+
 def from_matrices(table: Table, parts: list[Column]) -> Angles:
     """The nearest rotations, by singular values.
 
     A matrix that is off by d in norm has its nearest rotation off by at most ``sqrt(2) d`` rad.
     Raises TraceError where a matrix is no rotation.
     """
-    given = np.stack([part.values for part in parts], axis=-1).reshape(-1, 3, 3)
-    gram = np.abs(np.swapaxes(given, -1, -2) @ given - np.eye(3))
-    off = np.maximum(np.max(gram, axis=(-1, -2)), np.where(np.linalg.det(given) > 0.0, 0.0, 2.0))
+    values = np.stack([part.values for part in parts], axis=-1)
+    given, off = values.reshape(-1, 3, 3), off_rotation(values)
     worst = int(np.argmax(off))
     if off[worst] > MOST_OFF:
         raise TraceError(

@@ -11,7 +11,7 @@ from omegadot.gates.scales import ROUNDINGS_PER_EVALUATION, ROUNDINGS_PER_STEP, 
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
-from omegadot.reference_impl.system import Array
+from omegadot.reference_impl.system import Array, State, System
 
 Rounding = dict[str, Array]
 
@@ -42,21 +42,19 @@ def digits_open(truth: Truth, trace: Trace) -> Rounding:
     lever = yardstick.scale.lever if yardstick.system.load.pivot is not None else 0.0
     energy = moment * spin + mass * velocity * speed
     energy = energy + mass * yardstick.gravity * (place + lever * turn)
-    changes: dict[str, Callable[[], Array]] = {
-        "energy": lambda: total_energy(yardstick.system, exact),
-        "angular_momentum": lambda: angular_momentum(yardstick.system, exact),
-        "linear_momentum": lambda: linear_momentum(yardstick.system, exact),
-    }
-    own: Rounding = {"energy": energy, "angular_momentum": scale * spin + moment * turn}
-    own["linear_momentum"] = mass * speed
     found = {
         "omega": (spin + norm(truth.omega_dot) * when) / yardstick.rate,
         "attitude": turn + rate * when,
         "position": place + velocity * when + lever * turn,
     }
-    for channel, value in changes.items():
-        late = _slope(truth.times, value()) * when
-        found[channel] = (own[channel] + late) / yardstick.sizes[channel]
+    conserved: dict[str, tuple[Array, Callable[[System, State], Array]]] = {
+        "energy": (energy, total_energy),
+        "angular_momentum": (scale * spin + moment * turn, angular_momentum),
+        "linear_momentum": (mass * speed, linear_momentum),
+    }
+    for channel, (own, quantity) in conserved.items():
+        late = _slope(truth.times, quantity(yardstick.system, exact)) * when
+        found[channel] = (own + late) / yardstick.sizes[channel]
     return found
 
 

@@ -10,7 +10,7 @@ import typer
 from omegadot.commands.options import Format, command_line, on_a_terminal
 
 if TYPE_CHECKING:
-    from omegadot.commands.score.result import ScoreResult
+    from omegadot.commands.score.score import ScoreResult
 
 
 Text = str | None

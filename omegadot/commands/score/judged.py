@@ -53,6 +53,11 @@ class Judged(Measured):
     shift: Shift | None
     flips: list[Row]
 
+    @property
+    def scheme(self) -> str | None:
+        """The scheme that is declared."""
+        return self.declared.scheme if self.declared else None
+
     def in_si(self, channel: str) -> ChannelScore:
         """One channel, in SI units."""
         factor = self.rate if channel == "omega" else 1.0

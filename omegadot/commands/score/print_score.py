@@ -11,7 +11,7 @@ from rich.text import Text
 
 from omegadot.commands.run.print_run import exit_code
 from omegadot.commands.score.judged import Judged
-from omegadot.commands.score.result import ScoreResult
+from omegadot.commands.score.score import ScoreResult
 from omegadot.commands.score.sentences import factor_of
 from omegadot.commands.score.shift import scatter
 from omegadot.reports.record.record import PAGE

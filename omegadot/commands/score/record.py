@@ -17,14 +17,17 @@ from omegadot.commands.run.run import execute
 from omegadot.commands.score.convention import Convention, axes_text
 from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.sentences import largest
-from omegadot.commands.score.trace_tables import labels_of, metrics_of, trajectories_of
 from omegadot.gates.rows import Row, worst
+from omegadot.harness.collect import COLUMNS
 from omegadot.harness.outcome import JudgedCase, Outcome, RunRequest
 from omegadot.harness.plan import EngineChoice
+from omegadot.reference_impl.system import Array
 from omegadot.reports.record import schema
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.headline import headline
 from omegadot.reports.summary.summary import summarise
+
+FIELDS = {**COLUMNS, "omega_dot": ("ax", "ay", "az")}
 
 
 def scored_record(
@@ -38,31 +41,43 @@ def scored_record(
     """The record of the trace and of the engines that are run with it."""
     started = time.perf_counter()
     request = RunRequest([found.case], list(choices))
-    outcome = execute(request, report) if choices else _alone(found)
+    alone = Outcome([], [], [JudgedCase(found.case, found.truth, "", [])], False, [])
+    outcome = execute(request, report) if choices else alone
     base = record_of(outcome, request, command, time.perf_counter() - started)
-    base.run["engines"].append(_engine(found, name))
-    base.run["tasks"].append(_task(found, rows, name))
-    labels = labels_of(found, name)
-    record = Record(
-        base.run,
-        pl.concat([base.metrics, metrics_of(labels, version_of(found), rows)]),
-        trajectories_of(base.trajectories, found, labels),
+    labels = {
+        "scenario": found.case.name,
+        "engine": name,
+        "setup": "physics",
+        "integrator": found.scheme or "as-given",
+        "timestep": found.declared.timestep if found.declared else None,
+        "accuracy": None,
+    }
+    # The beginning of the file's SHA-256: traces of one name are distinguished by it.
+    content = Path(found.reading.table.file).read_bytes()
+    task = {**labels, "engine_version": hashlib.sha256(content).hexdigest()[:8]}
+    base.run["engines"].append(_engine(found, task))
+    gates = {gate: worst(row.verdict for row in rows if row.gate == gate) for gate in schema.GATES}
+    base.run["tasks"].append(
+        {
+            **task,
+            "outcome": "ok",
+            "reason": "",
+            "gates": {gate: verdict for gate, verdict in gates.items() if verdict is not None},
+            "why": _why(found, rows),
+            "scheme": found.scheme,
+        }
     )
+    columns = {key: f.dtype for key, f in schema.METRICS.items()}
+    entries = [{**task, **vars(row)} for row in rows]
+    metrics = pl.DataFrame(entries, schema=columns, orient="row").select(list(columns))
+    trajectories = _trajectories(base.trajectories, found, labels)
+    record = Record(base.run, pl.concat([base.metrics, metrics]), trajectories)
     engines = [headline(summarise(record))] if choices else []
-    record.run["headline"] = " ".join([sentence_of(found, rows, name), *engines])
+    record.run["headline"] = " ".join([_sentence(found, rows, name), *engines])
     return record
 
 
-def _alone(found: Judged) -> Outcome:
-    return Outcome([], [], [JudgedCase(found.case, found.truth, "", [])], False, [])
-
-
-def version_of(found: Judged) -> str:
-    """The beginning of the file's SHA-256: traces of one name are distinguished by it."""
-    return hashlib.sha256(Path(found.reading.table.file).read_bytes()).hexdigest()[:8]
-
-
-def conventions_of(how: Convention) -> list[str]:
+def _conventions(how: Convention) -> list[str]:
     """How the trace was read, one clause each."""
     clauses = [
         f"time in {how.time_unit}, angles in {how.angle_unit}, rates in {how.rate_unit}, "
@@ -76,22 +91,20 @@ def conventions_of(how: Convention) -> list[str]:
     return clauses
 
 
-def _engine(found: Judged, name: str) -> dict[str, Any]:
-    labels = labels_of(found, name)
-    scheme = found.declared.scheme if found.declared else None
-    note = "a trace from outside; its scheme is " + ("declared" if scheme else "not declared")
+def _engine(found: Judged, task: dict[str, Any]) -> dict[str, Any]:
+    note = "a trace from outside; its scheme is " + ("" if found.scheme else "not ") + "declared"
     integrator = {
-        "name": labels["integrator"], "scheme": scheme, "orders": {}, "knob": "timestep",
+        "name": task["integrator"], "scheme": found.scheme, "orders": {}, "knob": "timestep",
         "note": note, "coordinates": "com-world",
     }  # fmt: skip
     return {
-        "name": name,
-        "version": version_of(found),
+        "name": task["engine"],
+        "version": task["engine_version"],
         "installed": True,
         "reason": "",
         "integrators": [integrator],
         "precision": "float64",
-        "conventions": conventions_of(found.reading.how),
+        "conventions": _conventions(found.reading.how),
         "switched_off": [],
         "features": [],
         "licence": "",
@@ -104,43 +117,41 @@ def _engine(found: Judged, name: str) -> dict[str, Any]:
     }
 
 
-def gates_of(rows: list[Row]) -> dict[str, str]:
-    """The worst verdict of every gate that has a row."""
-    verdicts = {g: worst(row.verdict for row in rows if row.gate == g) for g in schema.GATES}
-    return {gate: verdict for gate, verdict in verdicts.items() if verdict is not None}
-
-
-def why_of(found: Judged, rows: list[Row]) -> str:
+def _why(found: Judged, rows: list[Row]) -> str:
     """One reason for the whole trace: a failure's, that it is late, or its worst channel's."""
-    failed = [row for row in rows if row.verdict == "fail"]
-    if failed:
-        return f"{failed[0].channel}: {failed[0].note}"
+    reasons = [f"{row.channel}: {row.note}" for row in rows if row.verdict == "fail"]
     if found.shift is not None and found.shift.explains:
-        return found.shift.as_text
-    unlike = [
-        (c, judgement) for c, judgement in found.judgement.items() if judgement.kind != "round-off"
-    ]
-    return f"{unlike[0][0]}: {unlike[0][1].note}" if unlike else "within digits and rounding"
+        reasons.append(found.shift.as_text)
+    unlike = {c: one.note for c, one in found.judgement.items() if one.kind != "round-off"}
+    reasons += [f"{channel}: {note}" for channel, note in unlike.items()]
+    return reasons[0] if reasons else "within digits and rounding"
 
 
-def sentence_of(found: Judged, rows: list[Row], name: str) -> str:
+def _sentence(found: Judged, rows: list[Row], name: str) -> str:
     """The trace in one sentence, for the top of the page."""
-    failed = [row for row in rows if row.verdict == "fail"]
-    if failed:
-        return f"{name} fails on {found.case.name}: {failed[0].channel}, {failed[0].note}."
-    parts = [f"{channel.replace('_', ' ')} by {largest(found, channel)}" for channel in found.error]
+    for row in rows:
+        if row.verdict == "fail":
+            return f"{name} fails on {found.case.name}: {row.channel}, {row.note}."
+    parts = [f"{c.replace('_', ' ')} by {largest(found, c)}" for c in found.error]
     late = found.shift is not None and found.shift.explains
     why = f" It is {found.shift.as_text}, and that is its error." if late and found.shift else ""
     return f"{name} on {found.case.name} is off at most: {', '.join(parts[:3])}.{why}"
 
 
-def _task(found: Judged, rows: list[Row], name: str) -> dict[str, Any]:
-    return {
-        **labels_of(found, name),
-        "engine_version": version_of(found),
-        "outcome": "ok",
-        "reason": "",
-        "gates": gates_of(rows),
-        "why": why_of(found, rows),
-        "scheme": found.declared.scheme if found.declared else None,
-    }
+def _trajectories(known: pl.DataFrame, found: Judged, labels: dict[str, Any]) -> pl.DataFrame:
+    """The trace, NaN where it gives nothing, and the exact trajectory at its times."""
+    trace, truth = found.trace, found.truth
+    exact = {**labels, "engine": "exact", "integrator": truth.source, "timestep": None}
+    sampled = _samples(exact, trace.times, {**vars(truth.state), "omega_dot": truth.omega_dot})
+    at_known = known.filter(pl.col("engine") == "exact").get_column("time").implode()
+    sampled = sampled.filter(~pl.col("time").is_in(at_known))
+    return pl.concat([known, sampled, _samples(labels, trace.times, vars(trace))])
+
+
+def _samples(labels: dict[str, Any], times: Array, parts: dict[str, Any]) -> pl.DataFrame:
+    columns = {"time": times}
+    for field, names in FIELDS.items():
+        values = np.full((len(times), len(names)), np.nan) if parts[field] is None else parts[field]
+        columns |= {n: np.ascontiguousarray(values[:, i]) for i, n in enumerate(names)}
+    texts = [pl.lit(v, dtype=schema.TRAJECTORIES[k].dtype).alias(k) for k, v in labels.items()]
+    return pl.DataFrame(columns).with_columns(texts).select(list(schema.TRAJECTORIES))

@@ -47,7 +47,7 @@ def _trajectory(found: Judged, channel: str) -> list[Row]:
     ]
     if channel in found.truth.floor:
         rows.append(row("resolvable_floor", float(np.max(found.truth.floor[channel]))))
-    if found.declared is not None and found.declared.scheme is not None:
+    if found.scheme is not None:
         own = found.schemes[0]
         left, bound = float(np.max(own.left[channel])), float(np.max(own.bound[channel]))
         rows.append(row("unexplained_max", left, bound=bound))
@@ -94,10 +94,10 @@ def _shift(found: Judged) -> list[Row]:
 
 def _scheme(found: Judged) -> list[Row]:
     """As the scheme gate has it: the distance from the scheme in parts of its bound."""
-    if found.declared is None or not found.schemes:
+    if not found.schemes:
         return []
     names = " and ".join(one.scheme for one in found.schemes if one.found.agree)
-    wanted, own, verdict = found.declared.scheme, found.schemes[0].found, "info"
+    wanted, own, verdict = found.scheme, found.schemes[0].found, "info"
     if wanted is None:
         own = min((one.found for one in found.schemes), key=lambda f: (np.isnan(f.share), f.share))
         note = f"declares no scheme, and equals {names or 'none known'}"

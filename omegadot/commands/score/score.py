@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from omegadot.commands.progress import Reporting, reporting
-from omegadot.commands.run.result import RunInterrupted, result_of
+from omegadot.commands.run.result import RunInterrupted, RunResult, result_of
 from omegadot.commands.score.convention import SETTINGS
-from omegadot.commands.score.judged import judge_trace
+from omegadot.commands.score.judged import ChannelScore, Judged, judge_trace
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.record import scored_record
 from omegadot.commands.score.require import KINDS, requirements_of
-from omegadot.commands.score.result import ScoreResult
 from omegadot.commands.score.rows import rows_of
+from omegadot.commands.score.sentences import sentences
 from omegadot.commands.score.settings import GivenColumns, reading_of
+from omegadot.commands.score.shift import Shift
 from omegadot.gates.case import Case
+from omegadot.gates.rows import Row
 from omegadot.harness.arguments import case_of, engine_choices, scenarios_of, several
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
@@ -26,6 +30,43 @@ from omegadot.reports.run_record import RunRecord
 from omegadot.scenarios import ScenarioLike
 
 RESERVED = ("exact", "reference")
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class ScoreResult(RunResult):
+    """A trace scored, and the record it stands in, with the engines that were run with it.
+
+    name: the trace's, among the engines.  found: everything that was found.  rows: its measures.
+    """
+
+    name: str
+    found: Judged
+    rows: tuple[Row, ...]
+
+    @cached_property
+    def channels(self) -> Mapping[str, ChannelScore]:
+        """The errors by channel, of those that the trace gives."""
+        return {channel: self.found.in_si(channel) for channel in self.found.error}
+
+    @property
+    def not_given(self) -> Mapping[str, str]:
+        """The channels that the trace does not give, and why."""
+        return self.found.absent
+
+    @property
+    def shift(self) -> Shift | None:
+        """How late or early the trace is, where that can be seen."""
+        return self.found.shift
+
+    @property
+    def requirements(self) -> tuple[Row, ...]:
+        """A row for every requirement: its value, bound and verdict."""
+        return tuple(row for row in self.rows if row.metric == "requirement")
+
+    @property
+    def sentences(self) -> list[str]:
+        """What else was found, one sentence each."""
+        return sentences(self.found, list(self.rows))
 
 
 def score(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from omegadot.commands.score.judged import Judged
@@ -35,33 +33,23 @@ def largest(found: Judged, channel: str) -> str:
 
 def sentences(found: Judged, rows: list[Row]) -> list[str]:
     """What the table of channels does not show, one sentence each."""
-    parts: list[Callable[[], list[str]]] = [
-        lambda: _late(found),
-        lambda: _start(found),
-        lambda: _notes(rows),
-        lambda: _digits(found),
-        lambda: _absent(found),
-    ]
-    return [sentence for part in parts for sentence in part()]
+    return [*_late(found), *_start(found), *_notes(rows), *_digits(found), *_absent(found)]
 
 
 def _late(found: Judged) -> list[str]:
     shift, lines = found.shift, list[str]()
     if shift is None:
         return []
-    spins = shift.of == "omega"
-    factor = 1.0 / (UNITS["rate"][found.reading.how.rate_unit] if spins else 1.0)
-    unit, what = (found.reading.how.rate_unit, "omega") if spins else ("rad", "the attitude")
-    before, after = f"{factor * shift.before:.3g} {unit}", f"{factor * shift.after:.3g} {unit}"
-    if shift.explains:
+    unit, what, factor = "rad", "the attitude", 1.0
+    if shift.of == "omega":
+        unit, what = found.reading.how.rate_unit, "omega"
+        factor = 1.0 / UNITS["rate"][unit]
+    if shift.seen:
+        share = "the error" if shift.explains else "only part of the error"
         lines.append(
-            f"Best-fit time shift: {shift.as_text}. It explains the error: {what} is off by "
-            f"{before} without the shift and by {after} with it."
-        )
-    elif shift.seen:
-        lines.append(
-            f"Best-fit time shift: {shift.as_text}. It explains only part of the error: {what} is "
-            f"off by {before} without the shift and by {after} with it."
+            f"Best-fit time shift: {shift.as_text}. It explains {share}: {what} is off by "
+            f"{factor * shift.before:.3g} {unit} without the shift and by "
+            f"{factor * shift.after:.3g} {unit} with it."
         )
     noise = scatter(shift)
     if noise is not None:

@@ -18,7 +18,7 @@ from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.coordinates import Coordinates, distinct
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.system import Array
 
 MOST_STEPS = 1_000_000
 # All schemes are stepped only where that takes seconds, not minutes.
@@ -105,29 +105,21 @@ def _against(
     held: Measured, declared: Declared, scheme: str, own_start: bool = False
 ) -> Comparison:
     """The nearest of the coordinates in which the scheme's steps differ."""
-    start = held.case.initial
-    if own_start:
-        start = part_of(held.state, 0)
-        start = replace(start, orientation=normalize(start.orientation))
-    found = [
-        _stepped(held, declared, scheme, start, own_start, way)
-        for way in distinct(held.case.system)
-        if way in SCHEMES[scheme].coordinates
-    ]
+    ways = [way for way in distinct(held.case.system) if way in SCHEMES[scheme].coordinates]
+    found = [_stepped(held, declared, scheme, own_start, way) for way in ways]
     return min(found, key=lambda one: sum(np.any(one.left[c] > one.bound[c]) for c in one.left))
 
 
 def _stepped(
-    held: Measured,
-    declared: Declared,
-    scheme: str,
-    start: State,
-    own_start: bool,
-    way: Coordinates,
+    held: Measured, declared: Declared, scheme: str, own_start: bool, way: Coordinates
 ) -> Comparison:
     numbers, yardstick = declared.numbers.astype(int), held.truth.yardstick
     every = reduce(gcd, (int(n) for n in numbers), 0) or 1
     plan = [Steps(declared.timestep, int(numbers[-1]), every)]
+    start = held.case.initial
+    if own_start:
+        start = part_of(held.state, 0)
+        start = replace(start, orientation=normalize(start.orientation))
     # A scheme that blows up at this step is infinitely far off.
     with np.errstate(over="ignore", invalid="ignore"):
         run = companion(held.case.system, start, scheme, held.rate, plan, way)[0]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
+from numpy.typing import NDArray
 
 from omegadot.commands.score.digits import (
     DECIMAL_COMMA,
@@ -89,7 +90,7 @@ class Table:
         self._check(name, cells, well & (np.abs(values) <= LARGEST_NUMBER))
         return Column(values, texts.to_list())
 
-    def _check(self, name: str, cells: pl.Series, well: Array) -> None:
+    def _check(self, name: str, cells: pl.Series, well: NDArray[np.bool_]) -> None:
         bad = np.flatnonzero(~well)
         if len(bad):
             more = f", and {len(bad) - 1} more" if len(bad) > 1 else ""
@@ -128,9 +129,12 @@ def find_column(table: Table, wanted: str, role: str) -> str:
     folded = {name.casefold(): name for name in table.names}
     if wanted.casefold() in folded:
         return folded[wanted.casefold()]
+    advice, shown = nearest(wanted, table.names), ", ".join(map(repr, table.names[:20]))
+    advice = advice if advice.startswith("write ") else "give an existing one"
+    more = f" and {len(table.names) - 20} more" if len(table.names) > 20 else ""
     raise TraceError(
-        f"{table.file}: there is no column {wanted!r} for {role}; "
-        f"{_near(wanted, table.names)} (the columns are {_listed(table.names)})."
+        f"{table.file}: there is no column {wanted!r} for {role}; {advice} "
+        f"(the columns are {shown}{more})."
     )
 
 
@@ -141,13 +145,3 @@ def check_alone(table: Table, name: str) -> None:
             f"{table.file}: two columns have the name {name!r}; rename one, or give its number, "
             f"like #{table.names.index(name) + 1}."
         )
-
-
-def _near(wanted: str, names: Sequence[str]) -> str:
-    advice = nearest(wanted, names)
-    return advice if advice.startswith("write ") else "give an existing one"
-
-
-def _listed(names: Sequence[str], most: int = 20) -> str:
-    shown = ", ".join(repr(name) for name in names[:most])
-    return shown + (f" and {len(names) - most} more" if len(names) > most else "")

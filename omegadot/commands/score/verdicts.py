@@ -44,7 +44,7 @@ def judgement_of(
     Nothing is green by halves: without a declared scheme a gate passes only where all of its
     channels are within what digits and rounding leave open.
     """
-    own = schemes[0] if declared is not None and declared.scheme is not None else None
+    own = schemes[0] if declared and declared.scheme is not None else None
     agreeing = next((one for one in schemes if one.found.agree), None)
     findings = {
         channel: _finding(error, measured.bound[channel], own or agreeing, channel)

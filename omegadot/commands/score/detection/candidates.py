@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from omegadot.commands.score.detection.numbers import (
     AXES,
     AXES_Q,
+    SAME,
     Numbers,
     Rotated,
     runs,
     stacked,
 )
-from omegadot.commands.score.detection.parts import Attitude, Omega
 from omegadot.commands.units import UNITS
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.rotations import (
@@ -28,6 +29,60 @@ from omegadot.reference_impl.system import Array
 
 # A candidate that misses by more than this part of the motion is none.
 GROSS = 0.05
+USUAL = ("quaternion wxyz", "quaternion xyzw", "ZYX", "matrix")
+
+
+@dataclass(frozen=True)
+class Attitude(Rotated):
+    """One way to read the attitude. misfit: the median error over the turn of the motion.
+
+    world and body: rows of AXES.  orientation: (n, 4), as it is then read.
+    """
+
+    direction: str
+    world: int
+    body: int
+    misfit: float
+    orientation: Array
+
+    def read(self, columns: dict[str, Array]) -> Array:
+        """(n, 4): other numbers in these columns, read so."""
+        q = super().read(columns)
+        own = q if self.direction == "world-from-body" else conjugate(q)
+        return quaternion_product(
+            quaternion_product(AXES_Q[self.world], own), conjugate(AXES_Q[self.body])
+        )
+
+    @property
+    def plainness(self) -> tuple[object, ...]:
+        """For ordering readings that fit alike: the plainer one first."""
+        place = USUAL.index(self.kind) if self.kind in USUAL else len(USUAL)
+        return (self.world != SAME, self.body != SAME, self.direction != "world-from-body", place)
+
+
+@dataclass(frozen=True)
+class Omega:
+    """One way to read omega. axes: a row of AXES, of the body's or the world's."""
+
+    columns: tuple[str, ...]
+    unit: str
+    frame: str
+    axes: int
+    misfit: float = 0.0
+
+    def read(self, columns: dict[str, Array], orientation: Array | None) -> Array:
+        """(n, 3) rad/s in body axes: the numbers in these columns, read so."""
+        scale = UNITS["rate"][self.unit]
+        values: Array = scale * stacked(columns, self.columns) @ AXES[self.axes].T
+        if self.frame == "body" or orientation is None:
+            return values
+        return rotate_inverse(orientation, values)
+
+    @property
+    def plainness(self) -> tuple[object, ...]:
+        """For ordering readings that fit alike: the plainer one first."""
+        units = list(UNITS["rate"])
+        return (self.axes != SAME, self.frame != "body", units.index(self.unit))
 
 
 def attitudes(numbers: Numbers, axes: int, limit: float = GROSS) -> list[Attitude]:
@@ -41,14 +96,11 @@ def attitudes(numbers: Numbers, axes: int, limit: float = GROSS) -> list[Attitud
     if numbers.turn == 0.0:
         return []
     turned = attitude_angle(exact[:1], exact)
-    for rotated in numbers.rotations:
-        q = rotated.q
+    for rotated, q in numbers.rotations:
         apart = np.abs(attitude_angle(q[:1], q) - turned)
-        if np.median(apart) > limit * numbers.turn:
-            continue
-        for direction in ("world-from-body", "body-from-world"):
-            own = q if direction == "world-from-body" else conjugate(q)
-            found += _with_axes(numbers, own, rotated, direction, axes, limit)
+        if np.median(apart) <= limit * numbers.turn:
+            found += _with_axes(numbers, q, rotated, "world-from-body", axes, limit)
+            found += _with_axes(numbers, conjugate(q), rotated, "body-from-world", axes, limit)
     return found
 
 
@@ -61,54 +113,31 @@ def _with_axes(
         own = quaternion_product(left, conjugate(turn))
         misfits = np.median(attitude_angle(own, numbers.orientation), axis=-1) / numbers.turn
         for world in np.flatnonzero(misfits < limit):
-            yield Attitude(
-                float(misfits[world]),
-                rotated.columns,
-                rotated.kind,
-                rotated.unit,
-                direction,
-                int(world),
-                body,
-                own[world],
-            )
+            how = (direction, int(world), body, float(misfits[world]), own[world])
+            yield Attitude(rotated.columns, rotated.kind, rotated.unit, *how)
 
 
 def omegas(
     numbers: Numbers, attitude: Attitude | None, axes: int, limit: float = GROSS
 ) -> list[Omega]:
-    """Every reading of omega that misses by `limit` at most; in world axes too with an attitude."""
+    """Every reading of omega that misses by `limit` at most; in world axes too with an attitude.
+
+    The axes are then the attitude's.
+    """
     found: list[Omega] = []
-    sizes = norm(numbers.angular_velocity)
+    sizes, orientation = norm(numbers.angular_velocity), attitude and attitude.orientation
+    tried = [("body", axis) for axis in range(axes)]
+    if attitude is not None:
+        own = [("body", attitude.body), ("world", attitude.world)]
+        tried = [(frame, axis) for frame, axis in own if axis < axes]
     for three in runs(list(numbers.columns), 3):
         given = norm(stacked(numbers.columns, three))
         for unit, scale in UNITS["rate"].items():
             if np.median(np.abs(scale * given - sizes)) > limit * numbers.rate:
                 continue
-            for order in itertools.permutations(three):
-                values = scale * stacked(numbers.columns, order)
-                found += _spins(numbers, values, order, unit, attitude, axes, limit)
+            for order, (frame, axis) in itertools.product(itertools.permutations(three), tried):
+                one = Omega(order, unit, frame, axis)
+                gap = norm(one.read(numbers.columns, orientation) - numbers.angular_velocity)
+                misfit = float(np.median(gap, axis=-1) / numbers.rate)
+                found += [replace(one, misfit=misfit)] if misfit < limit else []
     return found
-
-
-def _spins(
-    numbers: Numbers,
-    values: Array,
-    columns: tuple[str, ...],
-    unit: str,
-    attitude: Attitude | None,
-    axes: int,
-    limit: float,
-) -> Iterator[Omega]:
-    """The reading in body and, with an attitude, in world axes; the axes are the attitude's."""
-    turned: Array = values @ np.swapaxes(AXES[:axes], -1, -2)
-    readings = {"body": turned}
-    if attitude is not None:
-        readings["world"] = rotate_inverse(attitude.orientation, turned)
-    for frame, own in readings.items():
-        gaps = np.median(norm(own - numbers.angular_velocity), axis=-1) / numbers.rate
-        wanted = None
-        if attitude is not None:
-            wanted = attitude.body if frame == "body" else attitude.world
-        for place in np.flatnonzero(gaps < limit):
-            if wanted is None or place == wanted:
-                yield Omega(float(gaps[place]), columns, unit, frame, int(place))

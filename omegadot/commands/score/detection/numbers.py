@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from omegadot.commands.score.attitude import MOST_OFF, off_rotation, wxyz
 from omegadot.commands.units import UNITS
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.rotations import attitude_angle, normalize
@@ -33,18 +34,29 @@ def _turns() -> Array:
 
 
 AXES = _turns()
-AXES_Q = np.roll(Rotation.from_matrix(AXES).as_quat(), 1, axis=-1)
+AXES_Q = wxyz(Rotation.from_matrix(AXES))
 SAME = 0
 
 
 @dataclass(frozen=True)
 class Rotated:
-    """Columns read as rotations. q: (n, 4), whatever it turns into what."""
+    """A way to read columns as rotations, whatever these turn into what.
+
+    kind: quaternion wxyz, quaternion xyzw, matrix, or a sequence of Euler angles.
+    """
 
     columns: tuple[str, ...]
     kind: str
     unit: str
-    q: Array
+
+    def read(self, columns: dict[str, Array]) -> Array:
+        """(n, 4): the numbers in these columns, read so."""
+        values = stacked(columns, self.columns)
+        if self.kind.startswith("quaternion"):
+            return normalize(np.roll(values, 1, axis=-1) if self.kind.endswith("xyzw") else values)
+        if self.kind == "matrix":
+            return wxyz(Rotation.from_matrix(values.reshape(-1, 3, 3)))
+        return wxyz(Rotation.from_euler(self.kind, UNITS["angle"][self.unit] * values))
 
 
 @dataclass(frozen=True)
@@ -54,7 +66,7 @@ class Numbers:
     columns: dict[str, Array]
     orientation: Array
     angular_velocity: Array
-    rotations: Sequence[Rotated] = ()
+    rotations: list[tuple[Rotated, Array]]
 
     @property
     def rate(self) -> float:
@@ -79,38 +91,16 @@ def runs(names: Sequence[str], length: int) -> Iterator[tuple[str, ...]]:
         yield tuple(names[start : start + length])
 
 
-def rotation_of(columns: dict[str, Array], names: Sequence[str], kind: str, unit: str) -> Array:
-    """(n, 4): what these columns are, read so."""
-    values = stacked(columns, names)
-    if kind == "quaternion wxyz":
-        return normalize(values)
-    if kind == "quaternion xyzw":
-        return normalize(np.roll(values, 1, axis=-1))
-    if kind == "matrix":
-        turned = Rotation.from_matrix(values.reshape(-1, 3, 3))
-    else:
-        turned = Rotation.from_euler(kind, UNITS["angle"][unit] * values)
-    return np.asarray(np.roll(turned.as_quat(), 1, axis=-1))
-
-
-def _kinds(columns: dict[str, Array]) -> Iterator[tuple[tuple[str, ...], str, str]]:
+def rotations(columns: dict[str, Array]) -> Iterator[Rotated]:
+    """Everything that neighbouring columns may be as a rotation."""
     names = list(columns)
     for four in runs(names, 4):
-        if np.all(np.abs(norm(stacked(columns, four)) - 1.0) < 0.1):
-            yield four, "quaternion wxyz", "rad"
-            yield four, "quaternion xyzw", "rad"
+        if np.all(np.abs(norm(stacked(columns, four)) - 1.0) < MOST_OFF):
+            yield Rotated(four, "quaternion wxyz", "rad")
+            yield Rotated(four, "quaternion xyzw", "rad")
     for nine in runs(names, 9):
-        m = stacked(columns, nine).reshape(-1, 3, 3)
-        gram = np.abs(np.swapaxes(m, -1, -2) @ m - np.eye(3))
-        if np.all(gram < 0.1) and np.all(np.linalg.det(m) > 0.0):
-            yield nine, "matrix", "rad"
+        if np.all(off_rotation(stacked(columns, nine)) < MOST_OFF):
+            yield Rotated(nine, "matrix", "rad")
     for three in runs(names, 3):
-        for order in itertools.permutations(three):
-            for unit in ("rad", "deg"):
-                for sequence in SEQUENCES:
-                    yield order, sequence, unit
-
-
-def rotations(columns: dict[str, Array]) -> list[Rotated]:
-    """Everything that neighbouring columns may be as a rotation."""
-    return [Rotated(*kind, rotation_of(columns, *kind)) for kind in _kinds(columns)]
+        for order, unit in itertools.product(itertools.permutations(three), ("rad", "deg")):
+            yield from (Rotated(order, sequence, unit) for sequence in SEQUENCES)

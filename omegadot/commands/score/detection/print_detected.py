@@ -50,7 +50,7 @@ def _lines(trace: Path, scenario: str, found: Detected, fitting: list[Reading]) 
     best = fitting[0]
     lines = [
         f"One convention fits; its error is {best.misfit:.1e} of the size of the motion:",
-        _command(trace, scenario, best),
+        f"  omegadot score {trace} --scenario {scenario} {' '.join(best.options())}",
     ]
     if found.others:
         second = found.others[0]
@@ -59,7 +59,10 @@ def _lines(trace: Path, scenario: str, found: Detected, fitting: list[Reading]) 
             f"The next best is {times:.0e} times as far off ({second.misfit:.1e}): "
             f"{' '.join(_different(second, best))}"
         )
-    return lines + _lacking(best)
+    for part, name in ((best.attitude, "an attitude"), (best.omega, "an angular velocity")):
+        if part is None:
+            lines.append(f"No columns were found that fit as {name}.")
+    return lines
 
 
 def _ambiguous(found: Detected, fitting: list[Reading]) -> list[str]:
@@ -72,21 +75,7 @@ def _ambiguous(found: Detected, fitting: list[Reading]) -> list[str]:
     return lines + ([f"  and {more} more"] if more > 0 else [])
 
 
-def _command(trace: Path, scenario: str, best: Reading) -> str:
-    options = " ".join(best.options())
-    return f"  omegadot score {trace} --scenario {scenario} {options}"
-
-
 def _different(second: Reading, best: Reading) -> list[str]:
     own = [option for option in second.options() if option not in best.options()]
     left = [option for option in best.options() if option not in second.options()]
     return own or [f"without {' '.join(left)}"]
-
-
-def _lacking(best: Reading) -> list[str]:
-    lines = []
-    if best.attitude is None:
-        lines.append("No columns were found that fit as an attitude.")
-    if best.omega is None:
-        lines.append("No columns were found that fit as an angular velocity.")
-    return lines

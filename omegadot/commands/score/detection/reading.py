@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from omegadot.commands.score.convention import axes_text
+from omegadot.commands.score.detection.candidates import Attitude, Omega
 from omegadot.commands.score.detection.numbers import AXES, SAME
-from omegadot.commands.score.detection.parts import Attitude, Omega
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array
 
@@ -48,11 +48,8 @@ class Reading:
     @property
     def plainness(self) -> tuple[object, ...]:
         """For ordering readings that fit alike."""
-        own = self.attitude.plainness if self.attitude else ()
-        return (self.clock.unit != "s", self.clock.offset != 0.0, own, self._omega_plainness())
-
-    def _omega_plainness(self) -> tuple[object, ...]:
-        return self.omega.plainness if self.omega else ()
+        parts = [part.plainness if part else () for part in (self.attitude, self.omega)]
+        return (self.clock.unit != "s", self.clock.offset != 0.0, *parts)
 
     def options(self) -> list[str]:
         """The options to pass to have the trace read so."""
@@ -110,16 +107,12 @@ def unlike(readings: Sequence[Reading]) -> list[Reading]:
     They are if they read any numbers alike: random ones are put into the columns, and read.
     """
     random, kept = np.random.default_rng(0), dict[tuple[object, ...], Reading]()
-    names = sorted({name for reading in readings for name in _names(reading)})
+    parts = [part for reading in readings for part in (reading.attitude, reading.omega) if part]
+    names = sorted({name for part in parts for name in part.columns})
     probe: dict[str, Array] = {name: random.uniform(-50.0, 50.0, PROBES) for name in names}
     for reading in readings:
         kept.setdefault((reading.clock, *_read(reading, probe)), reading)
     return list(kept.values())
-
-
-def _names(reading: Reading) -> set[str]:
-    parts = [part.columns for part in (reading.attitude, reading.omega) if part is not None]
-    return {name for names in parts for name in names}
 
 
 def _read(reading: Reading, probe: dict[str, Array]) -> list[object]:

@@ -48,13 +48,8 @@ def time_column(table: Table, wanted: str | None) -> str:
     if wanted is not None:
         return wanted
     for name in table.names:
-        argument = name.casefold().strip()
-        if (
-            argument == "t"
-            or argument.startswith("time")
-            or argument.startswith("t ")
-            or argument == "sec"
-        ):
+        folded = name.casefold().strip()
+        if folded in ("t", "sec") or folded.startswith(("time", "t ")):
             return name
     rising = [name for name in table.names if np.all(np.diff(table.column(name).values) > 0.0)]
     if not rising:
@@ -84,7 +79,8 @@ def _next_to(
     rows = np.unique(np.linspace(0, len(raw) - 1, MOST_SAMPLES).round().astype(int))
     values = {n: _numbers(table, n) for n in names if n != column}
     columns = {n: v[rows] for n, v in values.items() if v is not None}
-    trajectory, turned = exact_trajectory(case.system, case.initial), rotations(columns)
+    trajectory = exact_trajectory(case.system, case.initial)
+    turned = [(rotated, rotated.read(columns)) for rotated in rotations(columns)]
     found = []
     for clock in _clocks(raw, column, case.scenario.run.duration):
         exact = trajectory(np.maximum(UNITS["time"][clock.unit] * raw[rows] - clock.offset, 0.0))
