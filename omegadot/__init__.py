@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from omegadot.commands.run.result import RunInterrupted, RunResult
     from omegadot.commands.run.run import run
     from omegadot.commands.schemes.schemes import SchemesResult, schemes
-    from omegadot.commands.score.detection.detect import detect
-    from omegadot.commands.score.detection.search import Detected
+    from omegadot.commands.score.detection.detect import Detected, detect
     from omegadot.commands.score.judged import ChannelScore
     from omegadot.commands.score.score import ScoreResult, score
     from omegadot.commands.score.table import TraceError
@@ -55,8 +54,7 @@ _PLACES = {
     "commands.run.result": ("RunInterrupted", "RunResult"),
     "commands.run.run": ("run",),
     "commands.schemes.schemes": ("SchemesResult", "schemes"),
-    "commands.score.detection.detect": ("detect",),
-    "commands.score.detection.search": ("Detected",),
+    "commands.score.detection.detect": ("Detected", "detect"),
     "commands.score.judged": ("ChannelScore",),
     "commands.score.score": ("ScoreResult", "score"),
     "commands.score.table": ("TraceError",),

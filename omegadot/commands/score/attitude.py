@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from omegadot.commands.score.convention import Convention
 from omegadot.commands.score.settings import Reading
-from omegadot.commands.score.table import Column, Table, TraceError
+from omegadot.commands.score.table import Table, TraceError
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.rotations import conjugate, quaternion_product
 from omegadot.reference_impl.system import Array
@@ -23,9 +24,8 @@ def wxyz(rotation: Rotation) -> Array:
     return found
 
 
-def from_quaternions(table: Table, parts: list[Column]) -> Angles:
+def _from_quaternions(table: Table, q: Array, opened: Array) -> Angles:
     """As they are: a length that drifts is an error of the simulator's. Raises TraceError."""
-    q = np.stack([part.values for part in parts], axis=-1)
     off = np.abs(norm(q) - 1.0)
     worst = int(np.argmax(off))
     if off[worst] > MOST_OFF:
@@ -33,14 +33,14 @@ def from_quaternions(table: Table, parts: list[Column]) -> Angles:
             f"{table.file}: {table.place(worst)}: |q| is {norm(q)[worst]:.6g}, not 1; these are no "
             "unit quaternions."
         )
-    return q, 2.0 * norm(np.stack([part.open for part in parts], axis=-1))
+    return q, 2.0 * norm(opened)
 
 
-def from_euler(parts: list[Column], sequence: str, unit: float) -> Angles:
+def _from_euler(how: Convention, angles: Array, opened: Array) -> Angles:
     """Three angles in the order of their sequence; their openings add up."""
-    angles = unit * np.stack([part.values for part in parts], axis=-1)
-    opening = unit * np.sum([part.open for part in parts], axis=0)
-    return wxyz(Rotation.from_euler(sequence, angles)), np.asarray(opening)
+    unit = how.scale_of("angle")
+    turn = Rotation.from_euler(how.euler, unit * angles)
+    return wxyz(turn), np.asarray(unit * np.sum(opened, axis=-1))
 
 
 def off_rotation(nine: Array) -> Array:
@@ -54,43 +54,38 @@ def off_rotation(nine: Array) -> Array:
     return np.asarray(np.maximum(np.max(gram, axis=(-1, -2)), mirrors))
 
 
-def from_matrices(table: Table, parts: list[Column]) -> Angles:
+def _from_matrices(table: Table, nine: Array, opened: Array) -> Angles:
     """The nearest rotations, by singular values.
 
     A matrix that is off by d in norm has its nearest rotation off by at most ``sqrt(2) d`` rad.
     Raises TraceError where a matrix is no rotation.
     """
-    values = np.stack([part.values for part in parts], axis=-1)
-    given, off = values.reshape(-1, 3, 3), off_rotation(values)
+    off = off_rotation(nine)
     worst = int(np.argmax(off))
     if off[worst] > MOST_OFF:
         raise TraceError(
             f"{table.file}: {table.place(worst)}: the nine numbers are no rotation matrix "
             f"(its columns are off unit length or right angles by {off[worst]:.2g})."
         )
-    left, _, right = np.linalg.svd(given)
-    opening = np.sqrt(2.0) * norm(np.stack([part.open for part in parts], axis=-1))
-    return wxyz(Rotation.from_matrix(left @ right)), opening
+    left, _, right = np.linalg.svd(nine.reshape(-1, 3, 3))
+    return wxyz(Rotation.from_matrix(left @ right)), np.sqrt(2.0) * norm(opened)
 
 
 def attitude_of(reading: Reading) -> Angles | None:
     """world_R_body between the scenario's axes, or None."""
     how = reading.how
     if parts := reading.group("q"):
-        q, opening = from_quaternions(reading.table, parts)
+        q, opened = _from_quaternions(reading.table, *parts)
     elif parts := reading.group("e"):
-        q, opening = from_euler(parts, how.euler, how.scale_of("angle"))
+        q, opened = _from_euler(how, *parts)
     elif parts := reading.group("r"):
-        q, opening = from_matrices(reading.table, parts)
+        q, opened = _from_matrices(reading.table, *parts)
     else:
         return None
-    own = q if how.attitude_is == "world-from-body" else conjugate(q)
-    return _in_our_axes(own, how.world_axes, how.body_axes), opening
-
-
-def _in_our_axes(q: Array, world: Array, body: Array) -> Array:
-    """``world q body^-1``, (n, 4): an attitude between their axes, reported between ours."""
-    if np.array_equal(world, np.eye(3)) and np.array_equal(body, np.eye(3)):
-        return q
-    turns = [wxyz(Rotation.from_matrix(m)) for m in (world, body)]
-    return quaternion_product(quaternion_product(turns[0], q), conjugate(turns[1]))
+    if how.attitude_is == "body-from-world":
+        q = conjugate(q)
+    axes = (how.world_axes, how.body_axes)
+    if not all(np.array_equal(turned, np.eye(3)) for turned in axes):
+        world, body = (wxyz(Rotation.from_matrix(turned)) for turned in axes)
+        q = quaternion_product(quaternion_product(world, q), conjugate(body))
+    return q, opened

@@ -16,29 +16,24 @@ if TYPE_CHECKING:
 Text = str | None
 
 
-def _option(metavar: str, text: str) -> Any:
-    return typer.Option(metavar=metavar, help=text)
+def _option(metavar: str, text: str, *names: str) -> Any:
+    return typer.Option(*names, metavar=metavar, help=text)
 
 
 def score(
     trace: Annotated[Path, typer.Argument(metavar="TRACE", help="A CSV or Parquet file.")],
     scenario: Annotated[
-        str,
-        typer.Option(
-            metavar="SCENARIO", help="The scenario of the motion: a built-in name or a path."
-        ),
+        str, _option("SCENARIO", "The scenario of the motion: a built-in name or a path.")
     ],
     column: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="ROLE=NAME",
-            help="Assign a column to a role: t, wx.., qw.., e1.. (or yaw, pitch, roll), r11.., "
+        _option(
+            "ROLE=NAME",
+            "Assign a column to a role: t, wx.., qw.., e1.. (or yaw, pitch, roll), r11.., "
             "px.., vx.., ax.. (omega-dot), or a group, as w=A,B,C; #3 is the third. Repeatable.",
         ),
     ] = None,
-    map_file: Annotated[
-        Path | None, typer.Option("--map", metavar="FILE", help="Columns and units in TOML.")
-    ] = None,
+    map_file: Annotated[Path | None, _option("FILE", "Columns and units in TOML.", "--map")] = None,
     time_unit: Annotated[Text, _option("UNIT", "Unit of time: s, ms, us, ns, min or h.")] = None,
     angle_unit: Annotated[Text, _option("UNIT", "Unit of angles: rad, deg, mrad or rev.")] = None,
     rate_unit: Annotated[Text, _option("UNIT", "Unit of omega: rad/s, deg/s, rpm, ...")] = None,
@@ -65,15 +60,12 @@ def score(
         Text, _option("x,-y,-z", "The scenario's body axes, named by the trace's.")
     ] = None,
     time_offset: Annotated[
-        float | None,
-        typer.Option(metavar="S", help="Time in the trace at which the scenario starts."),
+        float | None, _option("S", "Time in the trace at which the scenario starts.")
     ] = None,
     integrator_scheme: Annotated[
         Text, _option("NAME", "Integration scheme that produced the trace.")
     ] = None,
-    timestep: Annotated[
-        float | None, typer.Option(metavar="S", help="Time step that produced the trace, s.")
-    ] = None,
+    timestep: Annotated[float | None, _option("S", "Time step that produced the trace, s.")] = None,
     attitude: Annotated[Text, _option("0.1deg", "Required: the largest attitude error.")] = None,
     omega: Annotated[Text, _option("1e-3deg/s", "Required: the largest omega error.")] = None,
     position: Annotated[Text, _option("1mm", "Required: the largest position error.")] = None,
@@ -82,20 +74,16 @@ def score(
     flip_time: Annotated[
         Text, _option("1ms", "Required: the largest error of a flip time.")
     ] = None,
-    name: Annotated[
-        str, typer.Option(metavar="NAME", help="Name of the trace in the report.")
-    ] = "trace",
+    name: Annotated[str, _option("NAME", "Name of the trace in the report.")] = "trace",
     with_engine: Annotated[
         list[str] | None,
-        typer.Option(
-            "--with",
-            metavar="NAME[:INTEGRATOR]",
-            help="An engine to run on the same scenario; repeatable.",
+        _option(
+            "NAME[:INTEGRATOR]", "An engine to run on the same scenario; repeatable.", "--with"
         ),
     ] = None,
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Folder for the record and its report.")
-    ] = Path("omegadot-score"),
+    out: Annotated[Path, _option("DIR", "Folder for the record and its report.")] = Path(
+        "omegadot-score"
+    ),
     detect: Annotated[
         bool, typer.Option("--detect", help="Report which conventions fit, and write nothing.")
     ] = False,

@@ -15,11 +15,24 @@ from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.shift import Shift, shift_of
 from omegadot.commands.score.steps import Comparison, Declared, compare_schemes, declared_of
 from omegadot.commands.score.trace import trace_of
-from omegadot.commands.score.verdicts import Judgement, judgement_of
 from omegadot.gates.case import Case
+from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.measures import INVARIANT_CHANNELS
 from omegadot.gates.rows import Row
+from omegadot.gates.verdicts import Finding
+from omegadot.reference_impl.system import Array
 
+GATES = {c: "invariants" if c in INVARIANT_CHANNELS else "trajectory" for c in CHANNELS}
 UNITS = {"omega": "rad/s", "attitude": "rad", "position": "m"}
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A channel judged. verdict: pass, fail or info. kind: as in `Finding`, or ``measured``."""
+
+    kind: str
+    verdict: str
+    note: str
 
 
 @dataclass(frozen=True)
@@ -89,15 +102,56 @@ def judge_trace(
     check_duration(reading, trace, case.scenario.run.duration)
     declared = declared_of(trace, scheme, timestep)
     truth = truth_at(case.system, case.initial, trace.times)
-    check_units(reading, trace, truth)
     measured = measure_trace(case, trace, truth)
+    check_units(measured, reading)
     schemes = [] if declared is None else compare_schemes(measured, declared)
     return Judged(
         **vars(measured),
         reading=reading,
         declared=declared,
         schemes=schemes,
-        judgement=judgement_of(measured, declared, schemes),
+        judgement=_judgements(measured, declared, schemes),
         shift=shift_of(measured),
         flips=flips_of(measured),
     )
+
+
+def _finding(error: Array, bound: Array, own: Comparison | None, channel: str) -> Finding:
+    if np.all(error <= bound):
+        return Finding("round-off", "within digits and rounding")
+    if own is not None:
+        left, allowed = own.left[channel], own.bound[channel]
+        if np.all(left <= allowed):
+            return Finding("explained", f"explained by {own.scheme}, to {np.max(left):.1e}")
+        return Finding("unexplained", f"not explained by {own.scheme}: {np.max(left):.1e} is left")
+    return Finding("beyond", "measured, not judged: no scheme is declared")
+
+
+def _judgements(
+    measured: Measured, declared: Declared | None, schemes: list[Comparison]
+) -> dict[str, Judgement]:
+    """Every given channel judged.
+
+    Nothing is green by halves: without a declared scheme a gate passes only where all of its
+    channels are within what digits and rounding leave open.
+    """
+    own = schemes[0] if declared and declared.scheme is not None else None
+    agreeing = next((one for one in schemes if one.found.agree), None)
+    findings = {
+        channel: _finding(error, measured.bound[channel], own or agreeing, channel)
+        for channel, error in measured.error.items()
+    }
+    found = {}
+    for channel, finding in findings.items():
+        verdict, note = finding.verdict, finding.note
+        if own is not None and own.own_start and finding.kind == "explained":
+            verdict, note = "info", f"{note}, from its own start"
+        elif own is None and verdict != "info":
+            alike = [f for c, f in findings.items() if GATES[c] == GATES[channel]]
+            whole = all(f.kind == "round-off" for f in alike)
+            verdict = "pass" if whole else "info"
+            if agreeing is not None and finding.kind == "explained":
+                note += " (not declared)"
+        remark = measured.remarks.get(channel)
+        found[channel] = Judgement(finding.kind, verdict, f"{note}; {remark}" if remark else note)
+    return found

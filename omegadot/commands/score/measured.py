@@ -6,8 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from omegadot.commands.score.bounds import Rounding, digits_open, joined, reading_bound
-from omegadot.commands.score.exact_trajectory import ExactTrajectory, exact_trajectory
+from omegadot.commands.score.exact_trajectory import (
+    ExactTrajectory,
+    Rounding,
+    digits_open,
+    exact_trajectory,
+    joined,
+    reading_bound,
+)
 from omegadot.commands.score.trace import Trace
 from omegadot.gates.case import Case
 from omegadot.gates.interpolation import Hermite
@@ -48,25 +54,28 @@ class Measured:
 
 def absent_channels(trace: Trace, truth: Truth) -> dict[str, str]:
     """The channels that a trace cannot be judged on, each with what it lacks."""
-    load = truth.yardstick.system.load
-    spins, turns = trace.angular_velocity is not None, trace.orientation is not None
-    needed = {
-        "omega": {"omega": spins},
-        "attitude": {"the attitude": turns},
-        "position": {"the position": trace.position is not None},
-        "energy": {"omega": spins},
-        "angular_momentum": {"omega": spins},
-        "linear_momentum": {"the velocity": trace.linear_velocity is not None},
+    given = {
+        "omega": trace.angular_velocity,
+        "the attitude": trace.orientation,
+        "the position": trace.position,
+        "the velocity": trace.linear_velocity,
     }
-    if load.pivot is not None:  # the attitude places the body
-        needed["energy"]["the attitude"] = turns
-        needed["angular_momentum"]["the attitude"] = turns
-    found = {}
-    for channel, parts in needed.items():
-        lacking = [name for name, there in parts.items() if not there]
-        if lacking:
-            found[channel] = f"not given: the trace lacks {' and '.join(lacking)}"
-    return found
+    # On a pivot, the attitude places the body.
+    placed = [] if truth.yardstick.system.load.pivot is None else ["the attitude"]
+    needed = {
+        "omega": ["omega"],
+        "attitude": ["the attitude"],
+        "position": ["the position"],
+        "energy": ["omega", *placed],
+        "angular_momentum": ["omega", *placed],
+        "linear_momentum": ["the velocity"],
+    }
+    lacking = {c: [name for name in names if given[name] is None] for c, names in needed.items()}
+    return {
+        channel: f"not given: the trace lacks {' and '.join(names)}"
+        for channel, names in lacking.items()
+        if names
+    }
 
 
 def measure_trace(case: Case, trace: Trace, truth: Truth) -> Measured:

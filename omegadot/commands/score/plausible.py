@@ -9,13 +9,12 @@ import numpy as np
 
 from omegadot.commands.score.columns import GROUPS
 from omegadot.commands.score.convention import option_of
+from omegadot.commands.score.measured import Measured, measure_trace
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import Trace, trace_of
 from omegadot.commands.units import UNITS
 from omegadot.gates.scales import norm
-from omegadot.gates.truth import Truth
-from omegadot.reference_impl.rotations import attitude_angle, normalize
 
 # Wrong beyond doubt: a twentieth of the motion's size off, and twenty times nearer otherwise.
 GROSS = 0.05
@@ -49,31 +48,31 @@ def check_duration(reading: Reading, trace: Trace, duration: float) -> None:
     )
 
 
-def check_units(reading: Reading, trace: Trace, truth: Truth) -> None:
+def check_units(found: Measured, reading: Reading) -> None:
     """Raise TraceError where another unit than the declared one fits, and that one does not."""
-    how, system = reading.how, truth.yardstick.system
-    for kind, group in (("rate", "w"), ("angle", "e"), ("length", "p")):
+    for kind, (group, channel, what) in _SIGNS.items():
         units, field = UNITS[kind], f"{kind}_unit"
-        declared = _misfit(kind, trace, truth)
-        if GROUPS[group][0] not in reading.columns or declared <= GROSS:
+        if GROUPS[group][0] not in reading.columns or _misfit(found, channel) <= GROSS:
             continue
+        given = getattr(reading.how, field)
         for unit in units:
             changed: dict[str, Any] = {field: unit}
-            other = replace(reading, how=replace(how, **changed))
-            misfit = _misfit(kind, trace_of(other, system), truth)
-            if misfit * NEARER < declared and misfit < GROSS:
-                given = getattr(how, field)
+            other = replace(reading, how=replace(reading.how, **changed))
+            trace = trace_of(other, found.case.system)
+            misfit = _misfit(measure_trace(found.case, trace, found.truth), channel)
+            if misfit * NEARER < _misfit(found, channel) and misfit < GROSS:
                 raise TraceError(
-                    f"{reading.table.file}: {_WHAT[kind]} {_times(units[given] / units[unit])} "
-                    f"what {given} would give here, and looks like {unit}; give "
-                    f"{option_of(field)} {unit}."
+                    f"{reading.table.file}: {what} {_times(units[given] / units[unit])} what "
+                    f"{given} would give here, and looks like {unit}; give {option_of(field)} "
+                    f"{unit}."
                 )
 
 
-_WHAT = {
-    "rate": "the angular velocity is",
-    "angle": "the angles are",
-    "length": "the positions are",
+# By the kind of a unit: a group of columns and a channel that show it.
+_SIGNS = {
+    "rate": ("w", "omega", "the angular velocity is"),
+    "angle": ("e", "attitude", "the angles are"),
+    "length": ("p", "position", "the positions are"),
 }
 
 
@@ -81,18 +80,10 @@ def _times(factor: float) -> str:
     return f"{factor:.3g} times" if factor >= 1.0 else f"1/{1.0 / factor:.3g} of"
 
 
-def _misfit(kind: str, trace: Trace, truth: Truth) -> float:
+def _misfit(found: Measured, channel: str) -> float:
     """The median error over the first part, relative to the motion's size (an angle to 1 rad)."""
-    rows = slice(0, max(3, int(FIRST * len(trace.times))))
-    exact = truth.state
-    if kind == "rate" and trace.angular_velocity is not None:
-        gap = norm(trace.angular_velocity[rows] - exact.angular_velocity[rows])
-        return float(np.median(gap)) / truth.yardstick.rate
-    if kind == "angle" and trace.orientation is not None:
-        own = normalize(trace.orientation[rows])
-        return float(np.median(attitude_angle(own, exact.orientation[rows])))
-    if kind == "length" and trace.position is not None:
-        gap = norm(trace.position[rows] - exact.position[rows])
-        size = float(np.median(norm(exact.position[rows])))
-        return float(np.median(gap)) / size if size > 0.0 else 0.0
-    return 0.0
+    rows = slice(0, max(3, int(FIRST * len(found.trace.times))))
+    gap, size = float(np.median(found.error[channel][rows])), 1.0
+    if channel == "position":
+        size = float(np.median(norm(found.truth.state.position[rows])))
+    return gap / size if size > 0.0 else 0.0

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from omegadot.commands.score.judged import Judged
-from omegadot.commands.score.verdicts import GATES
+from omegadot.commands.score.judged import GATES, Judged
 from omegadot.commands.units import UNITS, quantity, unit_written
 from omegadot.gates.rows import Row
 from omegadot.harness.usage import UsageError

@@ -7,9 +7,8 @@ from functools import partial
 
 import numpy as np
 
-from omegadot.commands.score.judged import Judged
+from omegadot.commands.score.judged import GATES, Judged
 from omegadot.commands.score.require import Requirement, requirement_rows
-from omegadot.commands.score.verdicts import GATES
 from omegadot.gates.equation import forward_rows
 from omegadot.gates.invariants import HORIZONS
 from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS

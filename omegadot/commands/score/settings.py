@@ -8,10 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from omegadot.commands.score.columns import GROUPS, Columns, assignments_of, columns_of
 from omegadot.commands.score.convention import SETTINGS, Convention, convention_of
-from omegadot.commands.score.table import Column, Table
+from omegadot.commands.score.table import Table
 from omegadot.harness.usage import UsageError, nearest
+from omegadot.reference_impl.system import Array
 
 GivenColumns = Mapping[str, str | Sequence[str]] | Sequence[str]
 """Names by role, ``{"t": "time", "w": ["p", "q", "r"]}``, or texts such as ``w=p,q,r``."""
@@ -27,10 +30,16 @@ class Reading:
     columns: Columns
     how: Convention
 
-    def group(self, name: str) -> list[Column]:
-        """The columns of one group, in the order of its roles; none where it is not given."""
-        given = GROUPS[name][0] in self.columns
-        return [self.table.column(self.columns[role]) for role in GROUPS[name] if given]
+    def group(self, name: str) -> tuple[Array, Array] | None:
+        """(n, k): the columns of a group in the order of its roles, and their resolution.
+
+        None where the group is not given.
+        """
+        if GROUPS[name][0] not in self.columns:
+            return None
+        parts = [self.table.column(self.columns[role]) for role in GROUPS[name]]
+        opened = np.stack([part.open for part in parts], axis=-1)
+        return np.stack([part.values for part in parts], axis=-1), opened
 
 
 def reading_of(

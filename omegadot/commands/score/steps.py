@@ -8,8 +8,7 @@ from math import gcd
 
 import numpy as np
 
-from omegadot.commands.score.bounds import Rounding, joined
-from omegadot.commands.score.exact_trajectory import part_of
+from omegadot.commands.score.exact_trajectory import Rounding, joined, part_of
 from omegadot.commands.score.measured import Measured, distance
 from omegadot.commands.score.trace import Trace
 from omegadot.gates.likeness import Likeness, likeness

@@ -8,7 +8,7 @@ import numpy as np
 
 from omegadot.commands.score.attitude import attitude_of
 from omegadot.commands.score.settings import Reading
-from omegadot.commands.score.table import Column, TraceError
+from omegadot.commands.score.table import TraceError
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
@@ -47,22 +47,17 @@ def trace_of(reading: Reading, system: System) -> Trace:
         orientation, opened["orientation"] = attitude
     for name, group in (("angular_velocity", "w"), ("omega_dot", "a")):
         if parts := reading.group(group):
-            values, rounding = _stacked(parts, how.scale_of("rate"))
-            moved[name] = _in_body(reading, values, orientation)
+            unit = how.scale_of("rate")
+            moved[name] = _in_body(reading, unit * parts[0], orientation)
+            opened[name] = unit * norm(parts[1])
             if how.omega_frame == "world":
-                rounding = rounding + norm(moved[name]) * opened["orientation"]
-            opened[name] = rounding
+                opened[name] = opened[name] + norm(moved[name]) * opened["orientation"]
     for name, group in (("position", "p"), ("linear_velocity", "v")):
         if parts := reading.group(group):
-            values, opened[name] = _stacked(parts, how.scale_of("length"))
-            moved[name] = values @ how.world_axes.T
+            unit = how.scale_of("length")
+            moved[name], opened[name] = unit * parts[0] @ how.world_axes.T, unit * norm(parts[1])
     trace = Trace(times, orientation, **moved, open=opened)
     return _at_center(reading, system, trace) if how.point == "origin" else trace
-
-
-def _stacked(parts: list[Column], unit: float) -> tuple[Array, Array]:
-    values = unit * np.stack([part.values for part in parts], axis=-1)
-    return values, unit * norm(np.stack([part.open for part in parts], axis=-1))
 
 
 def _in_body(reading: Reading, values: Array, orientation: Array | None) -> Array:

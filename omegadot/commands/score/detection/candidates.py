@@ -125,7 +125,8 @@ def omegas(
     The axes are then the attitude's.
     """
     found: list[Omega] = []
-    sizes, orientation = norm(numbers.angular_velocity), attitude and attitude.orientation
+    sizes = norm(numbers.angular_velocity)
+    orientation = None if attitude is None else attitude.orientation
     tried = [("body", axis) for axis in range(axes)]
     if attitude is not None:
         own = [("body", attitude.body), ("world", attitude.world)]

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import typer
 
+from omegadot.commands.score.detection.detect import Detected
 from omegadot.commands.score.detection.reading import Reading
-from omegadot.commands.score.detection.search import Detected
 from omegadot.reports.record.run_json import dump_json
 
 MOST_SHOWN = 8

@@ -38,12 +38,12 @@ class Reading:
     @property
     def misfit(self) -> float:
         """The larger of the two."""
-        return max(part.misfit for part in (self.attitude, self.omega) if part is not None)
+        return max(part.misfit for part in self.parts)
 
     @property
-    def parts(self) -> int:
-        """How much of a motion it reads."""
-        return (self.attitude is not None) + (self.omega is not None)
+    def parts(self) -> list[Attitude | Omega]:
+        """What it reads of a motion."""
+        return [part for part in (self.attitude, self.omega) if part is not None]
 
     @property
     def plainness(self) -> tuple[object, ...]:
@@ -107,8 +107,7 @@ def unlike(readings: Sequence[Reading]) -> list[Reading]:
     They are if they read any numbers alike: random ones are put into the columns, and read.
     """
     random, kept = np.random.default_rng(0), dict[tuple[object, ...], Reading]()
-    parts = [part for reading in readings for part in (reading.attitude, reading.omega) if part]
-    names = sorted({name for part in parts for name in part.columns})
+    names = sorted({n for reading in readings for part in reading.parts for n in part.columns})
     probe: dict[str, Array] = {name: random.uniform(-50.0, 50.0, PROBES) for name in names}
     for reading in readings:
         kept.setdefault((reading.clock, *_read(reading, probe)), reading)
