@@ -28,7 +28,7 @@ MEANING = {
     "a": "omega-dot",
 }
 TURNS = {"yaw": "z", "pitch": "y", "roll": "x"}
-QUATERNIONS = {"wxyz": "wxyz", "xyzw": "xyzw"}
+QUATERNIONS = ("wxyz", "xyzw")
 # Found without being named. Not ax, ay, az: in most logs these are a linear acceleration.
 KNOWN = {r: r for group in ("t", "w", "q", "e", "r", "p", "v") for r in GROUPS[group]}
 KNOWN |= {"time": "t", **{name: name for name in TURNS}}
@@ -48,8 +48,7 @@ def _turn_role(argument: str, euler: str) -> str:
 def _roles_of(argument: str, count: int, order: str, euler: str) -> tuple[str, ...]:
     """The roles that one name of a ROLE=NAME pair stands for. Raises UsageError."""
     key = argument.lower()
-    if key == "time":
-        key = "t"
+    key = "t" if key == "time" else key
     if key in TURNS:
         key = _turn_role(key, euler)
     if key in GROUPS and count == len(GROUPS[key]):
@@ -57,14 +56,12 @@ def _roles_of(argument: str, count: int, order: str, euler: str) -> tuple[str, .
     roles = [role for group in GROUPS.values() for role in group]
     if key in roles and count == 1:
         return (key,)
+    if key not in GROUPS and key not in roles:
+        raise UsageError(f"--column {argument}: there is no such role; {nearest(key, ROLES)}.")
+    expected = "one column was expected"
     if key in GROUPS:
-        raise UsageError(
-            f"--column {argument}: {count} given, {len(GROUPS[key])} columns were expected "
-            f"({MEANING[key]})."
-        )
-    if key in roles:
-        raise UsageError(f"--column {argument}: {count} given, one column was expected.")
-    raise UsageError(f"--column {argument}: there is no such role; {nearest(key, ROLES)}.")
+        expected = f"{len(GROUPS[key])} columns were expected ({MEANING[key]})"
+    raise UsageError(f"--column {argument}: {count} given, {expected}.")
 
 
 def columns_of(
@@ -79,23 +76,20 @@ def columns_of(
     if order not in QUATERNIONS:
         raise UsageError(f"--quaternion {order}: no such order; {nearest(order, QUATERNIONS)}.")
     found: Columns = {}
-    for role_or_group, names in assigned:
-        for role, name in zip(
-            _roles_of(role_or_group, len(names), order, euler), names, strict=True
-        ):
+    for argument, names in assigned:
+        roles = _roles_of(argument, len(names), order, euler)
+        for role, name in zip(roles, names, strict=True):
             if role in found:
-                raise UsageError(f"--column {role_or_group}: {role} is given twice; give it once.")
+                raise UsageError(f"--column {argument}: {role} is given twice; give it once.")
             found[role] = find_column(table, name, role)
-    named = {group for group, roles in GROUPS.items() if any(role in found for role in roles)}
-    attitude = named & {"q", "e", "r"}
+    named = {role[0] for role in found}
+    named |= set("qer") if named & set("qer") else set()
+    turns = len(set(euler.lower())) == 3
     for name in (name for name in table.names if table.names.count(name) == 1):
         role = KNOWN.get(name.casefold(), "")
-        if role in TURNS and len(set(euler.lower())) == 3:
-            role = _turn_role(name.casefold(), euler)
-        group = role[:1]
-        if role in GROUPS.get(group, ()) and group not in named and role not in found:
-            if group in "qer" and attitude:
-                continue
+        if role in TURNS:
+            role = _turn_role(role, euler) if turns else ""
+        if role and role[0] not in named and role not in found:
             found[role] = name
     return _whole(table, found, bool(assigned))
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from omegadot.commands.units import UNITS, unit_named
 from omegadot.harness.usage import UsageError, nearest
+from omegadot.reference_impl.rotations import normalize, rotation_matrix
 from omegadot.reference_impl.system import Array
 
 CHOICES = {
@@ -99,31 +100,24 @@ def axes_of(text: str, option: str) -> Array:
     Raises UsageError where it is no rotation.
     """
     parts = [part.strip().lower() for part in text.split(",")]
-    advice = "write three axes like x,-y,-z or a quaternion w,x,y,z"
+    where, advice = f"{option} {text}", "write three axes like x,-y,-z or a quaternion w,x,y,z"
     if len(parts) == 4:
-        return _from_quaternion(parts, text, option, advice)
-    named = [_AXIS.match(part) for part in parts]
-    if len(parts) != 3 or not all(named):
-        raise UsageError(f"{option} {text}: neither three axes nor four numbers; {advice}.")
+        try:
+            q = np.array([float(part) for part in parts])
+        except ValueError:
+            raise UsageError(f"{where}: four numbers were expected; {advice}.") from None
+        if not (np.all(np.isfinite(q)) and abs(np.sqrt(np.sum(q * q)) - 1.0) < 1e-3):
+            raise UsageError(f"{where}: the quaternion is not of unit length; {advice}.")
+        return rotation_matrix(normalize(q))
+    named = [axis for axis in map(_AXIS.match, parts) if axis]
+    if not len(parts) == len(named) == 3:
+        raise UsageError(f"{where}: neither three axes nor four numbers; {advice}.")
     matrix = np.zeros((3, 3))
     for row, axis in enumerate(named):
-        if axis is not None:
-            matrix[row, "xyz".index(axis.group(2))] = -1.0 if axis.group(1) == "-" else 1.0
+        matrix[row, "xyz".index(axis[2])] = -1.0 if axis[1] == "-" else 1.0
     if abs(np.linalg.det(matrix) - 1.0) > 0.5:
-        raise UsageError(f"{option} {text}: no rotation, it mirrors or repeats an axis; {advice}.")
+        raise UsageError(f"{where}: no rotation, it mirrors or repeats an axis; {advice}.")
     return matrix
-
-
-def _from_quaternion(parts: list[str], text: str, option: str, advice: str) -> Array:
-    from omegadot.reference_impl.rotations import normalize, rotation_matrix
-
-    try:
-        q = np.array([float(part) for part in parts])
-    except ValueError:
-        raise UsageError(f"{option} {text}: four numbers were expected; {advice}.") from None
-    if not (np.all(np.isfinite(q)) and abs(np.sqrt(np.sum(q * q)) - 1.0) < 1e-3):
-        raise UsageError(f"{option} {text}: the quaternion is not of unit length; {advice}.")
-    return rotation_matrix(normalize(q))
 
 
 def axes_text(matrix: Array) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterable, Sequence
-from itertools import chain
+from itertools import chain, takewhile
 
 import polars as pl
 
@@ -31,11 +31,7 @@ def csv_table(file: str, content: bytes) -> Table:
     looked_at = plain["text"].head(LOOKED_AT).to_list()
     delimiter = delimiter_of(looked_at)
     decimal = decimal_of(file, [cells_of(text, delimiter) for text in looked_at])
-    heads: list[str] = []
-    for text in plain["text"]:
-        if is_sample(cells_of(text, delimiter)):
-            break
-        heads.append(text)
+    heads = list(takewhile(lambda text: not is_sample(cells_of(text, delimiter)), plain["text"]))
     samples = plain[len(heads) :]
     if samples.is_empty():
         raise TraceError(f"{file}: no line of numbers; it has a header at most, give samples too.")
@@ -47,12 +43,18 @@ def csv_table(file: str, content: bytes) -> Table:
 
 
 def _names(heads: list[str], comments: list[str], sample: str, delimiter: str) -> tuple[str, ...]:
-    """A name for every column: of the first line that has them, else of a comment, else numbers."""
+    """A name for every column: of the first line that has them, else of a comment, else numbers.
+
+    Of the comments it is the last one that has some, as NumPy writes them.
+    """
     width = len(cells_of(sample, delimiter))
     # The delimiter that ends a line is that of a last, empty cell where the header has one more.
     widths = [width, len(raw_cells_of(sample, delimiter))]
-    found = next(filter(None, (names_of(text, delimiter, widths) for text in heads)), [])
-    found = found or comment_names(comments, delimiter, width) or [""] * width
+    rows = [names_of(text, delimiter, widths) for text in heads]
+    for text in reversed(comments):
+        row = names_of(re.sub(COMMENT, "", text).strip(), delimiter, [width])
+        rows += [row] if len(set(row)) == width and not is_sample(row) else []
+    found = next(filter(None, rows), [""] * width)
     return tuple(name or f"#{k}" for k, name in enumerate(found, 1))
 
 
@@ -143,9 +145,7 @@ def decimal_of(file: str, rows: Iterable[Sequence[str]]) -> str:
 
 def is_sample(row: Sequence[str]) -> bool:
     """A row that is of numbers: more than half of it, so that one bad cell does not hide it."""
-    numbers = [
-        c for c in row if re.match(NUMBER, c) or DECIMAL_COMMA.match(c) or NOT_FINITE.match(c)
-    ]
+    numbers = [c for c in row if any(re.match(p, c) for p in (NUMBER, DECIMAL_COMMA, NOT_FINITE))]
     return 2 * len(numbers) > len(row)
 
 
@@ -157,12 +157,3 @@ def names_of(line: str, delimiter: str, widths: Sequence[int]) -> list[str]:
     rows = [cells_of(line, delimiter)]
     rows += [] if delimiter else [re.split(r"\s{2,}|\t", line.strip())]
     return next((row for row in rows if len(row) in widths), [])
-
-
-def comment_names(comments: Sequence[str], delimiter: str, width: int) -> list[str]:
-    """Names in the last of these comments that has some, as NumPy writes them; else none."""
-    for text in reversed(comments):
-        row = names_of(re.sub(COMMENT, "", text).strip(), delimiter, [width])
-        if len(set(row)) == width and not is_sample(row):
-            return row
-    return []

@@ -48,17 +48,14 @@ def open_of(cells: Sequence[str], values: Array) -> Array:
     A column that never changes is taken as exact, and so is zero in one printed whole.
     """
     own: Array = 0.5 * EPS * np.abs(values)
-    if np.all(values == values[0]):
-        return own
     decimals, significant = _longest(cells)
+    if np.all(values == values[0]) or significant >= ALL_DIGITS:
+        return own
     with np.errstate(divide="ignore"):
         place = np.floor(np.log10(np.abs(values)))
     place = np.where(np.isfinite(place), place, -np.inf)
-    last = 10.0 ** (place - significant + 1)
-    if significant < ALL_DIGITS:
-        last = np.maximum(last, 10.0 ** float(-min(decimals, 300)))
-        return np.asarray(np.maximum(own, 0.5 * last))
-    return own
+    last = np.maximum(10.0 ** (place - significant + 1), 10.0 ** float(-min(decimals, 300)))
+    return np.asarray(np.maximum(own, 0.5 * last))
 
 
 def open_time(cells: Sequence[str], values: Array) -> Array:

@@ -25,6 +25,21 @@ from omegadot.gates.truth import Truth
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.system import Array, State
 
+PARTS = {
+    "angular_velocity": "omega",
+    "orientation": "the attitude",
+    "position": "the position",
+    "linear_velocity": "the velocity",
+}
+NEEDED = {
+    "omega": ("omega",),
+    "attitude": ("the attitude",),
+    "position": ("the position",),
+    "energy": ("omega",),
+    "angular_momentum": ("omega",),
+    "linear_momentum": ("the velocity",),
+}
+
 
 @dataclass(frozen=True)
 class Measured:
@@ -54,28 +69,15 @@ class Measured:
 
 def absent_channels(trace: Trace, truth: Truth) -> dict[str, str]:
     """The channels that a trace cannot be judged on, each with what it lacks."""
-    given = {
-        "omega": trace.angular_velocity,
-        "the attitude": trace.orientation,
-        "the position": trace.position,
-        "the velocity": trace.linear_velocity,
-    }
-    # On a pivot, the attitude places the body.
-    placed = [] if truth.yardstick.system.load.pivot is None else ["the attitude"]
-    needed = {
-        "omega": ["omega"],
-        "attitude": ["the attitude"],
-        "position": ["the position"],
-        "energy": ["omega", *placed],
-        "angular_momentum": ["omega", *placed],
-        "linear_momentum": ["the velocity"],
-    }
-    lacking = {c: [name for name in names if given[name] is None] for c, names in needed.items()}
-    return {
-        channel: f"not given: the trace lacks {' and '.join(names)}"
-        for channel, names in lacking.items()
-        if names
-    }
+    lacking = [name for field, name in PARTS.items() if getattr(trace, field) is None]
+    found = {}
+    for channel, needed in NEEDED.items():
+        on_pivot = truth.yardstick.system.load.pivot is not None
+        placed = on_pivot and channel in ("energy", "angular_momentum")  # by the attitude
+        names = {*needed, "the attitude"} if placed else needed
+        if missing := [name for name in lacking if name in names]:
+            found[channel] = f"not given: the trace lacks {' and '.join(missing)}"
+    return found
 
 
 def measure_trace(case: Case, trace: Trace, truth: Truth) -> Measured:

@@ -12,7 +12,7 @@ from rich.text import Text
 from omegadot.commands.run.print_run import exit_code
 from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.score import ScoreResult
-from omegadot.commands.score.sentences import factor_of
+from omegadot.commands.score.sentences import in_own_unit
 from omegadot.commands.score.shift import scatter
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
@@ -54,7 +54,7 @@ def _table(found: Judged) -> Table:
     for head in ("channel", "largest", "at the end", "rms", "resolution", "unit", "", "why"):
         table.add_column(head, no_wrap=True)
     for channel in found.error:
-        score = found.score(channel, *factor_of(found, channel))
+        score = in_own_unit(found, channel)
         table.add_row(
             channel.replace("_", " "),
             *(f"{value:.4g}" for value in (score.max, score.end, score.rms, score.bound)),

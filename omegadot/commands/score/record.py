@@ -16,7 +16,7 @@ from omegadot.commands.run.record import record_of
 from omegadot.commands.run.run import execute
 from omegadot.commands.score.convention import Convention, axes_text
 from omegadot.commands.score.judged import Judged
-from omegadot.commands.score.sentences import largest
+from omegadot.commands.score.sentences import in_own_unit
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.collect import COLUMNS
 from omegadot.harness.outcome import JudgedCase, Outcome, RunRequest
@@ -132,7 +132,11 @@ def _sentence(found: Judged, rows: list[Row], name: str) -> str:
     for row in rows:
         if row.verdict == "fail":
             return f"{name} fails on {found.case.name}: {row.channel}, {row.note}."
-    parts = [f"{c.replace('_', ' ')} by {largest(found, c)}" for c in found.error]
+    parts = []
+    for channel in found.error:
+        score = in_own_unit(found, channel)
+        unit = "" if score.unit == "relative" else f" {score.unit}"
+        parts.append(f"{channel.replace('_', ' ')} by {score.max:.3g}{unit}")
     late = found.shift is not None and found.shift.explains
     why = f" It is {found.shift.as_text}, and that is its error." if late and found.shift else ""
     return f"{name} on {found.case.name} is off at most: {', '.join(parts[:3])}.{why}"

@@ -46,12 +46,8 @@ def requirements_of(texts: Mapping[str, str | None]) -> list[Requirement]:
     ]
 
 
-def requirement_rows(wanted: list[Requirement], found: Judged) -> list[Row]:
-    """One row a requirement, pass or fail. Raises UsageError where the trace cannot decide."""
-    return [_row(one, found) for one in wanted]
-
-
-def _row(one: Requirement, found: Judged) -> Row:
+def requirement_row(one: Requirement, found: Judged) -> Row:
+    """Pass or fail. Raises UsageError where the trace cannot decide."""
     channel, flips = one.channel, found.flips
     if channel == "time" and not flips:
         raise UsageError(

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from omegadot.commands.score.judged import GATES, Judged
-from omegadot.commands.score.require import Requirement, requirement_rows
+from omegadot.commands.score.require import Requirement, requirement_row
 from omegadot.gates.equation import forward_rows
 from omegadot.gates.invariants import HORIZONS
 from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
@@ -25,7 +25,7 @@ def rows_of(found: Judged, requirements: list[Requirement]) -> list[Row]:
         invariant = channel in INVARIANT_CHANNELS
         rows += _invariant(found, channel) if invariant else _trajectory(found, channel)
     rows += _omega_absolute(found) + _shift(found) + found.flips
-    rows += requirement_rows(requirements, found)
+    rows += [requirement_row(one, found) for one in requirements]
     rows += [
         Row(GATES[channel], channel, "samples_given", 0.0, "1", note=why)
         for channel, why in found.absent.items()

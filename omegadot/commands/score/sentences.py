@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from omegadot.commands.score.judged import Judged
+from omegadot.commands.score.judged import ChannelScore, Judged
 from omegadot.commands.score.shift import scatter
-from omegadot.commands.units import UNITS
 from omegadot.gates.rows import Row
 
 
@@ -14,21 +11,18 @@ def factor_of(found: Judged, channel: str) -> tuple[float, str]:
     """From the yardstick's unit to the one that people read here, the trace's own, and its name."""
     how = found.reading.how
     if channel == "omega":
-        unit = how.rate_unit
-        return found.rate / UNITS["rate"][unit], unit
+        return found.rate / how.scale_of("rate"), how.rate_unit
     if channel == "attitude":
-        unit = how.angle_unit if "e1" in found.reading.columns else "rad"
-        return 1.0 / UNITS["angle"][unit], unit
+        by_angles = "e1" in found.reading.columns
+        return (1.0 / how.scale_of("angle"), how.angle_unit) if by_angles else (1.0, "rad")
     if channel == "position":
-        return 1.0 / UNITS["length"][how.length_unit], how.length_unit
+        return 1.0 / how.scale_of("length"), how.length_unit
     return 1.0, "relative"
 
 
-def largest(found: Judged, channel: str) -> str:
-    """The largest error of a channel with its unit: ``0.003 deg/s``."""
-    factor, unit = factor_of(found, channel)
-    value = factor * float(np.max(found.error[channel]))
-    return f"{value:.3g}" + ("" if unit == "relative" else f" {unit}")
+def in_own_unit(found: Judged, channel: str) -> ChannelScore:
+    """One channel, in the trace's own unit."""
+    return found.score(channel, *factor_of(found, channel))
 
 
 def sentences(found: Judged, rows: list[Row]) -> list[str]:
@@ -43,7 +37,7 @@ def _late(found: Judged) -> list[str]:
     unit, what, factor = "rad", "the attitude", 1.0
     if shift.of == "omega":
         unit, what = found.reading.how.rate_unit, "omega"
-        factor = 1.0 / UNITS["rate"][unit]
+        factor = 1.0 / found.reading.how.scale_of("rate")
     if shift.seen:
         share = "the error" if shift.explains else "only part of the error"
         lines.append(
@@ -96,12 +90,10 @@ def _notes(rows: list[Row]) -> list[str]:
 
 
 def _digits(found: Judged) -> list[str]:
-    parts = []
-    for channel in ("omega", "attitude", "position"):
-        if channel in found.error:
-            factor, unit = factor_of(found, channel)
-            resolution = factor * float(np.max(found.digits[channel]))
-            parts.append(f"{resolution:.1g} {unit} of {channel}")
+    scores = {
+        c: in_own_unit(found, c) for c in ("omega", "attitude", "position") if c in found.error
+    }
+    parts = [f"{score.digits_open:.1g} {score.unit} of {c}" for c, score in scores.items()]
     return [f"Resolution of the data (digits as written): {', '.join(parts)}."] * bool(parts)
 
 

@@ -168,11 +168,8 @@ def _readings(clock: Clock, numbers: Numbers, axes: int) -> list[Reading]:
 
 def _next_best(best: Reading, by_clock: dict[Clock, Numbers]) -> list[Reading]:
     """The same with another attitude or another omega, however far off, in the plain axes."""
-    numbers, far = by_clock[best.clock], float("inf")
-    found = []
-    if best.attitude is not None:
-        found += [replace(best, attitude=one) for one in attitudes(numbers, SAME + 1, far)]
-    if best.omega is not None:
-        spins = omegas(numbers, best.attitude, SAME + 1, far)
-        found += [replace(best, omega=one) for one in spins]
-    return found
+    numbers, how = by_clock[best.clock], (SAME + 1, float("inf"))
+    turned = attitudes(numbers, *how) if best.attitude else []
+    spins = omegas(numbers, best.attitude, *how) if best.omega else []
+    found = [replace(best, attitude=one) for one in turned]
+    return found + [replace(best, omega=one) for one in spins]

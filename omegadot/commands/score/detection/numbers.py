@@ -24,13 +24,11 @@ SEQUENCES = tuple(
 
 def _turns() -> Array:
     """(24, 3, 3): the rotations that take axes to axes, the identity first."""
-    found = []
-    for order in itertools.permutations(range(3)):
-        for signs in itertools.product((1.0, -1.0), repeat=3):
-            matrix = np.diag(signs)[:, order]
-            if np.linalg.det(matrix) > 0.0:
-                found.append(matrix)
-    return np.array(sorted(found, key=lambda m: -np.trace(m)))
+    signs = list(itertools.product((1.0, -1.0), repeat=3))
+    orders = itertools.permutations(range(3))
+    turns = (np.diag(sign)[:, order] for order, sign in itertools.product(orders, signs))
+    proper = [matrix for matrix in turns if np.linalg.det(matrix) > 0.0]
+    return np.array(sorted(proper, key=lambda matrix: -np.trace(matrix)))
 
 
 AXES = _turns()
