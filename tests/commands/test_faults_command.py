@@ -12,9 +12,10 @@ from command_line import omegadot
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.catalogue.every import FAULTS
 from omegadot.commands.faults.detect import GATES
+from omegadot.commands.faults.faults import Settings
 from omegadot.commands.faults.matrix import EngineMatrix, detection
-from omegadot.commands.faults.matrix_text import Settings, markdown, share
 from omegadot.commands.faults.prepared import Pool
+from omegadot.commands.faults.print_faults import markdown, share
 from omegadot.commands.faults.published import Published
 from omegadot.commands.faults.published_checks import PUBLISHED
 

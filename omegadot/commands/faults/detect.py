@@ -50,15 +50,15 @@ def without_scheme(integrator: Integrator) -> Integrator:
     return replace(integrator, scheme=None)
 
 
-def nameless_integrators(engine: Adapter) -> tuple[Integrator, ...]:
-    """Those by which an engine with declared schemes is judged, without them."""
-    return tuple(map(without_scheme, chosen_integrators(engine.description.integrators)))
+def chosen_integrators(engine: Adapter) -> tuple[Integrator, ...]:
+    """The first integrator of order 1 and the first of order 4, whichever there are.
 
-
-def chosen_integrators(integrators: tuple[Integrator, ...]) -> tuple[Integrator, ...]:
-    """The first integrator of order 1 and the first of order 4, whichever there are."""
+    A nameless engine's are those of the engine with its schemes, without them.
+    """
+    if isinstance(engine, Nameless):
+        return tuple(map(without_scheme, chosen_integrators(engine.inner)))
     picked: dict[int, Integrator] = {}
-    for integrator in integrators:
+    for integrator in engine.description.integrators:
         if integrator.scheme is not None:
             picked.setdefault(integrator.orders["attitude"], integrator)
     return tuple(picked[order] for order in (1, 4) if order in picked)
@@ -84,7 +84,7 @@ def judge(
     refinement is run, and what one could still decide does not count as failed.
     """
     case = prepared.case
-    chosen = integrators or chosen_integrators(adapter.description.integrators)
+    chosen = integrators or chosen_integrators(adapter)
     driver = driver_of(name, adapter, chosen)
     result = driver.evaluate_equations(case, prepared.evaluation_states)
     pool.step_companions(prepared, result.integrators)

@@ -7,13 +7,29 @@ from dataclasses import dataclass
 
 from omegadot.adapters.registry import BUILT_IN
 from omegadot.commands.faults.matrix import EngineMatrix, engine_matrix, quiet_engines
-from omegadot.commands.faults.matrix_text import Settings
 from omegadot.commands.faults.prepared import Pool
 from omegadot.commands.progress import Count, Reporting, reporting
 from omegadot.harness.arguments import several
 from omegadot.harness.usage import UsageError, check_count, nearest
 
 ENGINES = tuple(name for name in BUILT_IN if name != "exact")  # the truth cannot be wrong
+
+
+@dataclass(frozen=True)
+class Settings:
+    """engines, bodies and seed as they were requested."""
+
+    engines: tuple[str, ...]
+    bodies: int
+    seed: int
+
+    @property
+    def command(self) -> str:
+        """The command that gives this page."""
+        named = " ".join(f"--engine {name}" for name in self.engines)
+        return (
+            f"omegadot faults {named} --bodies {self.bodies} --seed {self.seed} --format markdown"
+        )
 
 
 @dataclass(frozen=True)

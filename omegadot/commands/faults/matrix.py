@@ -11,17 +11,10 @@ from functools import cache
 
 import numpy as np
 
-from omegadot.adapters.protocol import Adapter, Integrator
+from omegadot.adapters.protocol import Adapter
 from omegadot.adapters.registry import BUILT_IN, build_adapter
 from omegadot.commands.faults.catalogue.every import ORDERED
-from omegadot.commands.faults.detect import (
-    GATES,
-    Judgement,
-    Nameless,
-    chosen_integrators,
-    judge,
-    nameless_integrators,
-)
+from omegadot.commands.faults.detect import GATES, Judgement, Nameless, chosen_integrators, judge
 from omegadot.commands.faults.fault import Fault
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.commands.faults.published import Published
@@ -94,10 +87,10 @@ def quiet_engines() -> Iterator[None]:
 def engine_matrix(engine: str, pool: Pool, bodies: int) -> EngineMatrix:
     """Every fault over one built-in engine. Raises ImportError where it is not installed."""
     sound = build_adapter(BUILT_IN[engine])
-    chosen = chosen_integrators(sound.description.integrators)
+    chosen = chosen_integrators(sound)
     has = OF_ENGINE if any(i.orders["attitude"] == 4 for i in chosen) else frozenset()
     cases = [pool.prepare(number) for number in range(SOUND * bodies)]
-    bare, without = Nameless(sound), nameless_integrators(sound)
+    nameless = Nameless(sound)
     usable = [check for check in PUBLISHED if check.integrator_of(sound)]
     suited = [one for one in ORDERED if one.needs & OF_ENGINE <= has]
     return EngineMatrix(
@@ -106,7 +99,7 @@ def engine_matrix(engine: str, pool: Pool, bodies: int) -> EngineMatrix:
         integrators=tuple(integrator.name for integrator in chosen),
         sound=len(cases),
         accused=sum(judge(pool, case, engine, sound).accused for case in cases),
-        accused_nameless=sum(judge(pool, case, engine, bare, without).accused for case in cases),
+        accused_nameless=sum(judge(pool, case, engine, nameless).accused for case in cases),
         skipped=tuple(one.name for one in ORDERED if one not in suited),
         published_accuse=tuple(
             check.name for check in usable if _fails_sound(check, engine, pool.seed, bodies)
@@ -120,7 +113,7 @@ def detection(fault: Fault, engine: str, pool: Pool, bodies: int) -> Detection:
     adapter, bare = (fault.wrap(build_adapter(BUILT_IN[engine])) for _ in range(2))
     numbers = pool.having(fault.needs - OF_ENGINE, bodies)
     judged = _judged(pool, numbers, engine, adapter)
-    nameless = _judged(pool, numbers, engine, Nameless(bare), nameless_integrators(bare.inner))
+    nameless = _judged(pool, numbers, engine, Nameless(bare))
     return Detection(
         fault=fault,
         judged=len(judged),
@@ -135,19 +128,13 @@ def detection(fault: Fault, engine: str, pool: Pool, bodies: int) -> Detection:
     )
 
 
-def _judged(
-    pool: Pool,
-    numbers: list[int],
-    engine: str,
-    adapter: Adapter,
-    integrators: tuple[Integrator, ...] = (),
-) -> dict[int, Judgement]:
+def _judged(pool: Pool, numbers: list[int], engine: str, adapter: Adapter) -> dict[int, Judgement]:
     """By the number of a case, those that the engine answers for.
 
     The engine has been loaded with another body before, as in any run of several scenarios.
     """
     adapter.load(pool.prepare(numbers[-1] + 1).case.system)
-    found = {n: judge(pool, pool.prepare(n), engine, adapter, integrators) for n in numbers}
+    found = {n: judge(pool, pool.prepare(n), engine, adapter) for n in numbers}
     return {n: one for n, one in found.items() if not one.broken}
 
 
@@ -157,10 +144,9 @@ def _share(caught: Iterable[bool]) -> float:
 
 
 def _named(fault: Fault, prepared: Prepared, judgement: Judgement) -> bool:
-    case, truth, evaluation_states = prepared.case, prepared.truth, prepared.evaluation_states
+    known = (prepared.case, prepared.truth, prepared.evaluation_states)
     with np.errstate(all="ignore"):
-        causes = diagnose(case, truth, evaluation_states, judgement.result, judgement.runs)
-    return fault.is_named(causes)
+        return fault.is_named(diagnose(*known, judgement.result, judgement.runs))
 
 
 def _published(check: Published, fault: Fault, engine: str, seed: int, poses: int) -> float | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import islice
 
 from omegadot.adapters.exact.adapter import ExactAdapter
 from omegadot.adapters.protocol import Integrator
@@ -58,13 +59,8 @@ class Pool:
 
     def having(self, needs: Iterable[str], count: int) -> list[int]:
         """The numbers of the first `count` cases with all of these features."""
-        wanted, found = frozenset(needs), []
-        for index in range(MOST_DRAWN * count):
-            if wanted <= self._draw(index)[1]:
-                found.append(index)
-                if len(found) == count:
-                    break
-        return found
+        wanted, tried = frozenset(needs), range(MOST_DRAWN * count)
+        return list(islice((n for n in tried if wanted <= self._draw(n)[1]), count))
 
     def step_companions(self, prepared: Prepared, integrators: Iterable[Integrator]) -> None:
         """Have the reference step the schemes that these integrators declare."""

@@ -39,8 +39,8 @@ class Published:
     def integrator_of(self, engine: Adapter) -> Integrator | None:
         """The engine's integrator that this check is meant for."""
         declared = engine.description.integrators
-        fitting = [i for scheme in self.schemes for i in declared if i.scheme == scheme]
-        return fitting[0] if fitting else None
+        fitting = (i for scheme in self.schemes for i in declared if i.scheme == scheme)
+        return next(fitting, None)
 
 
 def attitude(random: Generator) -> Array:
@@ -62,25 +62,16 @@ def start(orientation: Array, w: Array, x: Array | None = None, v: Array | None 
 
 @dataclass(frozen=True)
 class Seen:
-    """A run as an engine's own test sees it: with the model that the engine reads back."""
+    """A run as an engine's own test sees it: with the model that the engine reads back.
+
+    energy: (n,) J, kinetic.  angular: (n, 3) kg m^2/s, world, about the centre of mass.
+    linear: (n, 3) kg m/s, world.
+    """
 
     trajectory: Trajectory
-    believed: System
-
-    @property
-    def energy(self) -> Array:
-        """(n,) J, kinetic."""
-        return kinetic_energy(self.believed, self.trajectory.state)
-
-    @property
-    def angular(self) -> Array:
-        """(n, 3) kg m^2/s, world, about the centre of mass."""
-        return angular_momentum(self.believed, self.trajectory.state)
-
-    @property
-    def linear(self) -> Array:
-        """(n, 3) kg m/s, world."""
-        return linear_momentum(self.believed, self.trajectory.state)
+    energy: Array
+    angular: Array
+    linear: Array
 
 
 def see(
@@ -89,4 +80,6 @@ def see(
     """Load, read the model back, and run, keeping every step."""
     adapter.load(system)
     believed = System(adapter.model(), system.load)
-    return Seen(adapter.run(initial, integrator.name, h, steps, 1), believed)
+    found = adapter.run(initial, integrator.name, h, steps, 1)
+    how = (believed, found.state)
+    return Seen(found, kinetic_energy(*how), angular_momentum(*how), linear_momentum(*how))

@@ -86,10 +86,8 @@ def _dart_sphere_turns_evenly(adapter: Adapter, integrator: Integrator, random: 
 
 def dart_free_joint(adapter: Adapter, integrator: Integrator, random: Generator) -> bool:
     """Energy and momentum within 1e-3 over 0.05 s; a sphere's twist within 1e-10 over 1 s."""
-    return not (
-        _dart_conserves(adapter, integrator, random)
-        and _dart_sphere_turns_evenly(adapter, integrator, random)
-    )
+    how = (adapter, integrator, random)
+    return not (_dart_conserves(*how) and _dart_sphere_turns_evenly(*how))
 
 
 def drake_free_body(adapter: Adapter, integrator: Integrator, random: Generator) -> bool:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from omegadot.adapters.protocol import Integrator, Trajectory
+from omegadot.adapters.protocol import Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.fault import Spoiled
 from omegadot.diagnosis.restep import on_rows, step_again
+from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.motion import AccelerationOf, acceleration_of
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.system import Acceleration, State
@@ -15,7 +16,11 @@ class Restepped(Spoiled):
     """The engine's own forward dynamics, stepped by the scheme that its integrator declares.
 
     An integrator that declares none is stepped by semi-implicit Euler.
+    steps, coordinates: of the present run.
     """
+
+    steps = 0
+    coordinates: Coordinates = "com-world"
 
     def sound_acceleration(self) -> AccelerationOf:
         """The engine's forward dynamics; the reference's without forming its constants again."""
@@ -31,17 +36,14 @@ class Restepped(Spoiled):
         """The scheme that is stepped."""
         return declared
 
-    def integrator(self, name: str) -> Integrator:
-        """The integrator as the sound engine declares it for the loaded system."""
-        return next(i for i in self.inner.description.integrators if i.name == name)
-
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
     ) -> Trajectory:
         """As `Adapter.run`, by the reference's stepping."""
-        declared = self.integrator(integrator)
+        declared = next(i for i in self.inner.description.integrators if i.name == integrator)
+        self.steps, self.coordinates = steps, declared.coordinates
         scheme = self.scheme(SCHEMES[declared.scheme or "semi-implicit-euler"])
-        how = (self.loaded(self.system), self.acceleration(), scheme, declared.coordinates)
+        how = (self.loaded(self.system), self.acceleration(), scheme, self.coordinates)
         plan = (timestep, steps, every)
         return self.logged(Trajectory(*step_again(*how, self.into(initial), plan)))
 

@@ -7,18 +7,14 @@ from functools import partial
 
 import numpy as np
 
-from omegadot.adapters.protocol import Trajectory
 from omegadot.commands.faults.catalogue.equation import gyroscopic_term, inverse_dynamics
-from omegadot.commands.faults.catalogue.load import extra_torque, other_load
+from omegadot.commands.faults.catalogue.load import extra_torque, other_load, pushed
 from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
-from omegadot.reference_impl.coordinates import Coordinates
-from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import applied_torque, gravity_torque, torque
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
-from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 
 FIRST_STEPS = "only the first steps are wrong"
@@ -27,16 +23,6 @@ ASIDE = np.array([1e-6, 0.0, 0.0])  # m
 
 class Timed(Restepped):
     """Steps that know their number: each is taken with `wrong` or with the right acceleration."""
-
-    steps = 0
-    coordinates: Coordinates = "com-world"
-
-    def run(
-        self, initial: State, integrator: str, timestep: float, steps: int, every: int
-    ) -> Trajectory:
-        """As `Adapter.run`, with the number of steps and the coordinates kept."""
-        self.steps, self.coordinates = steps, self.integrator(integrator).coordinates
-        return super().run(initial, integrator, timestep, steps, every)
 
     def wrong_at(self, step: int) -> bool:
         """Whether this step is a wrong one; they are counted from 0."""
@@ -53,11 +39,8 @@ class Timed(Restepped):
     def scheme(self, declared: Scheme) -> Scheme:
         """The declared scheme, with a counter."""
         taken, sound = iter(range(self.steps + 1)), self.acceleration()
-        wrong = motion_over(
-            self.loaded(self.system),
-            self.coordinates,
-            lambda state: self.wrong(state, sound(state)),
-        )
+        system = self.loaded(self.system)
+        wrong = motion_over(system, self.coordinates, lambda x: self.wrong(x, sound(x)))
 
         def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
             if not self.wrong_at(next(taken)):
@@ -65,11 +48,6 @@ class Timed(Restepped):
             return self.wrong_scheme(declared).step(wrong, q, v, h)
 
         return replace(declared, step=step)
-
-    def pushed(self, sound: Acceleration, moment: Array) -> Acceleration:
-        """With one more torque in body axes."""
-        more = apply(inverse(moving_inertia(self.system)), moment)
-        return Acceleration(sound.angular + more, sound.linear)
 
 
 first_step = partial(fault_by, Timed, "wrong", "stepping", "scheme", named=FIRST_STEPS)
@@ -80,13 +58,13 @@ def GravityOffInFirstStep(self: Timed, state: State, sound: Acceleration) -> Acc
     """Gravity does not act yet in the first step."""
     if self.system.load.pivot is None:
         return Acceleration(sound.angular, sound.linear - self.system.load.gravity)
-    return self.pushed(sound, -gravity_torque(self.system, state))
+    return pushed(self.system, state, sound, -gravity_torque(self.system, state))
 
 
 @first_step("torque")
 def TorqueOneStepLate(self: Timed, state: State, sound: Acceleration) -> Acceleration:
     """The applied torque acts one step late, and so not at all in the first."""
-    return self.pushed(sound, -applied_torque(self.system, state))
+    return pushed(self.system, state, sound, -applied_torque(self.system, state))
 
 
 @fault("stepping", "scheme", "asymmetric order-4", named=FIRST_STEPS)

@@ -52,6 +52,14 @@ def GravitySlightlyOff(load: Load) -> Load:
     return replace(load, gravity=1.001 * load.gravity)
 
 
+def pushed(system: System, state: State, sound: Acceleration, torque: Array) -> Acceleration:
+    """With one more torque in body axes; a pivoted body's centre of mass goes along."""
+    angular = sound.angular + apply(inverse(moving_inertia(system)), torque)
+    if system.load.pivot is None:
+        return Acceleration(angular, sound.linear)
+    return Acceleration(angular, center_of_mass_acceleration(system, state, angular))
+
+
 class ExtraTorque(Accelerated):
     """A torque about the centre of mass, or the pivot, that was not requested."""
 
@@ -61,12 +69,8 @@ class ExtraTorque(Accelerated):
         return np.zeros_like(state.angular_velocity)
 
     def changed(self, state: State, sound: Acceleration) -> Acceleration:
-        """The torque's omega-dot added; a pivoted body's centre of mass goes along."""
-        more = apply(inverse(moving_inertia(self.system)), self.torque(self.system, state))
-        angular = sound.angular + more
-        if self.system.load.pivot is None:
-            return Acceleration(angular, sound.linear)
-        return Acceleration(angular, center_of_mass_acceleration(self.system, state, angular))
+        """The torque's omega-dot added."""
+        return pushed(self.system, state, sound, self.torque(self.system, state))
 
 
 extra_torque = partial(fault_by, ExtraTorque, "torque", "equation", "equation")
@@ -89,8 +93,7 @@ def GravityInBodyAxes(self: Accelerated, state: State, sound: Acceleration) -> A
         return Acceleration(sound.angular, sound.linear - g + rotate(state.orientation, g))
     r = system.body.center_of_mass - system.load.pivot
     wrong = cross(r, system.body.mass * (g - rotate_inverse(state.orientation, g)))
-    angular = sound.angular + apply(inverse(moving_inertia(system)), wrong)
-    return Acceleration(angular, center_of_mass_acceleration(system, state, angular))
+    return pushed(system, state, sound, wrong)
 
 
 @other_load("torque", named="the applied torque is taken in the wrong frame")

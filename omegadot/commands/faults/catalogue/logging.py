@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.adapters.protocol import Adapter, Trajectory
+from omegadot.adapters.protocol import Trajectory
 from omegadot.commands.faults.fault import Spoiled, fault, fault_by, logged
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import State, System
@@ -97,9 +97,7 @@ def NotFiniteAfterAWhile(self: Spoiled, trajectory: Trajectory) -> Trajectory:
 class StaleState(Spoiled):
     """A run begins where the last one ended, whatever state it is given."""
 
-    def __init__(self, inner: Adapter) -> None:
-        super().__init__(inner)
-        self._last: State | None = None
+    _last: State | None = None
 
     def load(self, system: System) -> None:
         """A new system has no last run."""
