@@ -64,11 +64,6 @@ def chosen_integrators(engine: Adapter) -> tuple[Integrator, ...]:
     return tuple(picked[order] for order in (1, 4) if order in picked)
 
 
-def _fails(row: Row) -> bool:
-    """A failure that no finer step could lift."""
-    return row.verdict == "fail" and not row.note.startswith(UNDECIDED)
-
-
 def judge(
     pool: Pool,
     prepared: Prepared,
@@ -98,5 +93,6 @@ def judge(
     answers = [failure] if failure else []
     answers += [a for a in result.runs.values() if a.outcome not in ("ok", "unsupported")]
     broken = f"{answers[0].outcome}: {answers[0].reason}" if answers else ""
-    failed = frozenset(row.gate for row in rows if _fails(row))
-    return Judgement(failed, broken, rows, result, tuple(runs))
+    failed = [row for row in rows if row.verdict == "fail" and not row.note.startswith(UNDECIDED)]
+    gates = frozenset(row.gate for row in failed)
+    return Judgement(gates, broken, rows, result, tuple(runs))

@@ -151,9 +151,8 @@ def _named(fault: Fault, prepared: Prepared, judgement: Judgement) -> bool:
 
 def _published(check: Published, fault: Fault, engine: str, seed: int, poses: int) -> float | None:
     adapter = fault.wrap(build_adapter(BUILT_IN[engine]))
-    if not fault.needs <= check.has or check.integrator_of(adapter.inner) is None:
-        return None
-    if _fails_sound(check, engine, seed, poses):
+    usable = fault.needs <= check.has and check.integrator_of(adapter.inner)
+    if not usable or _fails_sound(check, engine, seed, poses):
         return None
     return _score(check, adapter, adapter.inner, seed, poses)
 

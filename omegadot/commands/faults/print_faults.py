@@ -70,14 +70,12 @@ def summary_of(matrix: EngineMatrix) -> list[str]:
         f"Without a fault, {matrix.accused} of {matrix.sound} bodies were accused, and without a "
         f"declared scheme {matrix.accused_nameless}.",
     ]
-    if matrix.skipped:
-        lines.append(f"Not tried, since no integrator is suitable: {', '.join(matrix.skipped)}.")
-    refused = [row.fault.name for row in rows if row.broken]
-    if refused:
-        lines.append(f"On some bodies the engine gave no answer: {', '.join(refused)}.")
-    if matrix.published_accuse:
-        lines.append(f"Accused without a fault by: {', '.join(matrix.published_accuse)}.")
-    return lines
+    more = {
+        "Not tried, since no integrator is suitable": matrix.skipped,
+        "On some bodies the engine gave no answer": [r.fault.name for r in rows if r.broken],
+        "Accused without a fault by": matrix.published_accuse,
+    }
+    return lines + [f"{what}: {', '.join(names)}." for what, names in more.items() if names]
 
 
 def _caught(matrix: EngineMatrix, missed: list[str]) -> str:

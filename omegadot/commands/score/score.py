@@ -114,10 +114,11 @@ def score(
     """
     given = locals()
     settings = {key: given[key.replace("-", "_")] for key in SETTINGS}
-    requirements = requirements_of({key: given[key.replace("-", "_")] for key in KINDS})
+    required = {key: given[key.replace("-", "_")] for key in KINDS}
     case, choices = case_given(scenario), _choices(name, several(engines))
     if out is not None:
         check_folder(Path(out))
+    requirements = requirements_of(required)
     mapped = Path(map_file) if map_file else None
     reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
     found = judge_trace(case, reading, integrator_scheme, timestep)
