@@ -100,7 +100,7 @@ def score(
         del given[name_apart]
     if detect:
         from omegadot.commands.score.detection.detect import detect as detect_conventions
-        from omegadot.commands.score.detection.print_detected import print_detected
+        from omegadot.commands.score.print_score import print_detected
 
         fits = detect_conventions(trace, scenario, columns=column or [], map_file=map_file)
         raise typer.Exit(print_detected(fits, trace, scenario, as_json=output is Format.json))

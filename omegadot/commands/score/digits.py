@@ -14,9 +14,9 @@ from math import gcd
 
 import numpy as np
 
+from omegadot.gates.scales import EPS
 from omegadot.reference_impl.system import Array
 
-EPS = float(np.finfo(float).eps)
 # Enough to have met the longest number of a column, few enough to look at one by one.
 MOST_LOOKED_AT = 4000
 # A double has this many digits, enough to identify it: it was printed whole.

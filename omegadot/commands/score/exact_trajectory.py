@@ -132,6 +132,12 @@ def reading_bound(truth: Truth) -> Rounding:
     return {c: chain * bound + truth.floor.get(c, 0.0) for c, bound in once.items()}
 
 
+def bounds_of(truth: Truth, trace: Trace) -> tuple[Rounding, Rounding]:
+    """The resolution by digits, and that together with rounding and the floor."""
+    digits = digits_open(truth, trace)
+    return digits, joined(digits, reading_bound(truth))
+
+
 def joined(*bounds: Rounding) -> Rounding:
     """The sum of several bounds, channel by channel."""
     return {c: np.asarray(np.sum([b[c] for b in bounds], axis=0)) for c in bounds[0]}

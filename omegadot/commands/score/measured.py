@@ -9,10 +9,8 @@ import numpy as np
 from omegadot.commands.score.exact_trajectory import (
     ExactTrajectory,
     Rounding,
-    digits_open,
+    bounds_of,
     exact_trajectory,
-    joined,
-    reading_bound,
 )
 from omegadot.commands.score.trace import Trace
 from omegadot.gates.case import Case
@@ -93,8 +91,7 @@ def measure_trace(case: Case, trace: Trace, truth: Truth) -> Measured:
         load = case.system.load
         if load.pivot is None and (np.any(exact.linear_velocity) or np.any(load.gravity)):
             remarks["energy"] = "of the rotation alone, the velocity is not given"
-    digits = digits_open(truth, trace)
-    bound = joined(digits, reading_bound(truth))
+    digits, bound = bounds_of(truth, trace)
     trajectory = exact_trajectory(case.system, case.initial)
     return Measured(case, trace, truth, trajectory, state, error, absent, remarks, digits, bound)
 

@@ -12,6 +12,7 @@ from omegadot.commands.score.exact_trajectory import Rounding, joined, part_of
 from omegadot.commands.score.measured import Measured, distance
 from omegadot.commands.score.trace import Trace
 from omegadot.gates.likeness import Likeness, likeness
+from omegadot.gates.scales import EPS
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.coordinates import Coordinates, distinct
@@ -63,7 +64,7 @@ def declared_of(trace: Trace, scheme: str | None, timestep: float | None) -> Dec
     ratio = trace.times / timestep
     numbers = np.round(ratio)
     # A stamp is off by its digits at most, and by the rounding of a sum of so many steps.
-    allowed = trace.open["times"] / timestep + 4 * np.finfo(float).eps * np.maximum(ratio, 1) ** 2
+    allowed = trace.open["times"] / timestep + 4 * EPS * np.maximum(ratio, 1) ** 2
     off = np.abs(ratio - numbers)
     worst = int(np.argmax(off - allowed))
     if off[worst] > allowed[worst] or numbers[0] < 0.0:

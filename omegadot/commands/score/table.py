@@ -10,14 +10,8 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from omegadot.commands.score.digits import (
-    DECIMAL_COMMA,
-    EPS,
-    NOT_FINITE,
-    NUMBER,
-    open_of,
-    open_time,
-)
+from omegadot.commands.score.digits import DECIMAL_COMMA, NOT_FINITE, NUMBER, open_of, open_time
+from omegadot.gates.scales import EPS
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
 

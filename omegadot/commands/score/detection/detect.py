@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -64,7 +65,11 @@ def detect(
     assigned, _ = settings_of(columns, Path(map_file) if map_file else None, {})
     column, names = _looked_at(table, assigned)
     by_clock = _next_to(case, table, column, names)
-    found = _found(by_clock)
+    found: list[Reading] = []
+    # Turned axes are tried only where the trace cannot be read whole without.
+    for axes in (SAME + 1, len(AXES)):
+        if not any(len(reading.parts) == 2 for reading in found):
+            found = [reading for pair in by_clock for reading in _readings(*pair, axes)]
     turn = by_clock[0][1].turn if by_clock else 0.0
     if not found:
         return Detected([], [], turn)
@@ -118,8 +123,10 @@ def _next_to(
     if len(raw) < 3 or np.any(np.diff(raw) <= 0.0):
         raise TraceError(f"{table.file}: fewer than three samples, or their time does not rise.")
     rows = np.unique(np.linspace(0, len(raw) - 1, MOST_SAMPLES).round().astype(int))
-    values = {n: _numbers(table, n) for n in names if n != column}
-    columns = {n: v[rows] for n, v in values.items() if v is not None}
+    columns: dict[str, Array] = {}
+    for name in (name for name in names if name != column):
+        with suppress(TraceError):  # one of texts or with gaps is passed over
+            columns[name] = table.column(name).values[rows]
     trajectory = exact_trajectory(case.system, case.initial)
     turned = [(rotated, rotated.read(columns)) for rotated in rotations(columns)]
     found = []
@@ -129,40 +136,17 @@ def _next_to(
     return found
 
 
-def _found(by_clock: list[tuple[Clock, Numbers]]) -> list[Reading]:
-    """Every reading that is not far off.
-
-    Turned axes are tried only where the trace cannot be read whole without.
-    """
-    found: list[Reading] = []
-    for axes in (SAME + 1, len(AXES)):
-        found = [reading for pair in by_clock for reading in _readings(*pair, axes)]
-        if any(len(reading.parts) == 2 for reading in found):
-            break
-    return found
-
-
-def _numbers(table: Table, name: str) -> Array | None:
-    """A column's numbers; one of texts or with gaps is passed over."""
-    try:
-        return table.column(name).values
-    except TraceError:
-        return None
-
-
 def _readings(clock: Clock, numbers: Numbers, axes: int) -> list[Reading]:
     turned = attitudes(numbers, axes)
     if turned:
         best = min(one.misfit for one in turned)
         turned = [one for one in turned if one.misfit <= BETTER * BETTER * max(best, ROUNDING)]
     found = []
-    for attitude in turned:
-        spins = omegas(numbers, attitude, axes)
-        free = [o for o in spins if not set(o.columns) & set(attitude.columns)]
+    for attitude in turned or [None]:
+        taken = set(attitude.columns) if attitude else set()
+        free = [o for o in omegas(numbers, attitude, axes) if not taken & set(o.columns)]
         found += [Reading(clock, attitude, omega) for omega in free]
-        found += [] if free else [Reading(clock, attitude, None)]
-    if not turned:
-        found = [Reading(clock, None, omega) for omega in omegas(numbers, None, axes)]
+        found += [Reading(clock, attitude, None)] if attitude and not free else []
     return found
 
 
