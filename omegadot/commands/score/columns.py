@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from omegadot.commands.score.table import Table, TraceError, find_column
 from omegadot.harness.usage import UsageError, nearest
 
-GROUPS: Mapping[str, tuple[str, ...]] = {
-    "t": ("t",),
-    "w": ("wx", "wy", "wz"),
-    "q": ("qw", "qx", "qy", "qz"),
-    "e": ("e1", "e2", "e3"),
-    "r": ("r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"),
-    "p": ("px", "py", "pz"),
-    "v": ("vx", "vy", "vz"),
-    "a": ("ax", "ay", "az"),
+_TABLE = {
+    "t": ("t", "time"),
+    "w": ("wx wy wz", "angular velocity"),
+    "q": ("qw qx qy qz", "quaternion"),
+    "e": ("e1 e2 e3", "Euler angles, in the order of their sequence"),
+    "r": ("r11 r12 r13 r21 r22 r23 r31 r32 r33", "rotation matrix, row by row"),
+    "p": ("px py pz", "position"),
+    "v": ("vx vy vz", "velocity"),
+    "a": ("ax ay az", "omega-dot"),
 }
-MEANING = {
-    "t": "time",
-    "w": "angular velocity",
-    "q": "quaternion",
-    "e": "Euler angles, in the order of their sequence",
-    "r": "rotation matrix, row by row",
-    "p": "position",
-    "v": "velocity",
-    "a": "omega-dot",
-}
+GROUPS = {group: tuple(roles.split()) for group, (roles, _) in _TABLE.items()}
+MEANING = {group: meaning for group, (_, meaning) in _TABLE.items()}
 TURNS = {"yaw": "z", "pitch": "y", "roll": "x"}
 QUATERNIONS = ("wxyz", "xyzw")
 # Found without being named. Not ax, ay, az: in most logs these are a linear acceleration.

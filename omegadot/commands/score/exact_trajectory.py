@@ -87,7 +87,7 @@ def _slope(times: Array, values: Array) -> Array:
     return np.asarray(np.abs(rate) if rate.ndim == 1 else norm(rate))
 
 
-def digits_open(truth: Truth, trace: Trace) -> Rounding:
+def _digits_open(truth: Truth, trace: Trace) -> Rounding:
     """(n,) by channel, in its units: the resolution by the digits of values and of time stamps.
 
     To first order, each in its worst direction; a stamp's part is the exact rate of change times
@@ -121,21 +121,17 @@ def digits_open(truth: Truth, trace: Trace) -> Rounding:
     return found
 
 
-def reading_bound(truth: Truth) -> Rounding:
-    """(n,) by channel: the rounding of a change of units and frames, and the resolvable floor.
+def bounds_of(truth: Truth, trace: Trace) -> tuple[Rounding, Rounding]:
+    """(n,) by channel: the resolution by the digits, and the whole of what is left open.
 
-    The chain of roundings is that of an evaluation, not of a step.
+    That is the digits, the rounding of a change of units and frames, and the resolvable floor. The
+    chain of roundings is that of an evaluation, not of a step.
     """
-    count = len(truth.times)
+    digits, count = _digits_open(truth, trace), len(truth.times)
     once = truth.yardstick.round_off(0.0, np.zeros(count), np.ones(count))
     chain = ROUNDINGS_PER_EVALUATION / ROUNDINGS_PER_STEP
-    return {c: chain * bound + truth.floor.get(c, 0.0) for c, bound in once.items()}
-
-
-def bounds_of(truth: Truth, trace: Trace) -> tuple[Rounding, Rounding]:
-    """The resolution by digits, and that together with rounding and the floor."""
-    digits = digits_open(truth, trace)
-    return digits, joined(digits, reading_bound(truth))
+    read = {c: chain * bound + truth.floor.get(c, 0.0) for c, bound in once.items()}
+    return digits, joined(digits, read)
 
 
 def joined(*bounds: Rounding) -> Rounding:

@@ -111,22 +111,22 @@ def print_detected(found: Detected, trace: Path, scenario: str, *, as_json: bool
     """
     fitting = found.fitting
     code = 0 if len(fitting) == 1 else 1
-    if as_json:
-        typer.echo(dump_json(_machine(found, fitting, code)))
-    else:
+    if not as_json:
         typer.echo("\n".join(_lines(trace, scenario, found, fitting)))
-    return code
-
-
-def _machine(found: Detected, fitting: list[Reading], code: int) -> dict[str, object]:
-    nearest = found.others[0] if found.others else None
-    return {
+        return code
+    fit, others = (
+        [{"options": r.options(), "misfit": r.misfit} for r in known]
+        for known in (fitting, found.others[:1])
+    )
+    printed = {
         "exit_code": code,
         "ambiguous": len(fitting) > 1,
-        "fitting": [{"options": r.options(), "misfit": r.misfit} for r in fitting],
-        "runner_up": nearest and {"options": nearest.options(), "misfit": nearest.misfit},
+        "fitting": fit,
+        "runner_up": others[0] if others else None,
         "turn": found.turn,
     }
+    typer.echo(dump_json(printed))
+    return code
 
 
 def _lines(trace: Path, scenario: str, found: Detected, fitting: list[Reading]) -> list[str]:

@@ -120,7 +120,7 @@ def _engine(found: Judged, task: dict[str, Any]) -> dict[str, Any]:
 def _why(found: Judged, rows: list[Row]) -> str:
     """One reason for the whole trace: a failure's, that it is late, or its worst channel's."""
     reasons = [f"{row.channel}: {row.note}" for row in rows if row.verdict == "fail"]
-    if found.shift is not None and found.shift.explains:
+    if found.shift and found.shift.explains:
         reasons.append(found.shift.as_text)
     unlike = {c: one.note for c, one in found.judgement.items() if one.kind != "round-off"}
     reasons += [f"{channel}: {note}" for channel, note in unlike.items()]
@@ -137,8 +137,8 @@ def _sentence(found: Judged, rows: list[Row], name: str) -> str:
         score = in_own_unit(found, channel)
         unit = "" if score.unit == "relative" else f" {score.unit}"
         parts.append(f"{channel.replace('_', ' ')} by {score.max:.3g}{unit}")
-    late = found.shift is not None and found.shift.explains
-    why = f" It is {found.shift.as_text}, and that is its error." if late and found.shift else ""
+    late = found.shift.as_text if found.shift and found.shift.explains else ""
+    why = f" It is {late}, and that is its error." if late else ""
     return f"{name} on {found.case.name} is off at most: {', '.join(parts[:3])}.{why}"
 
 

@@ -139,9 +139,8 @@ def case_given(scenario: ScenarioLike) -> Case:
 
 def _choices(name: str, engines: Sequence[EngineLike]) -> list[EngineChoice]:
     choices = engine_choices(engines, option="--with") if engines else []
-    taken = (*RESERVED, *(choice.name for choice in choices))
     if not name.strip():
         raise UsageError("--name is empty; give the trace a name.")
-    if name in taken:
+    if name in (*RESERVED, *(choice.name for choice in choices)):
         raise UsageError(f"--name {name}: an engine has this name; give the trace another.")
     return choices

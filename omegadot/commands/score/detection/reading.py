@@ -63,10 +63,8 @@ class Reading:
 
     def _options(self) -> list[Option]:
         found: list[Option] = [("column", f"t={self.clock.column}")]
-        if self.clock.unit != "s":
-            found.append(("time-unit", self.clock.unit))
-        if self.clock.offset:
-            found.append(("time-offset", self.clock.offset))
+        found += [("time-unit", self.clock.unit)] * (self.clock.unit != "s")
+        found += [("time-offset", self.clock.offset)] * (self.clock.offset != 0.0)
         world = body = SAME
         if self.omega is not None:
             found.append(("column", f"w={','.join(self.omega.columns)}"))
