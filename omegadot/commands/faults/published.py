@@ -19,6 +19,8 @@ from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
+NONE = np.zeros(3)
+
 
 @dataclass(frozen=True)
 class Published:
@@ -48,16 +50,9 @@ def attitude(random: Generator) -> Array:
     return normalize(random.standard_normal(4))
 
 
-def free_body(mass: float, inertia: Array, center: Array | None = None, **load: Array) -> System:
+def free_body(mass: float, inertia: Array, center: Array = NONE, **load: Array) -> System:
     """A free body."""
-    where = np.zeros(3) if center is None else center
-    return System((Body(np.array(mass), where, inertia),), Load(**load))
-
-
-def start(orientation: Array, w: Array, x: Array | None = None, v: Array | None = None) -> State:
-    """A state that spins; at rest at the origin unless x or v is given."""
-    none = np.zeros(3)
-    return State(orientation, w, none if x is None else x, none if v is None else v)
+    return System((Body(np.array(mass), center, inertia),), Load(**load))
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.random import Generator
 
 from omegadot.adapters.protocol import Adapter, Integrator
-from omegadot.commands.faults.published import Published, attitude, free_body, see, start
+from omegadot.commands.faults.published import NONE, Published, attitude, free_body, see
 from omegadot.gates.scales import EPS, norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.exact_solution import exact_states
@@ -45,7 +45,7 @@ def mujoco_free_body(adapter: Adapter, integrator: Integrator, random: Generator
     for system in (free_body(1.0, box), turned):
         q = attitude(random)
         v = rotate(q, cross(w, system.body.center_of_mass))  # the body's origin is at rest
-        seen = see(adapter, system, start(q, w, v=v), integrator, 0.01, 500)
+        seen = see(adapter, system, State(q, w, NONE, v), integrator, 0.01, 500)
         energy, moment = seen.energy / seen.energy[0], seen.angular
         keeps = bool(np.all(energy < 1 + 1e-9)) and energy[-1] > 0.7
         if not (keeps and norm(moment[-1] - moment[0]) < 0.05):
@@ -58,7 +58,7 @@ def _dart_conserves(adapter: Adapter, integrator: Integrator, random: Generator)
     system = free_body(2.0, np.diag([0.1, 0.2, 0.3]))
     for w, v in ((0 * spin, slide), (spin, 0 * slide), (spin, slide)):
         q, x = attitude(random), random.uniform(-1.0, 1.0, 3)
-        initial = start(q, rotate_inverse(q, w), x, v)
+        initial = State(q, rotate_inverse(q, w), x, v)
         seen = see(adapter, system, initial, integrator, 1e-4, 500)
         energy, linear = seen.energy, seen.linear
         about_origin = seen.angular + cross(seen.trajectory.state.position, linear)
@@ -72,7 +72,7 @@ def _dart_conserves(adapter: Adapter, integrator: Integrator, random: Generator)
 def _dart_sphere_turns_evenly(adapter: Adapter, integrator: Integrator, random: Generator) -> bool:
     w, v = np.array([0.4, -0.3, 0.25]), np.array([0.5, -0.4, 0.2])
     system, q, x = free_body(2.0, 0.2 * np.eye(3)), attitude(random), random.uniform(-1.0, 1.0, 3)
-    seen = see(adapter, system, start(q, rotate_inverse(q, w), x, v), integrator, 1e-3, 1000)
+    seen = see(adapter, system, State(q, rotate_inverse(q, w), x, v), integrator, 1e-3, 1000)
     last = State(*(values[-1] for values in vars(seen.trajectory.state).values()))
     expected = rotation_matrix(quaternion_product(exp_quaternion(w), q))
     return (
@@ -94,7 +94,7 @@ def drake_free_body(adapter: Adapter, integrator: Integrator, random: Generator)
     """The exact motion of a cylinder: 32 eps at the start, up to 1 by the end of 10 s."""
     system = free_body(1.0, np.diag([0.04, 0.04, 0.02]), gravity=np.array([0.0, 0.0, -9.81]))
     q, w = attitude(random), np.array([2.0, 4.0, 6.0])
-    initial = start(q, w, np.array([1.0, 2.0, 3.0]), rotate(q, np.array([-4.2, 5.5, 6.1])))
+    initial = State(q, w, np.array([1.0, 2.0, 3.0]), rotate(q, np.array([-4.2, 5.5, 6.1])))
     rate = float(norm(system.body.inertia @ w)) / 0.04
     h = 2 * np.pi / rate / 16
     seen = see(adapter, system, initial, integrator, h, int(10.0 / h))
@@ -138,7 +138,9 @@ def _near(state: State, true: State, tolerance: Array) -> bool:
 def newton_torque_free(adapter: Adapter, integrator: Integrator, random: Generator) -> bool:
     """Momentum within 0.5 % over 0.2 s, and the body turns by more than 0.1 rad."""
     system, q = free_body(1.0, np.diag([0.2, 0.5, 0.4])), attitude(random)
-    seen = see(adapter, system, start(q, np.array([0.7, -0.5, 0.9])), integrator, 0.01, 20)
+    seen = see(
+        adapter, system, State(q, np.array([0.7, -0.5, 0.9]), NONE, NONE), integrator, 0.01, 20
+    )
     moment, turned = seen.angular, seen.trajectory.state.orientation
     drift = float(norm(moment[-1] - moment[0]) / norm(moment[0]))
     return not (drift < 5e-3 and float(attitude_angle(turned[0], turned[-1])) > 0.1)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from omegadot.commands.score.convention import Convention
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import Table, TraceError
 from omegadot.gates.scales import norm
@@ -34,13 +33,6 @@ def _from_quaternions(table: Table, q: Array, opened: Array) -> Angles:
             "unit quaternions."
         )
     return q, 2.0 * norm(opened)
-
-
-def _from_euler(how: Convention, angles: Array, opened: Array) -> Angles:
-    """Three angles in the order of their sequence; their openings add up."""
-    unit = how.scale_of("angle")
-    turn = Rotation.from_euler(how.euler, unit * angles)
-    return wxyz(turn), np.asarray(unit * np.sum(opened, axis=-1))
 
 
 def off_rotation(nine: Array) -> Array:
@@ -77,7 +69,9 @@ def attitude_of(reading: Reading) -> Angles | None:
     if parts := reading.group("q"):
         q, opened = _from_quaternions(reading.table, *parts)
     elif parts := reading.group("e"):
-        q, opened = _from_euler(how, *parts)
+        unit = how.scale_of("angle")
+        q = wxyz(Rotation.from_euler(how.euler, unit * parts[0]))
+        opened = np.asarray(unit * np.sum(parts[1], axis=-1))  # the openings add up
     elif parts := reading.group("r"):
         q, opened = _from_matrices(reading.table, *parts)
     else:

@@ -23,10 +23,6 @@ _SEQUENCE = re.compile(r"([xyz]{3}|[XYZ]{3})$")
 _AXIS = re.compile(r"([+-]?)([xyz])$")
 
 
-def _same() -> Array:
-    return np.eye(3)
-
-
 @dataclass(frozen=True)
 class Convention:
     """What the numbers of a trace mean. A field is named as the option that declares it.
@@ -49,8 +45,8 @@ class Convention:
     euler: str = "ZYX"
     quaternion: str = "wxyz"
     point: str = "center-of-mass"
-    world_axes: Array = field(default_factory=_same)
-    body_axes: Array = field(default_factory=_same)
+    world_axes: Array = field(default_factory=lambda: np.eye(3))
+    body_axes: Array = field(default_factory=lambda: np.eye(3))
     time_offset: float = 0.0
 
     def scale_of(self, kind: str) -> float:

@@ -95,10 +95,7 @@ def _digits_open(truth: Truth, trace: Trace) -> Rounding:
     """
     yardstick, exact, when = truth.yardstick, truth.state, trace.open["times"]
     nothing = np.zeros(len(trace.times))
-    spin = trace.open.get("angular_velocity", nothing)
-    turn = trace.open.get("orientation", nothing)
-    place = trace.open.get("position", nothing)
-    speed = trace.open.get("linear_velocity", nothing)
+    turn, spin, place, speed = (trace.open.get(part, nothing) for part in vars(exact))
     moment = norm(angular_momentum(yardstick.system, exact))
     mass, scale = yardstick.scale.mass, yardstick.scale.largest
     rate, velocity = norm(exact.angular_velocity), norm(exact.linear_velocity)

@@ -61,10 +61,11 @@ def check_units(found: Measured, reading: Reading) -> None:
             trace = trace_of(other, found.case.system)
             misfit = _misfit(measure_trace(found.case, trace, found.truth), channel)
             if misfit * NEARER < _misfit(found, channel) and misfit < GROSS:
+                factor = units[given] / units[unit]
+                times = f"{factor:.3g} times" if factor >= 1.0 else f"1/{1.0 / factor:.3g} of"
                 raise TraceError(
-                    f"{reading.table.file}: {what} {_times(units[given] / units[unit])} what "
-                    f"{given} would give here, and looks like {unit}; give {option_of(field)} "
-                    f"{unit}."
+                    f"{reading.table.file}: {what} {times} what {given} would give here, and looks "
+                    f"like {unit}; give {option_of(field)} {unit}."
                 )
 
 
@@ -74,10 +75,6 @@ _SIGNS = {
     "angle": ("e", "attitude", "the angles are"),
     "length": ("p", "position", "the positions are"),
 }
-
-
-def _times(factor: float) -> str:
-    return f"{factor:.3g} times" if factor >= 1.0 else f"1/{1.0 / factor:.3g} of"
 
 
 def _misfit(found: Measured, channel: str) -> float:

@@ -14,9 +14,6 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, System
 
-# Of a motion, more than one instant is needed.
-FEWEST_SAMPLES = 2
-
 
 @dataclass(frozen=True)
 class Trace:
@@ -97,7 +94,7 @@ def _stamps(reading: Reading) -> tuple[Array, Array]:
     table, how = reading.table, reading.how
     column = table.column(reading.columns["t"])
     unit, raw = how.scale_of("time"), column.values
-    if len(raw) < FEWEST_SAMPLES:
+    if len(raw) < 2:  # of a motion, more than one instant is needed
         raise TraceError(f"{table.file}: has one sample only; give a trace with at least two.")
     gaps = np.diff(raw)
     repeated, back = np.flatnonzero(gaps == 0.0), np.flatnonzero(gaps < 0.0)

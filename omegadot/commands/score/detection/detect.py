@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from omegadot.commands.score.detection.candidates import attitudes, omegas
+from omegadot.commands.score.detection.candidates import Attitude, attitudes, omegas
 from omegadot.commands.score.detection.numbers import AXES, SAME, Numbers, rotations
 from omegadot.commands.score.detection.reading import Clock, Reading, unlike
 from omegadot.commands.score.exact_trajectory import exact_trajectory
@@ -142,7 +142,8 @@ def _readings(clock: Clock, numbers: Numbers, axes: int) -> list[Reading]:
         best = min(one.misfit for one in turned)
         turned = [one for one in turned if one.misfit <= BETTER * BETTER * max(best, ROUNDING)]
     found = []
-    for attitude in turned or [None]:
+    read: list[Attitude | None] = [*turned] or [None]
+    for attitude in read:
         taken = set(attitude.columns) if attitude else set()
         free = [o for o in omegas(numbers, attitude, axes) if not taken & set(o.columns)]
         found += [Reading(clock, attitude, omega) for omega in free]
