@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
-from inspect import getattr_static
+from inspect import signature
 from typing import Any, Literal, TypeVar
 
 from omegadot.adapters.protocol import Adapter, Description, Trajectory
@@ -146,11 +146,14 @@ def fault_by(
     *,
     named: str | tuple[str, ...],
 ) -> Callable[[Function], Function]:
-    """Enter a function among the faults: `base` with this function for one of its methods."""
-    static = isinstance(getattr_static(base, method), staticmethod)
+    """Enter a function among the faults: `base` with this function for one of its methods.
+
+    It is a static method unless its first argument is `self`.
+    """
 
     def enter(function: Function) -> Function:
-        own = {method: staticmethod(function) if static else function, "__doc__": function.__doc__}
+        bound = "self" in signature(function).parameters
+        own = {method: function if bound else staticmethod(function), "__doc__": function.__doc__}
         fault(kind, gates, needs, named=named)(type(function.__name__, (base,), own))
         return function
 

@@ -78,8 +78,7 @@ def OmegaDotByDifference(self: Spoiled, states: State) -> Acceleration:
     h = float(1e-4 / np.max(norm(states.angular_velocity)))
     how = (self.system, on_rows(self.inner.forward_dynamics), SCHEMES["lie-rk4"])
     moved = step_again(*how, "com-world", states, (h, 1, 1))[1].angular_velocity[-1]
-    quotient = (moved - states.angular_velocity) / h
-    return Acceleration(quotient, found.linear)
+    return Acceleration((moved - states.angular_velocity) / h, found.linear)
 
 
 @forward_dynamics("offset", named="acceleration looks like that of the body's origin")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -21,10 +22,7 @@ from omegadot.reference_impl.system import Acceleration, Array, Load, State, Sys
 class OtherLoad(Spoiled):
     """The engine is given the load that `other` makes of the one requested."""
 
-    @staticmethod
-    def other(load: Load) -> Load:
-        """The wrong load."""
-        return load
+    other: Callable[[Load], Load]
 
     def loaded(self, system: System) -> System:
         """The system with the wrong load."""
@@ -61,12 +59,12 @@ def pushed(system: System, state: State, sound: Acceleration, torque: Array) -> 
 
 
 class ExtraTorque(Accelerated):
-    """A torque about the centre of mass, or the pivot, that was not requested."""
+    """A torque about the centre of mass, or the pivot, that was not requested.
 
-    @staticmethod
-    def torque(system: System, state: State) -> Array:
-        """(..., 3) N m, body axes."""
-        return np.zeros_like(state.angular_velocity)
+    torque: (..., 3) N m, body axes.
+    """
+
+    torque: Callable[[System, State], Array]
 
     def changed(self, state: State, sound: Acceleration) -> Acceleration:
         """The torque's omega-dot added."""

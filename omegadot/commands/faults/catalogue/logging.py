@@ -23,10 +23,7 @@ Run = Callable[[State, float, int, int], Trajectory]
 class OtherRun(Spoiled):
     """A run is what `made` makes of the sound engine's."""
 
-    @staticmethod
-    def made(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
-        """The wrong run."""
-        return run(initial, h, steps, every)
+    made: Callable[[Run, State, float, int, int], Trajectory]
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int

@@ -12,7 +12,7 @@ import numpy as np
 from omegadot.adapters.protocol import Trajectory
 from omegadot.commands.faults.catalogue.load import ExtraTorque
 from omegadot.commands.faults.catalogue.logging import Run, other_run
-from omegadot.commands.faults.fault import Spoiled, fault, fault_by, logged
+from omegadot.commands.faults.fault import Spoiled, fault_by, logged
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.diagnosis import step_ends
 from omegadot.gates.scales import norm
@@ -27,27 +27,24 @@ from omegadot.reference_impl.system import Acceleration, Array, State, System
 SECRET_DAMPING = 1e-4  # N m s/rad
 
 
-@fault("stepping", "scheme", named="a damping of 0.0001")
-class SecretDamping(ExtraTorque):
-    """A damping of 1e-4 N m s/rad that was not requested acts in the steps."""
-
-    @staticmethod
-    def torque(system: System, state: State) -> Array:
-        """Against omega."""
-        return -SECRET_DAMPING * state.angular_velocity
+class SecretTorque(ExtraTorque):
+    """The same in the steps alone."""
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """Sound when queried."""
         return self.inner.forward_dynamics(states)
 
 
+@fault_by(SecretTorque, "torque", "stepping", "scheme", named="a damping of 0.0001")
+def SecretDamping(system: System, state: State) -> Array:
+    """A damping of 1e-4 N m s/rad that was not requested acts in the steps."""
+    return -SECRET_DAMPING * state.angular_velocity
+
+
 class StepEnds(Restepped):
     """Every step ends in a state that `end` makes of the right one."""
 
-    @staticmethod
-    def end(before: State, after: State, dt: float | Array) -> State:
-        """The wrong state."""
-        return after
+    end: step_ends.End
 
     def scheme(self, declared: Scheme) -> Scheme:
         """The declared scheme with the wrong ends."""
