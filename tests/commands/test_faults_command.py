@@ -12,7 +12,7 @@ from command_line import omegadot
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.catalogue.every import FAULTS
 from omegadot.commands.faults.detect import GATES
-from omegadot.commands.faults.faults import Settings
+from omegadot.commands.faults.faults import FaultsResult
 from omegadot.commands.faults.matrix import EngineMatrix, detection
 from omegadot.commands.faults.prepared import Pool
 from omegadot.commands.faults.print_faults import markdown, share
@@ -66,7 +66,7 @@ def test_a_row_of_the_matrix() -> None:
 def test_the_page_has_a_line_for_every_fault_and_states_how_it_was_made() -> None:
     row = detection(FAULTS["MassSlightlyOff"], "reference", Pool(3), 1)
     matrix = EngineMatrix("reference", "1", ("rk4-quaternion",), 2, 0, 0, ("Left",), (), (row,))
-    page = markdown(Settings(("reference",), 1, 3), [matrix])
+    page = markdown(FaultsResult(1, 3, (matrix,)))
     command = "omegadot faults --engine reference --bodies 1 --seed 3 --format markdown"
     assert command in page.splitlines()[2:6][0] + page.splitlines()[3]
     line = next(text for text in page.splitlines() if text.startswith("| MassSlightlyOff | 100"))

@@ -16,27 +16,11 @@ ENGINES = tuple(name for name in BUILT_IN if name != "exact")  # the truth canno
 
 
 @dataclass(frozen=True)
-class Settings:
-    """engines, bodies and seed as they were requested."""
+class FaultsResult:
+    """The detection matrix, an engine after another, for so many bodies of a seed."""
 
-    engines: tuple[str, ...]
     bodies: int
     seed: int
-
-    @property
-    def command(self) -> str:
-        """The command that gives this page."""
-        named = " ".join(f"--engine {name}" for name in self.engines)
-        return (
-            f"omegadot faults {named} --bodies {self.bodies} --seed {self.seed} --format markdown"
-        )
-
-
-@dataclass(frozen=True)
-class FaultsResult:
-    """The detection matrix, an engine after another, and the settings that it is for."""
-
-    settings: Settings
     matrices: tuple[EngineMatrix, ...]
 
     @property
@@ -65,15 +49,15 @@ def faults(
     """
     check_count("--bodies", bodies, 1)
     check_count("--seed", seed, 0)
-    named: list[str] = several(engines)
-    settings = Settings(tuple(dict.fromkeys(named)) or ("reference",), bodies, seed)
-    for name in settings.engines:
+    given: list[str] = several(engines)
+    names = list(dict.fromkeys(given)) or ["reference"]
+    for name in names:
         if name not in ENGINES:
             raise UsageError(f"--engine {name}: no such engine; {nearest(name, ENGINES)}.")
     pool, matrices = Pool(seed), []
     with reporting(progress) as report, quiet_engines():
-        count = Count(report, "judging faulty engines", len(settings.engines))
-        for name in settings.engines:
+        count = Count(report, "judging faulty engines", len(names))
+        for name in names:
             try:
                 matrices.append(engine_matrix(name, pool, bodies))
             except ImportError as error:
@@ -81,4 +65,4 @@ def faults(
                     f"--engine {name}: not installed ({error}); install it."
                 ) from error
             count.advance()
-    return FaultsResult(settings, tuple(matrices))
+    return FaultsResult(bodies, seed, tuple(matrices))

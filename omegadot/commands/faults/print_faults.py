@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from omegadot.commands.faults.detect import GATES
-from omegadot.commands.faults.faults import FaultsResult, Settings
+from omegadot.commands.faults.faults import FaultsResult
 from omegadot.commands.faults.matrix import Detection, EngineMatrix
 from omegadot.commands.faults.published_checks import PUBLISHED
 
@@ -23,9 +23,9 @@ WIDTH_WHEN_PIPED = 200
 def print_faults(found: FaultsResult, form: str) -> None:
     """As "text", "json" or "markdown"."""
     if form == "json":
-        typer.echo(json.dumps(plain(found.settings, found.matrices), indent=2))
+        typer.echo(json.dumps(plain(found), indent=2))
     elif form == "markdown":
-        typer.echo(markdown(found.settings, found.matrices), nl=False)
+        typer.echo(markdown(found), nl=False)
     else:
         _print_text(found.matrices)
 
@@ -83,15 +83,15 @@ def _caught(matrix: EngineMatrix, missed: list[str]) -> str:
     return f"{len(matrix.rows) - len(missed)} were caught on every body{more}"
 
 
-def plain(settings: Settings, matrices: Sequence[EngineMatrix]) -> dict[str, Any]:
+def plain(found: FaultsResult) -> dict[str, Any]:
     """Everything, for machines."""
     checks = [{"name": c.name, "bound": c.bound, "source": c.source} for c in PUBLISHED]
     engines = []
-    for matrix in matrices:
+    for matrix in found.matrices:
         kept = {k: v for k, v in vars(matrix).items() if k != "rows"}
         engines.append({**kept, "faults": [_plain_row(row) for row in matrix.rows]})
-    found = {"bodies": settings.bodies, "seed": settings.seed}
-    return {**found, "published": checks, "engines": engines}
+    drawn = {"bodies": found.bodies, "seed": found.seed}
+    return {**drawn, "published": checks, "engines": engines}
 
 
 def _plain_row(row: Detection) -> dict[str, Any]:
@@ -136,17 +136,20 @@ largest step.
 """
 
 
-def markdown(settings: Settings, matrices: Sequence[EngineMatrix]) -> str:
+def markdown(found: FaultsResult) -> str:
     """The page."""
-    parts = [HEAD.format(command=settings.command, bodies=settings.bodies)]
+    named = " ".join(f"--engine {matrix.engine}" for matrix in found.matrices)
+    drawn = f"--bodies {found.bodies} --seed {found.seed}"
+    command = f"omegadot faults {named} {drawn} --format markdown"
+    parts = [HEAD.format(command=command, bodies=found.bodies)]
     parts.append("\n".join(f"- **{c.name}**: {c.bound} (`{c.source}`)." for c in PUBLISHED) + "\n")
-    for matrix in matrices:
+    for matrix in found.matrices:
         parts.append(f"## Over {matrix.engine}\n")
         parts.append("\n".join(summary_of(matrix)) + "\n")
         lines = [HEADS, ("---", *("---:",) * (len(HEADS) - 1)), *map(line_of, matrix.rows)]
         parts.append("\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n")
     parts.append("## The faults\n")
-    faults = {row.fault.name: row.fault for matrix in matrices for row in matrix.rows}
+    faults = {row.fault.name: row.fault for matrix in found.matrices for row in matrix.rows}
     described = [("fault", "what is wrong", "kind", "needs"), ("---",) * 4]
     for fault in faults.values():
         needs = ", ".join(sorted(fault.needs)) or "nothing"
