@@ -56,8 +56,9 @@ class Spoiled:
 
     def load(self, system: System) -> None:
         """As `Adapter.load`."""
+        given = self.loaded(system)  # `_system` is still the one before
         self._system = system
-        self.inner.load(self.loaded(system))
+        self.inner.load(given)
 
     def model(self) -> tuple[Body, ...]:
         """As `Adapter.model`."""

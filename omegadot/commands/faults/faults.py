@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from omegadot.adapters.registry import BUILT_IN
-from omegadot.commands.faults.matrix import EngineMatrix, engine_matrix, quiet_engines
+from omegadot.commands.faults.matrix import EngineMatrix, engine_matrix
 from omegadot.commands.faults.prepared import Pool
 from omegadot.commands.progress import Count, Reporting, reporting
 from omegadot.harness.arguments import several
@@ -66,3 +69,17 @@ def faults(
                 ) from error
             count.advance()
     return FaultsResult(bodies, seed, tuple(matrices))
+
+
+@contextmanager
+def quiet_engines() -> Iterator[None]:
+    """What engines print from native code would stand among the results: it is dropped."""
+    sys.stdout.flush()
+    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import sys
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
@@ -68,20 +65,6 @@ class EngineMatrix:
     def missed(self) -> list[str]:
         """The faults that no gate catches on some body."""
         return [row.fault.name for row in self.rows if row.judged and row.any < 1.0]
-
-
-@contextmanager
-def quiet_engines() -> Iterator[None]:
-    """What engines print from native code would stand among the results: it is dropped."""
-    sys.stdout.flush()
-    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 1)
-        yield
-    finally:
-        os.dup2(kept, 1)
-        os.close(kept)
-        os.close(nowhere)
 
 
 def engine_matrix(engine: str, pool: Pool, bodies: int) -> EngineMatrix:

@@ -22,7 +22,12 @@ ASIDE = np.array([1e-6, 0.0, 0.0])  # m
 
 
 class Timed(Restepped):
-    """Steps that know their number: each is taken with `wrong` or with the right acceleration."""
+    """Steps that know their number: each is taken with `wrong` or with the right acceleration.
+
+    wrong_scheme: of a wrong step, where it is not the declared one.
+    """
+
+    wrong_scheme: Scheme | None = None
 
     def wrong_at(self, step: int) -> bool:
         """Whether this step is a wrong one; they are counted from 0."""
@@ -31,10 +36,6 @@ class Timed(Restepped):
     def wrong(self, state: State, sound: Acceleration) -> Acceleration:
         """The acceleration of a wrong step."""
         return sound
-
-    def wrong_scheme(self, declared: Scheme) -> Scheme:
-        """The scheme of a wrong step."""
-        return declared
 
     def scheme(self, declared: Scheme) -> Scheme:
         """The declared scheme, with a counter."""
@@ -45,7 +46,7 @@ class Timed(Restepped):
         def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
             if not self.wrong_at(next(taken)):
                 return declared.step(motion, q, v, h)
-            return self.wrong_scheme(declared).step(wrong, q, v, h)
+            return (self.wrong_scheme or declared).step(wrong, q, v, h)
 
         return replace(declared, step=step)
 
@@ -71,9 +72,7 @@ def TorqueOneStepLate(self: Timed, state: State, sound: Acceleration) -> Acceler
 class FirstStepByEuler(Timed):
     """The first step is one of Euler's, whatever is declared."""
 
-    def wrong_scheme(self, declared: Scheme) -> Scheme:
-        """Euler."""
-        return SCHEMES["semi-implicit-euler"]
+    wrong_scheme = SCHEMES["semi-implicit-euler"]
 
 
 @fault("stepping", "scheme", named="and every step after it is wrong")

@@ -38,6 +38,7 @@ class OtherRun(Spoiled):
 
 
 other_run = partial(fault_by, OtherRun, "made")
+loaded = partial(fault_by, Spoiled, "loaded", "state")
 
 
 def rows(state: State, which: NDArray[np.intp] | slice) -> State:
@@ -111,24 +112,17 @@ class StaleState(Spoiled):
         return found
 
 
-@fault("state", "model", named="those of another inertia")
-class LeaksBetweenScenarios(Spoiled):
+@loaded("model", named="those of another inertia")
+def LeaksBetweenScenarios(self: Spoiled, system: System) -> System:
     """A tenth of a percent of the last scenario's inertia is left in the next one's."""
-
-    def loaded(self, system: System) -> System:
-        """The sum of what is requested and what is left."""
-        before, self._before = getattr(self, "_before", None), system
-        if before is None:
-            return system
-        tensor = 0.999 * system.body.inertia + 0.001 * before.body.inertia
-        return replace(system, bodies=(replace(system.body, inertia=tensor),))
+    if self._system is None:
+        return system
+    tensor = 0.999 * system.body.inertia + 0.001 * self._system.body.inertia
+    return replace(system, bodies=(replace(system.body, inertia=tensor),))
 
 
-@fault("state", "equation", "gravity", named=("gravity is (", "gravity is missing"))
-class GravityOfTheLastScenario(Spoiled):
+@loaded("equation", "gravity", named=("gravity is (", "gravity is missing"))
+def GravityOfTheLastScenario(self: Spoiled, system: System) -> System:
     """Gravity stays what it was in the scenario before."""
-
-    def loaded(self, system: System) -> System:
-        """The last gravity."""
-        before, self._before = getattr(self, "_before", system), system
-        return replace(system, load=replace(system.load, gravity=before.load.gravity))
+    before = self._system or system
+    return replace(system, load=replace(system.load, gravity=before.load.gravity))

@@ -38,9 +38,9 @@ class OmegaAtHalfStep(Spoiled):
     ) -> Trajectory:
         """Taken back by half a step's omega-dot, but for the start."""
         found = super().run(initial, integrator, timestep, steps, every)
-        w_dot = self.inner.forward_dynamics(found.state).angular.copy()
-        w_dot[0] = 0.0
-        w = found.state.angular_velocity - 0.5 * timestep * w_dot
+        w_dot = self.inner.forward_dynamics(found.state).angular
+        w = found.state.angular_velocity.copy()
+        w[1:] -= 0.5 * timestep * w_dot[1:]
         return Trajectory(found.time, replace(found.state, angular_velocity=w))
 
 
