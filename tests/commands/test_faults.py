@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from omegadot.adapters.registry import BUILT_IN, build_adapter
-from omegadot.commands.faults.catalogue.every import ORDERED
+from omegadot.commands.faults.catalogue import ORDERED
 from omegadot.commands.faults.detect import Judgement, judge
 from omegadot.commands.faults.fault import Fault
 from omegadot.commands.faults.prepared import Pool, Prepared

@@ -10,7 +10,7 @@ import pytest
 from command_line import omegadot
 
 from omegadot.adapters.reference.adapter import ReferenceAdapter
-from omegadot.commands.faults.catalogue.every import FAULTS
+from omegadot.commands.faults.catalogue import FAULTS
 from omegadot.commands.faults.detect import GATES
 from omegadot.commands.faults.faults import FaultsResult
 from omegadot.commands.faults.matrix import EngineMatrix, detection

@@ -14,7 +14,7 @@ import pytest
 
 from omegadot.adapters.protocol import Adapter, Description, Integrator, Trajectory
 from omegadot.adapters.reference.adapter import FEATURES, ReferenceAdapter
-from omegadot.commands.faults.catalogue.every import FAULTS
+from omegadot.commands.faults.catalogue import FAULTS
 from omegadot.commands.faults.detect import Judgement, Nameless, judge, without_scheme
 from omegadot.commands.faults.prepared import Pool
 from omegadot.gates.case import Sweep

@@ -10,7 +10,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Adapter
 from omegadot.adapters.registry import BUILT_IN, build_adapter
-from omegadot.commands.faults.catalogue.every import ORDERED
+from omegadot.commands.faults.catalogue import ORDERED
 from omegadot.commands.faults.detect import GATES, Judgement, Nameless, chosen_integrators, judge
 from omegadot.commands.faults.fault import Fault
 from omegadot.commands.faults.prepared import Pool, Prepared
@@ -74,7 +74,6 @@ def engine_matrix(engine: str, pool: Pool, bodies: int) -> EngineMatrix:
     has = OF_ENGINE if any(i.orders["attitude"] == 4 for i in chosen) else frozenset()
     cases = [pool.prepare(number) for number in range(SOUND * bodies)]
     nameless = Nameless(sound)
-    usable = [check for check in PUBLISHED if check.integrator_of(sound)]
     suited = [one for one in ORDERED if one.needs & OF_ENGINE <= has]
     return EngineMatrix(
         engine=engine,
@@ -85,7 +84,7 @@ def engine_matrix(engine: str, pool: Pool, bodies: int) -> EngineMatrix:
         accused_nameless=sum(judge(pool, case, engine, nameless).accused for case in cases),
         skipped=tuple(one.name for one in ORDERED if one not in suited),
         published_accuse=tuple(
-            check.name for check in usable if _fails_sound(check, engine, pool.seed, bodies)
+            check.name for check in PUBLISHED if _published(check, engine, None, pool.seed, bodies)
         ),
         rows=tuple(detection(one, engine, pool, bodies) for one in suited),
     )
@@ -106,7 +105,7 @@ def detection(fault: Fault, engine: str, pool: Pool, bodies: int) -> Detection:
         named=_share(_named(fault, pool.prepare(n), one) for n, one in judged.items()),
         no_scheme=_share(bool(one.failed) for one in nameless.values()),
         published={
-            check.name: _published(check, fault, engine, pool.seed, bodies) for check in PUBLISHED
+            check.name: _published(check, engine, fault, pool.seed, bodies) for check in PUBLISHED
         },
     )
 
@@ -132,25 +131,22 @@ def _named(fault: Fault, prepared: Prepared, judgement: Judgement) -> bool:
         return fault.is_named(diagnose(*known, judgement.result, judgement.runs))
 
 
-def _published(check: Published, fault: Fault, engine: str, seed: int, poses: int) -> float | None:
-    adapter = fault.wrap(build_adapter(BUILT_IN[engine]))
-    usable = fault.needs <= check.has and check.integrator_of(adapter.inner)
-    if not usable or _fails_sound(check, engine, seed, poses):
-        return None
-    return _score(check, adapter, adapter.inner, seed, poses)
-
-
 @cache
-def _fails_sound(check: Published, engine: str, seed: int, poses: int) -> bool:
-    """Whether the sound engine breaks a check's bounds: the check then detects no fault in it."""
+def _published(
+    check: Published, engine: str, fault: Fault | None, seed: int, poses: int
+) -> float | None:
+    """The share of attitudes from which a check's bounds are broken, by a fault or without one.
+
+    None where the check does not apply, or where the sound engine breaks its bounds already: the
+    check then detects no fault in it.
+    """
     sound = build_adapter(BUILT_IN[engine])
-    return _score(check, sound, sound, seed, poses) > 0.0
-
-
-def _score(check: Published, adapter: Adapter, sound: Adapter, seed: int, poses: int) -> float:
-    """The share of attitudes from which a check's bounds are broken."""
     integrator = check.integrator_of(sound)
-    assert integrator is not None
+    if integrator is None or (fault and not fault.needs <= check.has):
+        return None
+    if fault and _published(check, engine, None, seed, poses):
+        return None
+    adapter = fault.wrap(sound) if fault else sound
     draws = (np.random.default_rng([seed, pose]) for pose in range(poses))
     with np.errstate(all="ignore"):
         return _share(check.caught(adapter, integrator, random) for random in draws)

@@ -123,15 +123,15 @@ def _rows(state: State) -> State:
 
 def _near(state: State, true: State, tolerance: Array) -> bool:
     """Rotation, position and velocity within the tolerance by component, omega within twice it."""
+    turned = rotation_matrix(state.orientation) - rotation_matrix(true.orientation)
     pairs = (
-        (rotation_matrix(state.orientation) - rotation_matrix(true.orientation), 1.0),
+        (turned.reshape(len(turned), 9), 1.0),
         (state.angular_velocity - true.angular_velocity, 2.0),
         (state.position - true.position, 1.0),
         (state.linear_velocity - true.linear_velocity, 1.0),
     )
     return all(
-        bool(np.all(np.max(np.abs(d.reshape(len(d), -1)), axis=-1) <= factor * tolerance))
-        for d, factor in pairs
+        bool(np.all(np.max(np.abs(gap), axis=-1) <= factor * tolerance)) for gap, factor in pairs
     )
 
 
