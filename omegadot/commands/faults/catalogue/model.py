@@ -79,7 +79,7 @@ def InertiaAboutOrigin(body: Body) -> Body:
 
 
 class UnseenBody(OtherBody):
-    """The same, while the model reads back as requested."""
+    """The engine is given another body, and its model reads back as requested."""
 
     def model(self) -> tuple[Body, ...]:
         """What was requested."""

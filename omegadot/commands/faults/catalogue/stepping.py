@@ -28,7 +28,7 @@ SECRET_DAMPING = 1e-4  # N m s/rad
 
 
 class SecretTorque(ExtraTorque):
-    """The same in the steps alone."""
+    """A torque that acts in the steps alone."""
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """Sound when queried."""
@@ -52,7 +52,7 @@ class StepEnds(Restepped):
 
 
 class LongStepEnds(StepEnds):
-    """The same where `end` makes quaternions that are not of unit length."""
+    """Every step ends in a state whose quaternion may not be of unit length."""
 
     def acceleration(self) -> AccelerationOf:
         """Evaluated at the unit quaternion of the same direction, as engines do."""
