@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
 from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL, WORLD
 from omegadot.reference_impl.components import (
-    Number,
-    apart,
+    Formula,
+    Numbers,
     constants,
     cross3,
+    in_components,
     rotated,
-    together,
 )
 from omegadot.reference_impl.coordinates import Coordinates, acceleration_in, from_coordinates
 from omegadot.reference_impl.cross_product import skew
@@ -26,8 +25,6 @@ from omegadot.reference_impl.schemes.motion import Motion, Velocity
 from omegadot.reference_impl.symmetric import inverse
 from omegadot.reference_impl.system import Array, System
 
-Angular = Callable[..., tuple[Number, Number, Number]]
-
 
 def body_motion(system: System, coordinates: Coordinates = "com-world") -> Motion:
     """One body under its loads, in these coordinates."""
@@ -38,11 +35,7 @@ def body_motion(system: System, coordinates: Coordinates = "com-world") -> Motio
 
 def attitude_motion(system: System) -> Motion:
     """The turning of a body alone: q is the quaternion, v is ω. A pivoted body has no more."""
-    angular = _angular(system)
-
-    def acceleration(q: Array, v: Array) -> Array:
-        return together([*angular(q, *apart(v))], v)
-
+    acceleration = in_components(_angular(system))
     jacobian = partial(_jacobian_by_omega, acceleration)
     return Motion(acceleration=acceleration, jacobian=jacobian, **ATTITUDE)
 
@@ -86,7 +79,7 @@ def _jacobian_by_all(
     return found, np.concatenate((by_u, by_omega), axis=-1)
 
 
-def _angular(system: System) -> Angular:
+def _angular(system: System) -> Formula:
     """``ω̇ = I⁻¹ (τ - ω × I ω)``, equation (8), of q and the components of ω.
 
     τ is the torque of `loads.torque_of`; what is zero is left out here, not at each step.
@@ -98,12 +91,13 @@ def _angular(system: System) -> Angular:
     bx, by, bz = constants(load.torque_body)
     (d,) = constants(np.asarray(load.damping)[..., None])
     in_world = bool(np.any(load.torque_world))
-    wx0, wy0, wz0 = constants(load.torque_world)
+    couple = constants(load.torque_world)
     hangs = load.pivot is not None and bool(np.any(load.gravity))
-    fx, fy, fz = constants(weight(system))
-    rx, ry, rz = constants(lever(system))
+    force = constants(weight(system))
+    arm = constants(lever(system))
 
-    def angular(q: Array, wx: Number, wy: Number, wz: Number) -> tuple[Number, Number, Number]:
+    def angular(q: Numbers, v: Numbers) -> Numbers:
+        wx, wy, wz = v[-3:]
         hx = ixx * wx + ixy * wy + ixz * wz
         hy = ixy * wx + iyy * wy + iyz * wz
         hz = ixz * wx + iyz * wy + izz * wz
@@ -113,12 +107,13 @@ def _angular(system: System) -> Angular:
         if damped:
             tx, ty, tz = tx - d * wx, ty - d * wy, tz - d * wz
         if in_world or hangs:
-            qw, qx, qy, qz = apart(q)[-4:]
+            qw, qx, qy, qz = q[-4:]
+            inverse_q = -qw, qx, qy, qz
         if in_world:
-            ax, ay, az = rotated(-qw, qx, qy, qz, wx0, wy0, wz0)
+            ax, ay, az = rotated(inverse_q, couple)
             tx, ty, tz = tx + ax, ty + ay, tz + az
         if hangs:
-            ax, ay, az = cross3(rx, ry, rz, *rotated(-qw, qx, qy, qz, fx, fy, fz))
+            ax, ay, az = cross3(arm, rotated(inverse_q, force))
             tx, ty, tz = tx + ax, ty + ay, tz + az
         return (
             jxx * tx + jxy * ty + jxz * tz,
@@ -132,35 +127,31 @@ def _angular(system: System) -> Angular:
 def _free_acceleration(system: System, coordinates: Coordinates) -> Velocity:
     """``v̇`` of a free body, equations (7) and (8): see `coordinates.acceleration_in`."""
     angular = _angular(system)
-    gx, gy, gz = constants(system.load.gravity)
-    cx, cy, cz = constants(system.body.center_of_mass)
+    gx, gy, gz = gravity = constants(system.load.gravity)
+    c = constants(system.body.center_of_mass)
 
-    def of_center(q: Array, v: Array) -> Array:
-        _, _, _, wx, wy, wz = apart(v)
-        return together([gx, gy, gz, *angular(q, wx, wy, wz)], v)
+    def of_center(q: Numbers, v: Numbers) -> Numbers:
+        return [gx, gy, gz, *angular(q, v)]
 
-    def of_origin(q: Array, v: Array) -> Array:
-        _, _, _, qw, qx, qy, qz = apart(q)
-        _, _, _, wx, wy, wz = apart(v)
-        ax, ay, az = angular(q, wx, wy, wz)
-        x, y, z = cross3(wx, wy, wz, *cross3(wx, wy, wz, cx, cy, cz))
-        dx, dy, dz = cross3(ax, ay, az, cx, cy, cz)
-        lx, ly, lz = rotated(qw, qx, qy, qz, x + dx, y + dy, z + dz)
-        return together([gx - lx, gy - ly, gz - lz, ax, ay, az], v)
+    def of_origin(q: Numbers, v: Numbers) -> Numbers:
+        w, w_dot = v[3:], angular(q, v)
+        x, y, z = cross3(w, cross3(w, c))
+        dx, dy, dz = cross3(w_dot, c)
+        lx, ly, lz = rotated(q[3:], (x + dx, y + dy, z + dz))
+        return [gx - lx, gy - ly, gz - lz, *w_dot]
 
-    def spatial(q: Array, v: Array) -> Array:
-        _, _, _, qw, qx, qy, qz = apart(q)
-        ux, uy, uz, wx, wy, wz = apart(v)
-        ax, ay, az = angular(q, wx, wy, wz)
-        x, y, z = cross3(wx, wy, wz, cx, cy, cz)
-        x, y, z = cross3(wx, wy, wz, ux + x, uy + y, uz + z)
-        dx, dy, dz = cross3(ax, ay, az, cx, cy, cz)
-        fx, fy, fz = rotated(-qw, qx, qy, qz, gx, gy, gz)
-        return together([fx - x - dx, fy - y - dy, fz - z - dz, ax, ay, az], v)
+    def spatial(q: Numbers, v: Numbers) -> Numbers:
+        w, w_dot = v[3:], angular(q, v)
+        qw, qx, qy, qz = q[3:]
+        x, y, z = cross3(w, c)
+        x, y, z = cross3(w, (v[0] + x, v[1] + y, v[2] + z))
+        dx, dy, dz = cross3(w_dot, c)
+        fx, fy, fz = rotated((-qw, qx, qy, qz), gravity)
+        return [fx - x - dx, fy - y - dy, fz - z - dz, *w_dot]
 
-    by_name: dict[Coordinates, Velocity] = {
+    by_name: dict[Coordinates, Formula] = {
         "com-world": of_center,
         "origin-world": of_origin,
         "body-spatial": spatial,
     }
-    return by_name[coordinates]
+    return in_components(by_name[coordinates])

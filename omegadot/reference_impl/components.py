@@ -7,7 +7,9 @@ matrix product a lane.
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable, Sequence
+from functools import wraps
+from math import atan, cos, nan, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,8 @@ import numpy as np
 from omegadot.reference_impl.system import Array
 
 Number = Any  # a float, or an array of lanes
+Numbers = Sequence[Number]  # the components of a vector
+Formula = Callable[[Numbers, Numbers], Numbers]
 _LEAST = 1e-18  # rad: below it sin(x/2)/x is one half to the last digit of any format
 
 
@@ -26,17 +30,60 @@ def apart(vector: Array) -> list[Number]:
     return [vector[..., i] for i in range(vector.shape[-1])]
 
 
-def together(parts: list[Number], like: Array) -> Array:
+def together(parts: Numbers, like: Array) -> Array:
     """The vector (..., n) of n components, with the lanes and the number format of `like`.
 
-    The last of them distinguishes floats from arrays; others may be constants of the system.
+    Components may be constants of the system.
     """
-    if type(parts[-1]) is float:
-        return np.array(parts)
-    vector = np.empty((*like.shape[:-1], len(parts)), like.dtype)
+    if like.ndim == 1:
+        return np.array(parts, like.dtype)
+    vector = _empty(like.shape[:-1], len(parts), like.dtype)
     for i, part in enumerate(parts):
         vector[..., i] = part
     return vector
+
+
+def in_lanes(vector: Array, lanes: tuple[int, ...]) -> Array:
+    """A vector (..., n) for each of these lanes, kept as `together` keeps its vectors."""
+    copy = _empty(lanes, vector.shape[-1], vector.dtype)
+    copy[...] = vector
+    return copy
+
+
+def _empty(lanes: tuple[int, ...], count: int, dtype: Any) -> Array:
+    """(..., n), with each component in one piece in memory, as formulas read it."""
+    components: Array = np.empty((count, *lanes), dtype)
+    return components.transpose(*range(1, components.ndim), 0)
+
+
+def in_components(formula: Formula) -> Callable[[Array, Array], Array]:
+    """A formula over the components of two vectors as a function of the vectors, (..., n)."""
+
+    @wraps(formula)
+    def of_vectors(first: Array, second: Array) -> Array:
+        if second.ndim == 1:  # as below, without the calls
+            return np.array(formula(first.tolist(), second.tolist()), second.dtype)
+        return together(formula(apart(first), apart(second)), second)
+
+    of_vectors.formula = formula  # type: ignore[attr-defined]
+    return of_vectors
+
+
+def one_in_components(formula: Callable[[Numbers], Numbers]) -> Callable[[Array], Array]:
+    """As `in_components`, of one vector."""
+
+    @wraps(formula)
+    def of_vector(vector: Array) -> Array:
+        return together(formula(apart(vector)), vector)
+
+    of_vector.formula = formula  # type: ignore[attr-defined]
+    return of_vector
+
+
+def formulas_of(*functions: Callable[..., Array]) -> list[Any] | None:
+    """The formulas of which `in_components` made these functions; None where one is another."""
+    formulas = [getattr(function, "formula", None) for function in functions]
+    return None if None in formulas else formulas
 
 
 def constants(values: Array) -> list[Number]:
@@ -49,18 +96,18 @@ def constants(values: Array) -> list[Number]:
 def length(square: Number) -> Number:
     """``sqrt(square)``, held at 1e-18 from below so that it may divide."""
     if type(square) is float:
-        return _LEAST if square < _LEAST * _LEAST else math.sqrt(square)
+        return _LEAST if square < _LEAST * _LEAST else sqrt(square)
     return np.sqrt(np.maximum(square, _LEAST * _LEAST))
 
 
 def half_turn(square: Number) -> tuple[Number, Number]:
     """``cos(a/2)`` and ``sin(a/2)/a`` of an angle given as its square; NaN if it is not finite."""
     if type(square) is float:
-        angle = _LEAST if square < _LEAST * _LEAST else math.sqrt(square)
+        angle = _LEAST if square < _LEAST * _LEAST else sqrt(square)
         try:
-            return math.cos(0.5 * angle), math.sin(0.5 * angle) / angle
+            return cos(0.5 * angle), sin(0.5 * angle) / angle
         except ValueError:
-            return math.nan, math.nan
+            return nan, nan
     angle = length(square)
     half = 0.5 * angle
     return np.cos(half), np.sin(half) / angle
@@ -71,37 +118,30 @@ def cos_sin(angle: Number) -> tuple[Number, Number]:
     if type(angle) is not float:
         return np.cos(angle), np.sin(angle)
     try:
-        return math.cos(angle), math.sin(angle)
+        return cos(angle), sin(angle)
     except ValueError:
-        return math.nan, math.nan
+        return nan, nan
 
 
 def arctan(x: Number) -> Number:
     """``atan(x)``."""
-    return math.atan(x) if type(x) is float else np.arctan(x)
+    return atan(x) if type(x) is float else np.arctan(x)
 
 
-def cross3(
-    ax: Number, ay: Number, az: Number, bx: Number, by: Number, bz: Number
-) -> tuple[Number, Number, Number]:
+def cross3(a: Numbers, b: Numbers) -> tuple[Number, Number, Number]:
     """``a × b``."""
+    ax, ay, az = a
+    bx, by, bz = b
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-def rotated(
-    w: Number,
-    x: Number,
-    y: Number,
-    z: Number,
-    ax: Number,
-    ay: Number,
-    az: Number,
-    twice: Number = 2.0,
-) -> tuple[Number, Number, Number]:
+def rotated(q: Numbers, a: Numbers, twice: Number = 2.0) -> tuple[Number, Number, Number]:
     """``R a = a + 2 w (u × a) + 2 u × (u × a)`` of a unit quaternion (w, u): body to world axes.
 
     With -w in place of w it is ``Rᵀ a``. twice: ``2 / |q|²``, where q need not be unit.
     """
+    w, x, y, z = q
+    ax, ay, az = a
     bx, by, bz = twice * (y * az - z * ay), twice * (z * ax - x * az), twice * (x * ay - y * ax)
     return (
         ax + w * bx + (y * bz - z * by),

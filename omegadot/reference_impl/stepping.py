@@ -9,6 +9,7 @@ from itertools import repeat
 import numpy as np
 
 from omegadot.reference_impl.body_motion import body_motion
+from omegadot.reference_impl.components import in_lanes
 from omegadot.reference_impl.coordinates import (
     Coordinates,
     canonical,
@@ -63,7 +64,7 @@ def step_through(
     plain = np.ndim(dt) == 0 and not isinstance(dt, np.longdouble)
     h = float(dt) if plain else np.asarray(dt)[..., None]
     if lanes:
-        q, v = (np.broadcast_to(x, (*lanes, x.shape[-1])) for x in (q, v))
+        q, v = in_lanes(q, lanes), in_lanes(v, lanes)
     places, velocities = [q], [v]
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         began = time.perf_counter()

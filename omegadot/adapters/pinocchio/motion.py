@@ -28,8 +28,8 @@ def joint_torque(load: Load, count: int) -> Array | Torque:
     """
     constant, drag = np.zeros(count), np.zeros(count)
     constant[-3:], drag[-3:] = load.torque_body, -load.damping
-    x0, y0, z0 = (float(x) for x in load.torque_world)
-    if not (x0 or y0 or z0):
+    world = [float(x) for x in load.torque_world]
+    if not any(world):
         if not drag.any():
             return constant
         return (lambda _, v: constant + drag * v) if constant.any() else lambda _, v: drag * v
@@ -37,7 +37,7 @@ def joint_torque(load: Load, count: int) -> Array | Torque:
     def in_world(q: Array, _: Array) -> Array:
         *_, x, y, z, w = q.tolist()
         couple = constant.copy()
-        couple[-3:] += rotated(-w, x, y, z, x0, y0, z0)
+        couple[-3:] += rotated((-w, x, y, z), world)
         return couple
 
     return (lambda q, v: in_world(q, v) + drag * v) if drag.any() else in_world
@@ -82,8 +82,7 @@ def _coordinate_rate(q: Array, v: Array) -> Array:
     *linear, a, b, c = v.tolist()
     a, b, c = 0.5 * a, 0.5 * b, 0.5 * c
     if place:
-        lx, ly, lz = linear
-        linear = [*rotated(w, x, y, z, lx, ly, lz, 2 / (w * w + x * x + y * y + z * z))]
+        linear = [*rotated((w, x, y, z), linear, 2 / (w * w + x * x + y * y + z * z))]
     turning = (
         w * a + y * c - z * b,
         w * b - x * c + z * a,

@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 
+from omegadot.reference_impl.components import in_lanes
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.schemes.motion import Motion, Velocity
 from omegadot.reference_impl.system import Array
@@ -41,7 +42,8 @@ def by_differences(
         found = np.array([acceleration(q, w).copy() for w in v + distance * moves])
     else:
         moves = moves.reshape(len(moves), *(1,) * (v.ndim - 1), v.shape[-1])
-        found = acceleration(q[None].repeat(len(moves), 0), v + distance * moves)
+        lanes = (len(moves), *v.shape[:-1])
+        found = acceleration(in_lanes(q, lanes), in_lanes(v + distance * moves, lanes))
     slopes: Array = (found[1 : last + 1] - found[last + 1 :]) / (2 * distance)
     return found[0], slopes.transpose(*range(1, slopes.ndim), 0)
 

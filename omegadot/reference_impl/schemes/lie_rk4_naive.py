@@ -13,6 +13,9 @@ def _as_if_rotations_commuted(_: Array, v: Array) -> Array:
     return v
 
 
+_as_if_rotations_commuted.formula = _as_if_rotations_commuted  # type: ignore[attr-defined]
+
+
 def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
     """Stages ``q_i = q₀ exp(h a_i v_{i-1})``, end ``q₁ = q₀ exp(h Σ b_i v_i)``.
 
