@@ -23,8 +23,10 @@ import mpmath as mp
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from omegadot.reference_impl.closed_forms import closed_form_of, floor
-from omegadot.reference_impl.closed_forms.free_rotation_rates import free_rotation_rates
+from omegadot.reference_impl.closed_forms import closed_form_of, floor, problem_of
+from omegadot.reference_impl.closed_forms.digits import many_digits
+from omegadot.reference_impl.closed_forms.euler_poinsot import constants_of
+from omegadot.reference_impl.closed_forms.free_rotation import inertia_and_omega
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array, Body, State, System
 
@@ -64,6 +66,16 @@ def rates(moments: Vector, y: list[float]) -> list[float]:
         (c - a) / b * w3 * w1,
         (a - b) / c * w1 * w2,
     ]
+
+
+def period_of(system: System, initial: State) -> tuple[float, float]:
+    """``2K/λ``, s from flip to flip, and 1 - m, which is zero on the separatrix."""
+    problem = problem_of(system, initial)
+    assert problem is not None
+    with many_digits():
+        found = constants_of(*inertia_and_omega(problem.numbers))
+        assert found is not None
+        return float(2 * found.modulus.quarter / found.rate), float(found.modulus.m1)
 
 
 def run_closed_form(system: System, initial: State, times: Array) -> Callable[[], Array]:
@@ -175,10 +187,10 @@ def main() -> None:
     for title, (moments, omega) in CASES.items():
         system = System((Body(np.array(1.0), np.zeros(3), np.diag(moments)),))
         initial = State(np.array(UPRIGHT), np.array(omega), np.zeros(3), np.zeros(3))
-        found = free_rotation_rates(system, initial)
-        times = np.linspace(0.0, options.flips * found.flip_period, SAMPLES)
+        flip_period, complement = period_of(system, initial)
+        times = np.linspace(0.0, options.flips * flip_period, SAMPLES)
         start = [*UPRIGHT, *omega]
-        print(f"\n{title}: 1 - m = {found.complement:.2g}, {SAMPLES} samples to {times[-1]:.0f} s")
+        print(f"\n{title}: 1 - m = {complement:.2g}, {SAMPLES} samples to {times[-1]:.0f} s")
         least = floor(system, initial, times[-1:])
         in_omega = least.angular_velocity[0] / np.linalg.norm(omega)
         print(f"  floor at the end: omega {in_omega:.1e}, attitude {least.attitude[0]:.1e} rad")

@@ -17,16 +17,8 @@ from decimal import Decimal
 
 import numpy as np
 
-from omegadot.reference_impl.closed_forms.digits import (
-    Matrix,
-    apply,
-    cross,
-    dot,
-    exact,
-    exact_matrix,
-    many_digits,
-)
-from omegadot.reference_impl.closed_forms.principal_axes import principal_axes
+from omegadot.reference_impl.closed_forms.digits import apply, cross, many_digits
+from omegadot.reference_impl.closed_forms.given import Given, principal_axes
 from omegadot.reference_impl.precision import from_decimals, to_double, to_extended
 from omegadot.reference_impl.rotations import normalize, quaternion_product, rotate_inverse
 from omegadot.reference_impl.system import Array, State, System
@@ -106,20 +98,19 @@ def equations_of(system: System) -> Equations:
     if np.ndim(body.inertia) != 2 or np.ndim(load.gravity) != 1:
         raise ValueError("a series is of one system; lanes are for its initial states")
     with many_digits():
-        inertia, lever = _about_fixed_point(system)
-        moments, axes = principal_axes(inertia)
+        given = Given.of(system)
+        moments, axes = principal_axes(given.inertia)
         inverse = [1 / moment for moment in moments]
-        weight_arm = [Decimal(float(body.mass)) * r for r in apply(axes, lever)]
+        weight_arm = [given.mass * r for r in apply(axes, given.lever)]
         # τ = m r × g: columns are the torques of g along each principal axis
         unit = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]
         columns = [cross(weight_arm, e) for e in unit]
-        push = apply(axes, exact(load.torque_body))
-        damping = Decimal(float(load.damping))
+        push = apply(axes, given.torque_body)
         gyroscopic = [(moments[i - 2] - moments[i - 1]) * inverse[i] for i in range(3)]
         by_gravity = [[inverse[i] * columns[j][i] for j in range(3)] for i in range(3)]
         linear, constant = to_extended(np.zeros((13, 13))), to_extended(np.zeros(13))
         one = np.arange(W.start, W.stop)
-        linear[one, one] = from_decimals([-damping * k for k in inverse])
+        linear[one, one] = from_decimals([-given.damping * k for k in inverse])
         linear[one, one + T.start - W.start] = from_decimals(inverse)
         for row, pull in zip(one, by_gravity, strict=True):
             linear[row, G] = from_decimals(pull)
@@ -135,21 +126,6 @@ def equations_of(system: System) -> Equations:
         gravity=to_extended(load.gravity if pivoted else np.zeros(3)),
         torque_world=to_extended(load.torque_world),
     )
-
-
-def _about_fixed_point(system: System) -> tuple[Matrix, list[Decimal]]:
-    """The inertia about the pivot, or the centre of mass, and the lever between them: (5)."""
-    body, pivot = system.body, system.load.pivot
-    inertia = exact_matrix(body.inertia)
-    if pivot is None:
-        return inertia, [Decimal(0)] * 3
-    center, mass = exact(body.center_of_mass), Decimal(float(body.mass))
-    r = [c - p for c, p in zip(center, exact(pivot), strict=True)]
-    square = dot(r, r)
-    for i in range(3):
-        for j in range(3):
-            inertia[i][j] += mass * ((square if i == j else 0) - r[i] * r[j])
-    return inertia, r
 
 
 def _quadratic(gyroscopic: Array, rows: Array) -> Array:

@@ -7,6 +7,10 @@ from math import cos, radians, sin
 
 import numpy as np
 
+from omegadot.reference_impl.closed_forms import problem_of
+from omegadot.reference_impl.closed_forms.digits import many_digits
+from omegadot.reference_impl.closed_forms.euler_poinsot import Constants, constants_of
+from omegadot.reference_impl.closed_forms.free_rotation import inertia_and_omega
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
 SLUG_FOOT_SQUARE = (
@@ -35,6 +39,20 @@ class Case:
     def initial(self) -> State:
         q = np.array(self.orientation)
         return State(q, np.array(self.omega), np.zeros(3), np.zeros(3))
+
+
+def constants_for(case: Case) -> Constants | None:
+    """The constants of a free rotation."""
+    problem = problem_of(case.system, case.initial)
+    assert problem is not None
+    with many_digits():
+        return constants_of(*inertia_and_omega(problem.numbers))
+
+
+def flip_period(case: Case) -> float:
+    """``2K/λ`` s between two sign changes of the middle component; infinite without any."""
+    c = constants_for(case)
+    return float(2 * c.modulus.quarter / c.rate) if c else np.inf
 
 
 def _tensor(xx: float, xy: float, xz: float, yy: float, yz: float, zz: float) -> Array:

@@ -20,8 +20,8 @@ from omegadot.reference_impl.closed_forms.digits import (
     pi,
 )
 from omegadot.reference_impl.closed_forms.elliptic import Clock, Modulus
+from omegadot.reference_impl.closed_forms.given import principal_axes
 from omegadot.reference_impl.closed_forms.phase import Phase
-from omegadot.reference_impl.closed_forms.principal_axes import principal_axes
 from omegadot.reference_impl.closed_forms.theta import jacobi_rows
 from omegadot.reference_impl.closed_forms.theta_series import Series
 from omegadot.reference_impl.closed_forms.times import Times

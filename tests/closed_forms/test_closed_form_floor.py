@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from closed_form_cases import FREE, TOPS, Case
+from closed_form_cases import FREE, TOPS, Case, constants_for, flip_period
 from closed_form_errors import EPS
 
 from omegadot.reference_impl.closed_forms import closed_form_of, floor
-from omegadot.reference_impl.closed_forms.free_rotation_rates import flip_times
 from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.system import State, System
 
@@ -71,7 +70,9 @@ def test_floor_grows_with_the_periods() -> None:
     And however large it is, it never exceeds what the motion can span, once for every number.
     """
     case = _named("near-middle")
-    flips = flip_times(case.system, case.initial, 1.0, 300.0)
+    c = constants_for(case)
+    first = float(-c.start / c.rate)
+    flips = np.arange(first + flip_period(case), 300.0, flip_period(case))
     step = 1e-5
     motion = closed_form_of(case.system, case.initial)
     rate = np.linalg.norm(

@@ -8,14 +8,16 @@ may be off. Inputs are taken as exact (the orientation after normalisation); tim
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
+from omegadot.reference_impl.closed_forms.digits import EPSILON, many_digits
 from omegadot.reference_impl.closed_forms.fixed_axis import fixed_axis_of
-from omegadot.reference_impl.closed_forms.floor import Floor, floor_of
 from omegadot.reference_impl.closed_forms.free_rotation import free_rotation_of
+from omegadot.reference_impl.closed_forms.given import Given
 from omegadot.reference_impl.closed_forms.lagrange_top import lagrange_top_of
-from omegadot.reference_impl.closed_forms.problem import Problem
+from omegadot.reference_impl.closed_forms.problem import Motion, Problem
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.system import Array, State, System
 
@@ -39,8 +41,10 @@ def problem_of(system: System, initial: State) -> Problem | None:
                 f"a closed form is for one body and one initial state: the {name} has the shape "
                 f"{np.shape(array)}, {shape} was expected"
             )
-    found = (form(system, initial) for form in _FORMS)
-    return next((problem for problem in found if problem is not None), None)
+    with many_digits():
+        given = Given.of(system, initial)
+        found = (form(given) for form in _FORMS)
+        return next((problem for problem in found if problem is not None), None)
 
 
 def closed_form_of(system: System, initial: State) -> Callable[[Array], State] | None:
@@ -75,12 +79,56 @@ def _fall(system: System, initial: State, times: Array) -> tuple[Array, Array]:
     return start + t * (speed + 0.5 * gravity * t), speed + gravity * t
 
 
+@dataclass(frozen=True)
+class Floor:
+    """The resolvable floor at each time.
+
+    angular_velocity: (n,) rad/s, norm of the error.  attitude: (n,) rad, angle of the error.
+    """
+
+    angular_velocity: Array
+    attitude: Array
+
+
 def floor(system: System, initial: State, times: Array) -> Floor:
     """The resolvable floor of angular velocity and attitude at times (n,) s.
 
+    A double stands for all numbers that round to it. Each number of the problem is moved by one
+    relative eps up and down, the form is evaluated again, the greater of the two distances is
+    taken and the distances of all numbers are added. The answer's own rounding is added once: a
+    component is an amplitude times a function of time, so that three values are rounded, each by
+    half an eps. Nothing is linearised: where one rounding of an input takes the body across the
+    separatrix the floor is as large as the motion, as it should be. Zeros are exact.
     Raises ValueError where the motion has no closed form.
     """
-    problem = problem_of(system, initial)
+    problem, times = problem_of(system, initial), np.atleast_1d(np.asarray(times, float))
     if problem is None:
         raise ValueError("the motion has no closed form, so its floor is not known")
-    return floor_of(problem, np.atleast_1d(np.asarray(times, float)))
+    exactly = problem.solve(problem.numbers)
+    q, w = exactly(times)
+    rounded = 3 * 0.5 * np.finfo(float).eps
+    angular_velocity = rounded * np.linalg.norm(w, axis=-1)
+    attitude = np.full(times.shape, 2 * rounded)
+    for index, number in enumerate(problem.numbers):
+        if number == 0:
+            continue
+        distances = [_distances(_moved(problem, index, s), times, q, w) for s in (1, -1)]
+        angle, speed = np.maximum(*distances)
+        attitude += angle
+        angular_velocity += speed
+    return Floor(angular_velocity, attitude)
+
+
+def _moved(problem: Problem, index: int, sign: int) -> Motion:
+    with many_digits():
+        numbers = list(problem.numbers)
+        numbers[index] *= 1 + sign * EPSILON
+        return problem.solve(numbers)
+
+
+def _distances(motion: Motion, times: Array, q: Array, w: Array) -> Array:
+    """(2, n): the angle between the attitudes, the norm of the difference of ω."""
+    other_q, other_w = motion(times)
+    chord = np.minimum(np.linalg.norm(other_q - q, axis=-1), np.linalg.norm(other_q + q, axis=-1))
+    angle = 4 * np.arcsin(np.minimum(0.5 * chord, 1.0))
+    return np.array([angle, np.linalg.norm(other_w - w, axis=-1)])

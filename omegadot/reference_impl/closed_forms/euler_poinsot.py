@@ -16,7 +16,7 @@ from omegadot.reference_impl.closed_forms.digits import (
     fewer_digits,
 )
 from omegadot.reference_impl.closed_forms.elliptic import Modulus
-from omegadot.reference_impl.closed_forms.principal_axes import principal_axes
+from omegadot.reference_impl.closed_forms.given import principal_axes
 
 
 @dataclass(frozen=True)

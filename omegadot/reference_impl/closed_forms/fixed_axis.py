@@ -15,55 +15,45 @@ from omegadot.reference_impl.closed_forms.digits import (
     cross,
     dot,
     doubles,
-    exact,
-    exact_matrix,
     many_digits,
 )
+from omegadot.reference_impl.closed_forms.given import Given
 from omegadot.reference_impl.closed_forms.problem import (
     IDENTITY,
-    UPRIGHT,
     MeasuredRun,
     Motion,
     Problem,
-    inertia_about,
-    lever_of,
     place,
     product,
 )
 from omegadot.reference_impl.closed_forms.times import Times
-from omegadot.reference_impl.system import Array, State, System
+from omegadot.reference_impl.system import Array
 
 
-def fixed_axis_of(system: System, initial: State) -> Problem | None:
+def fixed_axis_of(given: Given) -> Problem | None:
     """The spin about one axis, or None where the axis moves.
 
     Angular velocity, applied torques and ``I n`` must all lie along one axis n, exactly, and
     gravity must have no moment. Numbers: moment about n, torque along n, damping, speed about n,
     n (3) in body axes, orientation (4).
     """
-    body, load = system.body, system.load
-    with many_digits():
-        lever = lever_of(body, load)
-        if any(lever) and np.any(load.gravity):
-            return None
-        inertia = inertia_about(exact_matrix(body.inertia), exact(body.mass), lever)
-        orientation, omega = exact(initial.orientation), exact(initial.angular_velocity)
-        torque = exact(load.torque_body)
-        turned = _to_body(orientation, exact(load.torque_world))
-        torque = [a + b for a, b in zip(torque, turned, strict=True)]
-        axis = max(omega, torque, key=lambda v: dot(v, v))
-        size = dot(axis, axis).sqrt()
-        n = [x / size for x in axis] if size else IDENTITY[0]
-        along = apply(inertia, n) if size else n
-        if not all(_parallel(v, n) for v in (along, omega, torque, turned)):
-            return None
-        numbers = [dot(along, n), dot(torque, n), *exact(load.damping), dot(omega, n)]
-        return Problem("fixed axis", [*numbers, *n, *orientation], _solve)
+    if given.hangs:
+        return None
+    omega, turned = given.omega, _to_body(given.orientation, given.torque_world)
+    torque = [a + b for a, b in zip(given.torque_body, turned, strict=True)]
+    axis = max(omega, torque, key=lambda v: dot(v, v))
+    size = dot(axis, axis).sqrt()
+    n = [x / size for x in axis] if size else IDENTITY[0]
+    along = apply(given.inertia, n) if size else n
+    if not all(_parallel(v, n) for v in (along, omega, torque, turned)):
+        return None
+    numbers = [dot(along, n), dot(torque, n), given.damping, dot(omega, n)]
+    return Problem("fixed axis", [*numbers, *n, *given.orientation], _solve)
 
 
 def _solve(numbers: Row) -> Motion:
     with many_digits():
-        return place(_trajectory(numbers[:4], numbers[4:7]), IDENTITY, UPRIGHT, numbers[7:])
+        return place(_trajectory(numbers[:4], numbers[4:7]), numbers[7:])
 
 
 def _trajectory(numbers: Row, axis: Row) -> MeasuredRun:

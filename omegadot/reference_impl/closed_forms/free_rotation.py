@@ -22,48 +22,37 @@ from omegadot.reference_impl.closed_forms.digits import (
     Row,
     dot,
     doubles,
-    exact,
-    exact_matrix,
     fewer_digits,
     many_digits,
     pi,
 )
 from omegadot.reference_impl.closed_forms.euler_poinsot import constants_of
 from omegadot.reference_impl.closed_forms.free_rotation_motion import motion_of
+from omegadot.reference_impl.closed_forms.given import Given
 from omegadot.reference_impl.closed_forms.phase import Phase
 from omegadot.reference_impl.closed_forms.problem import (
-    IDENTITY,
-    UPRIGHT,
     MeasuredRun,
     Motion,
     Problem,
-    inertia_about,
-    lever_of,
     place,
     quaternion_of,
 )
 from omegadot.reference_impl.closed_forms.times import Times
-from omegadot.reference_impl.system import Array, State, System
+from omegadot.reference_impl.system import Array
 
 
-def free_rotation_of(system: System, initial: State) -> Problem | None:
-    """The free rotation of the system, or None where a torque acts.
+def free_rotation_of(given: Given) -> Problem | None:
+    """The free rotation, or None where a torque acts.
 
     Free are bodies in any gravity, and pivoted ones without gravity or held at their centre of
     mass; damping and applied torques must be zero. Their numbers: the lower triangle of the inertia
     about the point that matters (6), angular velocity (3), orientation (4).
     """
-    body, load = system.body, system.load
-    if np.any(load.damping) or np.any(load.torque_body) or np.any(load.torque_world):
+    if given.hangs or given.driven or given.damping:
         return None
-    with many_digits():
-        lever = lever_of(body, load)
-        if any(lever) and np.any(load.gravity):
-            return None
-        about = inertia_about(exact_matrix(body.inertia), exact(body.mass), lever)
-        triangle = [(about[i][j] + about[j][i]) / 2 for i in range(3) for j in range(i + 1)]
-        numbers = triangle + exact(initial.angular_velocity) + exact(initial.orientation)
-    return Problem("free rotation", numbers, _solve)
+    about = given.inertia
+    triangle = [(about[i][j] + about[j][i]) / 2 for i in range(3) for j in range(i + 1)]
+    return Problem("free rotation", triangle + given.omega + given.orientation, _solve)
 
 
 def _solve(numbers: Row) -> Motion:
@@ -71,13 +60,13 @@ def _solve(numbers: Row) -> Motion:
         orientation = numbers[9:]
         constants = constants_of(*inertia_and_omega(numbers))
         if constants is None:
-            return place(uniform(numbers[6:9]), IDENTITY, UPRIGHT, orientation)
+            return place(uniform(numbers[6:9]), orientation)
     with fewer_digits():
         order = (2, 0, 1)  # c, a, b
         axes = [constants.axes[i] for i in order]
         scales = [constants.momentum / constants.inertia[i] for i in order]
         turning = [[s * x for x in row] for s, row in zip(scales, axes, strict=True)]
-        return place(motion_of(constants), turning, quaternion_of(axes), orientation)
+        return place(motion_of(constants), orientation, turning, quaternion_of(axes))
 
 
 def inertia_and_omega(numbers: Row) -> tuple[Matrix, Row]:

@@ -1,4 +1,4 @@
-"""Attitude and angular velocity of a Lagrange top, factor by factor."""
+"""Attitude and angular velocity of a Lagrange top, factor by factor, and their constant phases."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from decimal import Decimal
 import numpy as np
 
 from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, pi
-from omegadot.reference_impl.closed_forms.elliptic import HyperbolicFrame
+from omegadot.reference_impl.closed_forms.elliptic import Clock, HyperbolicFrame
 from omegadot.reference_impl.closed_forms.lagrange_constants import Nutation, Top
 from omegadot.reference_impl.closed_forms.phase import Phase
 from omegadot.reference_impl.closed_forms.shifted_theta import ShiftedTheta
@@ -30,11 +30,6 @@ class Factor:
     rate: Decimal
     scale: Decimal
     opposite: bool
-
-    def mean_rate(self, nutation: Nutation) -> Decimal:
-        """Mean rate of its argument, rad/s."""
-        sign = -1 if self.opposite else 1
-        return self.rate - sign * nutation.rate * self.theta.winding
 
     def trajectory(self) -> Callable[[Times, Frame], Array]:
         """The factor as a function of time, up to a constant phase."""
@@ -109,3 +104,52 @@ def _factor(
     sign = -1 if k < 0 else 1
     rate = base + k / (2 * there) + sign * n.rate * (theta.slope - theta.gain)
     return Factor(theta, rate, square.sqrt(), k < 0)
+
+
+def phases_of(
+    top: Top, n: Nutation, clock: Clock, trajectories: list[Callable[[Times, Frame], Array]]
+) -> list[complex]:
+    """The constant phases of the three factors, from their values at time zero.
+
+    A factor that is nearly zero there has no definite phase: then it follows from the other two by
+    ``ω_1 + iω_2 = 2 β α* (i (b - a u) - u̇) / (1 - u²)``, taken where none of them vanishes.
+    """
+    zero = Times(np.zeros(1))
+    known = [complex(*map(float, pair)) for pair in (top.alpha, top.beta, top.across)]
+    found = [complex(c(zero, clock.read(zero))[0]) for c in trajectories]
+    greatest = [1.0, 1.0, float((n.strength * (n.height - n.roots[0])).sqrt())]
+    sizes = [abs(x) / size for x, size in zip(known, greatest, strict=True)]
+    phases = [x * y.conjugate() / (abs(x * y) or 1.0) for x, y in zip(known, found, strict=True)]
+    least = min(range(3), key=lambda i: sizes[i])
+    if sizes[least] > 0.01:
+        return phases
+    argument, bracket = _midway(n)
+    away = Times(np.array([float((argument - n.start) / n.rate)]))
+    alpha, beta, across = (complex(c(away, clock.read(away))[0]) for c in trajectories)
+    relation = across * (beta * alpha.conjugate() * bracket).conjugate()
+    relation /= abs(relation)
+    a, b, c = phases
+    if least == 0:
+        a = b * (c * relation).conjugate()
+    elif least == 1:
+        b = c * relation * a
+    else:
+        c = b * a.conjugate() * relation.conjugate()
+    return [a, b, c]
+
+
+def _midway(n: Nutation) -> tuple[Decimal, complex]:
+    """``u = K/2`` (on the separatrix ``u = 1``) and ``i (b - a cos θ) - d cos θ/dt`` there.
+
+    With ``sn²(K/2) = 1/(1+k')``, ``cn²(K/2) = k'/(1+k')``, ``dn²(K/2) = k'``, DLMF 22.5(i).
+    """
+    u1, u2, u3 = n.roots
+    k1 = n.modulus.m1.sqrt()
+    argument, sn2, cn2, dn2 = n.modulus.quarter / 2, 1 / (1 + k1), k1 / (1 + k1), k1
+    if n.modulus.m1 == 0:
+        grown = ONE.exp()
+        cn2 = (2 / (grown + 1 / grown)) ** 2
+        argument, sn2, dn2 = ONE, ONE - cn2, cn2
+    swing, span = u2 - u1, u3 - u1
+    speed = swing * (n.strength * span * sn2 * cn2 * dn2).sqrt()
+    return argument, complex(float(-speed), float(n.b - n.a * (u1 + swing * sn2)))

@@ -23,12 +23,11 @@ from omegadot.reference_impl.closed_forms.digits import (
     Row,
     apply,
     dot,
-    exact,
-    exact_matrix,
     many_digits,
 )
 from omegadot.reference_impl.closed_forms.elliptic import Clock
 from omegadot.reference_impl.closed_forms.free_rotation import uniform
+from omegadot.reference_impl.closed_forms.given import Given
 from omegadot.reference_impl.closed_forms.lagrange_constants import (
     Nutation,
     Top,
@@ -36,52 +35,39 @@ from omegadot.reference_impl.closed_forms.lagrange_constants import (
     top_of,
     triad,
 )
-from omegadot.reference_impl.closed_forms.lagrange_factors import factors_of
-from omegadot.reference_impl.closed_forms.lagrange_phases import phases_of
+from omegadot.reference_impl.closed_forms.lagrange_factors import factors_of, phases_of
 from omegadot.reference_impl.closed_forms.problem import (
-    IDENTITY,
-    UPRIGHT,
     MeasuredRun,
     Motion,
     Placed,
     Problem,
-    inertia_about,
-    lever_of,
     place,
     placing_of,
 )
 from omegadot.reference_impl.closed_forms.times import Times
-from omegadot.reference_impl.system import Array, State, System
+from omegadot.reference_impl.system import Array
 
 
-def lagrange_top_of(system: System, initial: State) -> Problem | None:
-    """The system as a Lagrange top, or None where it is none.
+def lagrange_top_of(given: Given) -> Problem | None:
+    """The body as a Lagrange top, or None where it is none.
 
     The lever from the pivot to the centre of mass must be an axis of symmetry of the inertia about
     the pivot, as the given numbers stand; a tensor that is symmetric up to rounding only is not.
     Numbers: transverse and axial moment about the pivot, mass, lever (3), gravity (3), angular
     velocity (3), orientation (4).
     """
-    body, load = system.body, system.load
-    torques = np.any(load.torque_body) or np.any(load.torque_world)
-    if load.pivot is None or torques or np.any(load.damping):
+    if not given.hangs or given.driven or given.damping:
         return None
-    with many_digits():
-        lever, mass = lever_of(body, load), exact(body.mass)
-        if not any(lever) or not np.any(load.gravity):
-            return None
-        about = inertia_about(exact_matrix(body.inertia), mass, lever)
-        axes = triad(lever)
-        turned = [apply(about, axis) for axis in axes]
-        rows = [[dot(axis, x) for x in turned] for axis in axes]
-        transverse, axial = rows[0][0], rows[2][2]
-        off = [rows[0][1], rows[1][0], rows[0][2], rows[1][2], rows[2][0], rows[2][1]]
-        off.append(rows[1][1] - transverse)
-        if max(abs(x) for x in off) > RESOLUTION * transverse:
-            return None
-        numbers = [transverse, axial, *mass, *lever, *exact(load.gravity)]
-        numbers += exact(initial.angular_velocity) + exact(initial.orientation)
-    return Problem("Lagrange top", numbers, _solve)
+    axes = triad(given.lever)
+    turned = [apply(given.inertia, axis) for axis in axes]
+    rows = [[dot(axis, x) for x in turned] for axis in axes]
+    transverse, axial = rows[0][0], rows[2][2]
+    off = [rows[0][1], rows[1][0], rows[0][2], rows[1][2], rows[2][0], rows[2][1]]
+    off.append(rows[1][1] - transverse)
+    if max(abs(x) for x in off) > RESOLUTION * transverse:
+        return None
+    numbers = [transverse, axial, given.mass, *given.lever, *given.gravity]
+    return Problem("Lagrange top", [*numbers, *given.omega, *given.orientation], _solve)
 
 
 def _solve(numbers: Row) -> Motion:
@@ -89,7 +75,7 @@ def _solve(numbers: Row) -> Motion:
         top = top_of(numbers[2:], numbers[0], numbers[1])
         nutation = nutation_of(top)
         if nutation is None:
-            return place(uniform(numbers[9:12]), IDENTITY, UPRIGHT, numbers[12:16])
+            return place(uniform(numbers[9:12]), numbers[12:])
         placing = placing_of(top.world, top.body)
         return Placed(_trajectory(top, nutation), np.array(top.axes, float), placing)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, Matrix, Row, dot, exact
 from omegadot.reference_impl.closed_forms.times import COLUMNS, Times, chunks
-from omegadot.reference_impl.system import Array, Body, Load
+from omegadot.reference_impl.system import Array
 
 # Times (n,) s to the attitude (n, 4) and the angular velocity (n, 3) rad/s, body frame.
 Motion: TypeAlias = Callable[[Array], tuple[Array, Array]]
@@ -20,9 +20,8 @@ Motion: TypeAlias = Callable[[Array], tuple[Array, Array]]
 MeasuredRun: TypeAlias = Callable[[Times, Array, Array], None]
 
 _LARGE_PAGE = 2**21  # bytes, on Linux
-_CHUNK = (
-    15 * COLUMNS
-)  # times worked at once: intermediate arrays stay in the cache and below 128 KB
+# Times worked at once: intermediate arrays stay in the cache and below 128 KB.
+_CHUNK = 15 * COLUMNS
 
 
 @dataclass(frozen=True)
@@ -77,11 +76,20 @@ def _block(size: int) -> Array:
     return room[first : first + size]
 
 
-def place(trajectory: MeasuredRun, turning: Matrix, frame: Row, orientation: Row) -> Placed:
+IDENTITY: Matrix = [[ONE if i == j else ZERO for j in range(3)] for i in range(3)]
+_UPRIGHT: Row = [ONE, ZERO, ZERO, ZERO]
+
+
+def place(
+    trajectory: MeasuredRun,
+    orientation: Row,
+    turning: Matrix = IDENTITY,
+    frame: Row = _UPRIGHT,
+) -> Placed:
     """The motion with the given attitude at time zero.
 
-    frame: the quaternion of frame-from-body.  Attitudes are ``W q(t) frame``, with the constant W
-    such that the first one is ``orientation``.
+    frame: the quaternion of frame-from-body, whose axes are the body's if not given.  Attitudes are
+    ``W q(t) frame``, with the constant W such that the first one is ``orientation``.
     """
     q = np.empty((1, 4)).T
     trajectory(Times(np.zeros(1)), np.empty((3, 1)), q)
@@ -96,10 +104,6 @@ def placing_of(world: Row, frame: Row) -> Array:
     a, b, c, d = world
     units = [a, b, c, d], [-b, a, d, -c], [-c, -d, a, b], [-d, c, -b, a]
     return np.array([product(unit, frame) for unit in units], float)
-
-
-IDENTITY: Matrix = [[ONE if i == j else ZERO for j in range(3)] for i in range(3)]
-UPRIGHT: Row = [ONE, ZERO, ZERO, ZERO]
 
 
 def product(a: Row, b: Row) -> Row:
@@ -132,22 +136,3 @@ def quaternion_of(axes: Matrix) -> Row:
 
 
 _SIGNS = ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))
-
-
-def lever_of(body: Body, load: Load) -> Row:
-    """From the pivot to the centre of mass, body axes; zero for a free body."""
-    center = exact(body.center_of_mass)
-    pivot = center if load.pivot is None else exact(load.pivot)
-    return [a - b for a, b in zip(center, pivot, strict=True)]
-
-
-def inertia_about(inertia: Matrix, mass: Row, lever: Row) -> Matrix:
-    """``I + m (d·d 1 - d dᵀ)``: about the point from which the centre of mass is at d."""
-    square = dot(lever, lever)
-    return [
-        [
-            inertia[i][j] + mass[0] * ((square if i == j else 0) - lever[i] * lever[j])
-            for j in range(3)
-        ]
-        for i in range(3)
-    ]

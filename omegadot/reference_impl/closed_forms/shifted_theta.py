@@ -25,14 +25,12 @@ class ShiftedTheta:
     value: complex, in a frame.  slope: ``d arg Θ / du`` at u = 0.  gain: the
     mean of ``d arg Θ / du`` over a period.  skew: ``arg Θ`` is ``gain u`` and a periodic
     part, which is ``arg value - 2π skew turn`` with the frame's turn.
-    winding: the mean of what ``arg value`` does beyond the gain and a periodic part.
     """
 
     value: Callable[[Frame], Array]
     slope: Decimal
     gain: Decimal
     skew: float
-    winding: Decimal = ZERO
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,7 @@ def _circular(modulus: Modulus, depth: Decimal, kind: int) -> ShiftedTheta:
         return theta
 
     half = pi() / (2 * modulus.quarter)
-    return ShiftedTheta(value, slope * half, ZERO, 0.0, -half)
+    return ShiftedTheta(value, slope * half, ZERO, 0.0)
 
 
 def _hyperbolic(modulus: Modulus, depth: Decimal, kind: int) -> ShiftedTheta:

@@ -1,8 +1,11 @@
-"""Principal moments and axes of an inertia tensor, to eighty digits."""
+"""A body, its loads and its start as exact numbers, and its principal axes to eighty digits."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from decimal import Decimal
+
+import numpy as np
 
 from omegadot.reference_impl.closed_forms.digits import (
     ONE,
@@ -11,7 +14,56 @@ from omegadot.reference_impl.closed_forms.digits import (
     ZERO,
     Matrix,
     Row,
+    dot,
+    exact,
+    exact_matrix,
 )
+from omegadot.reference_impl.system import State, System
+
+
+@dataclass(frozen=True)
+class Given:
+    """A body, its loads and, if given, its start in the numbers that their doubles are.
+
+    lever: from the pivot to the centre of mass, body axes; zero for a free body.  inertia:
+    ``I + m (d·d 1 - d dᵀ)`` with the lever d: about the pivot, or a free body's centre of mass.
+    """
+
+    mass: Decimal
+    lever: Row
+    inertia: Matrix
+    damping: Decimal
+    gravity: Row
+    torque_body: Row
+    torque_world: Row
+    orientation: Row
+    omega: Row
+
+    @classmethod
+    def of(cls, system: System, initial: State | None = None) -> Given:
+        """In the decimal context at hand; of one body."""
+        body, load = system.body, system.load
+        (mass,), center, (damping,) = map(exact, (body.mass, body.center_of_mass, load.damping))
+        pivot = center if load.pivot is None else exact(load.pivot)
+        d = [a - b for a, b in zip(center, pivot, strict=True)]
+        square, inertia = dot(d, d), exact_matrix(body.inertia)
+        for i in range(3):
+            for j in range(3):
+                inertia[i][j] += mass * ((square if i == j else 0) - d[i] * d[j])
+        none = np.empty(0)
+        start = (initial.orientation, initial.angular_velocity) if initial else (none, none)
+        vectors = (load.gravity, load.torque_body, load.torque_world, *start)
+        return cls(mass, d, inertia, damping, *map(exact, vectors))
+
+    @property
+    def driven(self) -> bool:
+        """Whether an applied torque acts."""
+        return any(self.torque_body) or any(self.torque_world)
+
+    @property
+    def hangs(self) -> bool:
+        """Whether gravity has a moment about the point that stays."""
+        return any(self.lever) and any(self.gravity)
 
 
 def principal_axes(inertia: Matrix) -> tuple[Row, Matrix]:
