@@ -213,12 +213,12 @@ ATTITUDE: dict[str, Any] = {
 }
 WORLD: dict[str, Any] = {**ATTITUDE, "retract": retract_in_world}
 SPATIAL: dict[str, Any] = {
+    **ATTITUDE,
     "retract": retract_spatial,
     "rate": _unknown,
     "rate_to_second_order": spatial_rate_to_second_order,
     "cayley": spatial_cayley,
     "coordinate_rate": spatial_coordinate_rate,
-    "normalize": normalize,
-    "spin": slice(-3, None),
+    "turned_by": None,
 }
 """Fields of a `Motion` of one body: on a pivot, in the world, and in body axes."""

@@ -97,6 +97,11 @@ class CircularFrame:
         """The factors that turn their sign with u, at the half period, and their product."""
         return self.sine, self.cosine, self.sine * self.cosine
 
+    @property
+    def sides(self) -> tuple[Array, Array]:
+        """The factors without the sign of half periods, which a skew accounts for."""
+        return self.sine, self.cosine
+
 
 @dataclass(frozen=True)
 class HyperbolicFrame:
@@ -121,6 +126,11 @@ class HyperbolicFrame:
     def odd_even(self) -> tuple[Array, Array, Array]:
         """The factors that turn their sign with u, at the half period, and their product."""
         return self.side * self.sign, self.sign, self.side
+
+    @property
+    def sides(self) -> tuple[Array, Array]:
+        """The factors without the sign of half periods, which a skew accounts for."""
+        return self.side, np.ones_like(self.side)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from omegadot.reference_impl.closed_forms.euler_poinsot import Constants
 from omegadot.reference_impl.closed_forms.phase import Phase
 from omegadot.reference_impl.closed_forms.problem import MeasuredRun
 from omegadot.reference_impl.closed_forms.shifted_theta import (
-    ThetaRows,
+    ShiftedTheta,
     theta4_of_double_lattice,
 )
 from omegadot.reference_impl.closed_forms.theta import jacobi_rows, scaled
@@ -24,7 +24,7 @@ from omegadot.reference_impl.closed_forms.times import Times
 from omegadot.reference_impl.system import Array
 
 
-def mean_rate(c: Constants, theta: ThetaRows) -> Decimal:
+def mean_rate(c: Constants, theta: ShiftedTheta) -> Decimal:
     """Mean rate, rad/s, of the angle ψ about the momentum.
 
     ``dψ/dt = L / I_c ± rate G``, ``G = √((1-κ²)(1-m1 κ²)) / (κ (1 + κ dn u))``. G has the residues
@@ -36,7 +36,7 @@ def mean_rate(c: Constants, theta: ThetaRows) -> Decimal:
     return c.momentum / c.inertia[2] + c.turn * c.rate * constant
 
 
-def encircling_theta(c: Constants) -> ThetaRows:
+def encircling_theta(c: Constants) -> ShiftedTheta:
     """The theta function of the attitude: its zeros are the points where ``dn u = -1/κ``.
 
     With ``dn u = -1/κ`` at ``i (K' + d)``: ``sn(d, m1) = κ``, so ``d = κ R_F(1-κ², 1-m1 κ², 1)``.

@@ -12,12 +12,13 @@ from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, pi
 from omegadot.reference_impl.closed_forms.elliptic import Clock, HyperbolicFrame
 from omegadot.reference_impl.closed_forms.lagrange_constants import Nutation, Top
 from omegadot.reference_impl.closed_forms.phase import Phase
-from omegadot.reference_impl.closed_forms.shifted_theta import ShiftedTheta
 from omegadot.reference_impl.closed_forms.shifted_theta_single import (
+    Quotient,
     theta1_quotient,
     theta2_quotient,
 )
-from omegadot.reference_impl.closed_forms.theta import Frame
+from omegadot.reference_impl.closed_forms.theta import Frame, scaled
+from omegadot.reference_impl.closed_forms.theta_series import Series
 from omegadot.reference_impl.closed_forms.times import Times
 from omegadot.reference_impl.system import Array
 
@@ -26,23 +27,32 @@ from omegadot.reference_impl.system import Array
 class Factor:
     """One of α, β and ω_1 + i ω_2: ``scale exp(i rate t) Θ`` with Θ or Θ* as opposite states."""
 
-    theta: ShiftedTheta
+    theta: Quotient
     rate: Decimal
     scale: Decimal
     opposite: bool
 
     def trajectory(self) -> Callable[[Times, Frame], Array]:
         """The factor as a function of time, up to a constant phase."""
-        angle = Phase.of(self.rate / (2 * pi()), ZERO)
-        skew = -self.theta.skew if self.opposite else self.theta.skew
-        scale = float(self.scale)
+        angle, theta = Phase.of(self.rate / (2 * pi()), ZERO), self.theta
+        skew = -theta.skew if self.opposite else theta.skew
+        series = Series.of(
+            [
+                scaled(theta.real, self.scale),
+                scaled(theta.imaginary, self.scale if self.opposite else -self.scale),
+                theta.below,
+            ]
+        )
 
         def value(times: Times, frame: Frame) -> Array:
             more = skew * frame.turn if isinstance(frame, HyperbolicFrame) else None
             spin = angle.circle(times, more)
-            theta = self.theta.value(frame)
-            spin *= theta if self.opposite else np.conjugate(theta, out=theta)
-            spin *= scale
+            real, imaginary, divisor = series(frame)
+            first, second = frame.sides if theta.kind == 1 else frame.sides[::-1]
+            factor = np.empty(spin.shape, complex)
+            np.divide(real * first, divisor, out=factor.real)
+            np.divide(imaginary * second, divisor, out=factor.imag)
+            spin *= factor
             return spin
 
         return value
@@ -81,7 +91,7 @@ def factors_of(top: Top, n: Nutation) -> tuple[Factor, Factor, Factor]:
     return alpha, beta, across
 
 
-def _theta2(n: Nutation, top: Decimal) -> ShiftedTheta:
+def _theta2(n: Nutation, top: Decimal) -> Quotient:
     """The theta quotient whose square is ``(top - u)/(top - u_1)``, u_2 <= top <= u_3."""
     u1, u2, u3 = n.roots
     if u3 == u2:
@@ -94,7 +104,7 @@ def _theta2(n: Nutation, top: Decimal) -> ShiftedTheta:
 
 
 def _factor(
-    n: Nutation, theta: ShiftedTheta, base: Decimal, k: Decimal, there: Decimal, square: Decimal
+    n: Nutation, theta: Quotient, base: Decimal, k: Decimal, there: Decimal, square: Decimal
 ) -> Factor:
     """The factor whose argument changes by ``base + k / 2D``, D being ``there`` at the reference.
 

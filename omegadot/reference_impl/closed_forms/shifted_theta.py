@@ -8,37 +8,22 @@ body.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
 
 from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, Row, multiples, pi, power
 from omegadot.reference_impl.closed_forms.elliptic import Modulus
-from omegadot.reference_impl.closed_forms.theta import Frame, cosines, sines, terms
-from omegadot.reference_impl.system import Array
+from omegadot.reference_impl.closed_forms.theta import cosines, sines, terms
 
 
 @dataclass(frozen=True)
 class ShiftedTheta:
-    """``Θ(u) = θ4(z + iη)`` of nome q², up to a positive factor, with u on a clock.
+    """``Θ(u) = θ(z + iη)``, up to a positive factor, as series in a clock's frame.
 
-    value: complex, in a frame.  slope: ``d arg Θ / du`` at u = 0.  gain: the
-    mean of ``d arg Θ / du`` over a period.  skew: ``arg Θ`` is ``gain u`` and a periodic
-    part, which is ``arg value - 2π skew turn`` with the frame's turn.
-    """
-
-    value: Callable[[Frame], Array]
-    slope: Decimal
-    gain: Decimal
-    skew: float
-
-
-@dataclass(frozen=True)
-class ThetaRows:
-    """``θ4(z + iη)`` of nome q², up to a positive factor, as two series in a clock's frame.
-
-    real, imaginary: rows of a ``Series``; the imaginary one lacks the frame's third factor.
-    start: the value at u = 0, real.  slope, gain, skew: as above.
+    real, imaginary: rows of a ``Series``, which lack factors of the frame.  start: the value at the
+    reference, u = 0 if not said otherwise.  slope: ``d arg Θ / du`` there.  gain: the mean of
+    ``d arg Θ / du`` over a period.  skew: ``arg Θ`` is ``gain u`` and a periodic part, which is the
+    argument of the series less ``2π skew turn`` with the frame's turn.
     """
 
     real: tuple[Row, Row]
@@ -49,15 +34,16 @@ class ThetaRows:
     skew: float
 
 
-def theta4_of_double_lattice(modulus: Modulus, depth: Decimal) -> ThetaRows:
-    """The theta function whose zeros are at ``u = ± i (K' + depth)`` modulo 2K and 4iK'.
+def theta4_of_double_lattice(modulus: Modulus, depth: Decimal) -> ShiftedTheta:
+    """``θ4(z + iη)`` of nome q², whose zeros are at ``u = ± i (K' + depth)`` modulo 2K and 4iK'.
 
-    depth: from 0 to K'.  Its nome is q², and q1^(1/2) after Jacobi's transformation.
+    depth: from 0 to K'.  After Jacobi's transformation its nome is q1^(1/2). The imaginary row
+    lacks the frame's third factor, and the start is real.
     """
     return _hyperbolic(modulus, depth) if modulus.hyperbolic else _circular(modulus, depth)
 
 
-def _circular(modulus: Modulus, depth: Decimal) -> ThetaRows:
+def _circular(modulus: Modulus, depth: Decimal) -> ShiftedTheta:
     """``1 + Σ (-1)^n Q^(n²) 2 cos 2n(z + iη)``, ``Q = q²``, ``η = π (K' - depth) / 2K``."""
     q = modulus.nome
     grown = (pi() * depth / modulus.quarter).exp()
@@ -68,7 +54,7 @@ def _circular(modulus: Modulus, depth: Decimal) -> ThetaRows:
         both.append(factor * (growing**n + decaying**n))
         difference.append(-factor * (growing**n - decaying**n))
     rise = sum((2 * n * c for n, c in enumerate(difference)), ZERO) / sum(both, ZERO)
-    return ThetaRows(
+    return ShiftedTheta(
         (cosines(both), [ZERO]),
         (sines(difference), [ZERO]),
         sum(both, ZERO),
@@ -78,7 +64,7 @@ def _circular(modulus: Modulus, depth: Decimal) -> ThetaRows:
     )
 
 
-def _hyperbolic(modulus: Modulus, depth: Decimal) -> ThetaRows:
+def _hyperbolic(modulus: Modulus, depth: Decimal) -> ShiftedTheta:
     """``2 exp(-|v|/2) Σ p^(n²+n) cos (2n+1)w``, ``p = √q1``, ``w = η - iv/2``."""
     p = modulus.complementary_nome.sqrt()
     k = modulus.complementary
@@ -93,7 +79,7 @@ def _hyperbolic(modulus: Modulus, depth: Decimal) -> ThetaRows:
         imaginary_near.append(-oblong * sine)
         rise += (2 * n + 1) * oblong * sine
         size += oblong * cosine
-    return ThetaRows(
+    return ShiftedTheta(
         (real_far, real_near),
         (imaginary_far, imaginary_near),
         2 * size,

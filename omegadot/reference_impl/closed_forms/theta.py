@@ -8,14 +8,11 @@ out with many digits and rounded once.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from itertools import zip_longest
 from operator import mul
 from typing import TypeAlias
-
-import numpy as np
 
 from omegadot.reference_impl.closed_forms.digits import ONE, ZERO, Row, power
 from omegadot.reference_impl.closed_forms.elliptic import (
@@ -23,41 +20,11 @@ from omegadot.reference_impl.closed_forms.elliptic import (
     HyperbolicFrame,
     Modulus,
 )
-from omegadot.reference_impl.system import Array
 
 Frame: TypeAlias = CircularFrame | HyperbolicFrame
 
 TERMS = 9  # the ninth term of every series here is below 1e-20 of the first
-_NEGLIGIBLE = Decimal("1e-18")
 _LEAST = Decimal("1e-24")
-
-
-@dataclass(frozen=True)
-class Polynomial:
-    """``Σ c_k x^k``, evaluated by Horner's rule."""
-
-    coefficients: tuple[float, ...]
-
-    @classmethod
-    def of(cls, coefficients: Sequence[Decimal]) -> Polynomial:
-        """Rounded to double; trailing terms that no double can feel are left out."""
-        kept = list(coefficients)
-        size = max(abs(c) for c in kept)
-        while len(kept) > 1 and abs(kept[-1]) <= _NEGLIGIBLE * size:
-            kept.pop()
-        return cls(tuple(float(c) for c in kept))
-
-    def __call__(self, x: Array) -> Array:
-        """The value at x, any shape."""
-        highest, *lower = reversed(self.coefficients)
-        if not lower:
-            return np.full_like(x, highest)
-        value = highest * x
-        value += lower[0]
-        for coefficient in lower[1:]:
-            value *= x
-            value += coefficient
-        return value
 
 
 def jacobi_rows(modulus: Modulus, sn: Decimal, cn: Decimal, dn: Decimal) -> list[tuple[Row, Row]]:
@@ -91,7 +58,7 @@ def _circular_jacobi(q: Decimal, sn: Decimal, cn: Decimal, dn: Decimal) -> list[
         (cosines(even), dn / theta3),
         (cosines(even4), 1 / theta4),
     ]
-    return [(_times(row, factor), [ZERO]) for row, factor in rows]
+    return [(times(row, factor), [ZERO]) for row, factor in rows]
 
 
 def _hyperbolic_jacobi(q: Decimal, sn: Decimal, cn: Decimal, dn: Decimal) -> list[tuple[Row, Row]]:
@@ -115,10 +82,10 @@ def _hyperbolic_jacobi(q: Decimal, sn: Decimal, cn: Decimal, dn: Decimal) -> lis
     crossed = [-x for x in _alternating(oblong)]
     lower = _alternating(shorter)
     return [
-        (_spread(_times(_alternating(square), sn), 0), _spread(_times(crossed, sn), 2)),
-        (_spread(_times(lower, cn * root), -1), _spread(_times(_alternating(square), cn), 1)),
-        (_spread(_times(shorter, dn * root), -1), _spread(_times(square, dn), 1)),
-        (_spread(_times(square, one), 0), _spread(_times(oblong, one), 2)),
+        (spread(times(_alternating(square), sn), 0), spread(times(crossed, sn), 2)),
+        (spread(times(lower, cn * root), -1), spread(times(_alternating(square), cn), 1)),
+        (spread(times(shorter, dn * root), -1), spread(times(square, dn), 1)),
+        (spread(times(square, one), 0), spread(times(oblong, one), 2)),
     ]
 
 
@@ -128,14 +95,15 @@ def _alternating(row: Row) -> Row:
 
 def scaled(rows: tuple[Row, Row], factor: Decimal) -> tuple[Row, Row]:
     """Both parts of a series times a factor."""
-    return _times(rows[0], factor), _times(rows[1], factor)
+    return times(rows[0], factor), times(rows[1], factor)
 
 
-def _times(row: Row, factor: Decimal) -> Row:
+def times(row: Row, factor: Decimal) -> Row:
+    """The row times a factor."""
     return [factor * x for x in row]
 
 
-def _spread(row: Row, lowest: int) -> Row:
+def spread(row: Row, lowest: int) -> Row:
     """Coefficients of ``x^(2n + lowest)`` as those of all powers of x."""
     spread = [ZERO] * (2 * len(row) + max(lowest, 0))
     for n, x in enumerate(row):
