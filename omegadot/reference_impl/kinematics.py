@@ -53,9 +53,5 @@ def place_on_pivot(system: System, state: State) -> State:
     """
     if system.load.pivot is None:
         return state
-    r = lever(system)
     origin = np.zeros_like(state.angular_velocity)
-    pivoted = replace(state, position=origin, linear_velocity=origin)
-    return replace(
-        state, position=point_position(pivoted, r), linear_velocity=point_velocity(pivoted, r)
-    )
+    return at_point(replace(state, position=origin, linear_velocity=origin), lever(system))

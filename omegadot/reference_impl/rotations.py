@@ -103,9 +103,7 @@ def turn_in_world(q: Array, w: Array, t: Array | float) -> Array:
 
 def rotation_between(q1: Array, q2: Array) -> Array:
     """The rotation vector r, (..., 3) rad, with ``q2 = q1 exp(r)`` up to sign; ``|r| <= pi``."""
-    relative = quaternion_product(conjugate(q1), q2)
-    scalar, vector = relative[..., :1], relative[..., 1:]
-    sine = np.sqrt(np.add.reduce(vector * vector, -1, keepdims=True))
+    scalar, vector, sine = _relative(q1, q2)
     angle = 2 * np.arctan2(sine, np.abs(scalar))
     ratio = np.where(sine > 0, angle / np.maximum(sine, 1e-36), 2)
     between: Array = np.where(scalar < 0, -ratio, ratio) * vector
@@ -117,8 +115,13 @@ def attitude_angle(q1: Array, q2: Array) -> Array:
 
     Unlike ``2 arccos(q1 . q2)`` it resolves angles down to rounding.
     """
+    scalar, _, sine = _relative(q1, q2)
+    angle: Array = 2 * np.arctan2(sine, np.abs(scalar))[..., 0]
+    return angle
+
+
+def _relative(q1: Array, q2: Array) -> tuple[Array, Array, Array]:
+    """Scalar s (..., 1), vector v (..., 3) and |v| (..., 1) of ``q1* q2``."""
     relative = quaternion_product(conjugate(q1), q2)
     vector = relative[..., 1:]
-    sine = np.sqrt(np.add.reduce(vector * vector, -1))
-    angle: Array = 2 * np.arctan2(sine, np.abs(relative[..., 0]))
-    return angle
+    return relative[..., :1], vector, np.sqrt(np.add.reduce(vector * vector, -1, keepdims=True))

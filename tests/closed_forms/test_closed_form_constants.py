@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from closed_form_errors import EPS
 
-from omegadot.reference_impl.closed_forms.arcs import unit_circle
 from omegadot.reference_impl.closed_forms.digits import (
     agm,
     carlson_rf,
@@ -21,7 +20,7 @@ from omegadot.reference_impl.closed_forms.digits import (
 )
 from omegadot.reference_impl.closed_forms.elliptic import Clock, Modulus
 from omegadot.reference_impl.closed_forms.given import principal_axes
-from omegadot.reference_impl.closed_forms.phase import Phase
+from omegadot.reference_impl.closed_forms.phase import Phase, unit_circle
 from omegadot.reference_impl.closed_forms.theta import jacobi_rows
 from omegadot.reference_impl.closed_forms.theta_series import Series
 from omegadot.reference_impl.closed_forms.times import Times

@@ -8,8 +8,8 @@ separatrix a body lies. Only the motion in time runs in double precision.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from decimal import (
     MAX_EMAX,
     MIN_EMIN,
@@ -47,19 +47,14 @@ _CONTEXT = Context(
 )
 
 
-@contextmanager
-def many_digits() -> Iterator[None]:
+def many_digits() -> AbstractContextManager[Context]:
     """Decimal arithmetic in here has eighty digits and no practical limit of the exponent."""
-    with localcontext(_CONTEXT):
-        yield
+    return localcontext(_CONTEXT)
 
 
-@contextmanager
-def fewer_digits() -> Iterator[None]:
+def fewer_digits() -> AbstractContextManager[Context]:
     """Thirty-two digits, for what follows without cancellation from amplitudes and moduli."""
-    with localcontext(_CONTEXT) as context:
-        context.prec = _FEWER
-        yield
+    return localcontext(_CONTEXT, prec=_FEWER)
 
 
 def least(share: int) -> Decimal:

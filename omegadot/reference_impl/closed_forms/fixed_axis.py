@@ -6,7 +6,6 @@ from math import factorial
 
 import numpy as np
 
-from omegadot.reference_impl.closed_forms.arcs import unit_circle
 from omegadot.reference_impl.closed_forms.digits import (
     RESOLUTION,
     ZERO,
@@ -18,6 +17,7 @@ from omegadot.reference_impl.closed_forms.digits import (
     many_digits,
 )
 from omegadot.reference_impl.closed_forms.given import Given
+from omegadot.reference_impl.closed_forms.phase import unit_circle
 from omegadot.reference_impl.closed_forms.problem import (
     IDENTITY,
     MeasuredRun,
