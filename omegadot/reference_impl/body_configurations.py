@@ -13,7 +13,6 @@ from omegadot.reference_impl.components import (
     Number,
     Numbers,
     arctan,
-    cos_sin,
     cross3,
     half_turn,
     in_components,
@@ -56,9 +55,9 @@ def retract_spatial(q: Numbers, u: Numbers) -> Numbers:
     A Mathematical Introduction to Robotic Manipulation (1994), (2.36).
     """
     x, y, z, rx, ry, rz = u
-    angle = length(rx * rx + ry * ry + rz * rz)
-    c, s = cos_sin(0.5 * angle)
-    a, b = 2 * s * s / (angle * angle), (angle - 2 * s * c) / (angle * angle * angle)
+    square = rx * rx + ry * ry + rz * rz + 1e-30  # so that zero needs no branch
+    c, s = half_turn(square)
+    a, b = 2 * s * s, (1 - 2 * s * c) / square
     tx, ty, tz = once = cross3(u[3:], u[:3])
     nx, ny, nz = cross3(u[3:], once)
     way = x + a * tx + b * nx, y + a * ty + b * ny, z + a * tz + b * nz
@@ -124,9 +123,9 @@ def rate(u: Numbers, v: Numbers) -> Numbers:
     rounding, which leaves no mark: it multiplies |r|².
     """
     rx, ry, rz = u[-3:]
-    half = 0.5 * length(rx * rx + ry * ry + rz * rz + 1e-30)
-    cosine, sine = cos_sin(half)
-    return _rate_with((1 - half * cosine / sine) / (4 * half * half), u, v)
+    square = rx * rx + ry * ry + rz * rz + 1e-30
+    cosine, sine_by_angle = half_turn(square)
+    return _rate_with((1 - 0.5 * cosine / sine_by_angle) / square, u, v)
 
 
 @one_in_components

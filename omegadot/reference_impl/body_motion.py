@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -30,14 +31,12 @@ def body_motion(system: System, coordinates: Coordinates = "com-world") -> Motio
     """One body under its loads, in these coordinates."""
     if system.load.pivot is not None:
         return attitude_motion(system)
-    return _free(_free_acceleration(system, coordinates), coordinates)
+    return _motion(_free_acceleration(system, coordinates), _fields_in(coordinates))
 
 
 def attitude_motion(system: System) -> Motion:
     """The turning of a body alone: q is the quaternion, v is ω. A pivoted body has no more."""
-    acceleration = in_components(_angular(system))
-    jacobian = partial(_jacobian_by_omega, acceleration)
-    return Motion(acceleration=acceleration, jacobian=jacobian, **ATTITUDE)
+    return _motion(in_components(_angular(system)), ATTITUDE)
 
 
 def motion_over(system: System, coordinates: Coordinates, acceleration: AccelerationOf) -> Motion:
@@ -50,17 +49,16 @@ def motion_over(system: System, coordinates: Coordinates, acceleration: Accelera
         state = from_coordinates(system, q, v, coordinates)
         return acceleration_in(system, state, acceleration(state), coordinates)
 
-    if system.load.pivot is not None:
-        return Motion(acceleration=rate, jacobian=partial(_jacobian_by_omega, rate), **ATTITUDE)
-    return _free(rate, coordinates)
+    return _motion(rate, ATTITUDE if system.load.pivot is not None else _fields_in(coordinates))
 
 
-def _free(acceleration: Velocity, coordinates: Coordinates) -> Motion:
-    if coordinates == "body-spatial":
-        jacobian = partial(_jacobian_by_all, acceleration)
-        return Motion(acceleration=acceleration, jacobian=jacobian, **SPATIAL)
-    jacobian = partial(_jacobian_by_omega, acceleration)
-    return Motion(acceleration=acceleration, jacobian=jacobian, **WORLD)
+def _fields_in(coordinates: Coordinates) -> dict[str, Any]:
+    return SPATIAL if coordinates == "body-spatial" else WORLD
+
+
+def _motion(acceleration: Velocity, fields: dict[str, Any]) -> Motion:
+    jacobian = _jacobian_by_all if fields is SPATIAL else _jacobian_by_omega
+    return Motion(acceleration=acceleration, jacobian=partial(jacobian, acceleration), **fields)
 
 
 def _jacobian_by_omega(

@@ -113,16 +113,6 @@ def half_turn(square: Number) -> tuple[Number, Number]:
     return np.cos(half), np.sin(half) / angle
 
 
-def cos_sin(angle: Number) -> tuple[Number, Number]:
-    """Cosine and sine; NaN of what is not finite."""
-    if type(angle) is not float:
-        return np.cos(angle), np.sin(angle)
-    try:
-        return cos(angle), sin(angle)
-    except ValueError:
-        return nan, nan
-
-
 def arctan(x: Number) -> Number:
     """``atan(x)``."""
     return atan(x) if type(x) is float else np.arctan(x)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
@@ -15,12 +14,8 @@ from omegadot.reference_impl.system import Array, System
 IN_WORLD: tuple[Coordinates, ...] = ("com-world", "origin-world")
 
 
-class Step(Protocol):
-    """How a scheme is called."""
-
-    def __call__(self, motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
-        """The q and v after one step of h s, a float, or (..., 1) with a step a lane."""
-        ...
+# The q and v after one step of h s, a float, or (..., 1) with a step a lane.
+Step = Callable[[Motion, Array, Array, float | Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
