@@ -138,6 +138,6 @@ def test_only_schemes_step() -> None:
             called = node.func if isinstance(node, ast.Call) else None
             name = getattr(called, "attr", getattr(called, "id", ""))
             moves = isinstance(called, ast.Attribute) and name in moving
-            if moves or name in {"Scheme", "runge_kutta_4", "step_in_exponential"}:
+            if moves or name in {"Scheme", "kutta", "step_coupled", "step_in_exponential"}:
                 found.append(f"{where}:{getattr(node, 'lineno', 0)} {name}")
     assert found == []

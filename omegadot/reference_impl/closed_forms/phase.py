@@ -111,14 +111,14 @@ class Phase:
         """x, not reduced."""
         small = self._lower(times)
         small += self.start[1]
-        product = times.high * self.rate[0]
+        product = times.halves[0] * self.rate[0]
         product += self.start[0]
         product += small
         return product
 
     def _lower(self, times: Times, scale: float = 1.0) -> Array:
         """``scale rate t`` but for its leading product; scale: a power of two."""
-        small = times.low * (scale * self.rate[0])
+        small = times.halves[1] * (scale * self.rate[0])
         small += times.value * (scale * self.rate[1])
         return small
 
@@ -134,7 +134,7 @@ class Phase:
             small += ARCS * more
         if start[1]:
             small += start[1]
-        product = times.high * (ARCS * self.rate[0])
+        product = times.halves[0] * (ARCS * self.rate[0])
         nearest = product + small
         np.rint(nearest, out=nearest)
         product -= nearest  # exact: both are multiples of the product's last bit
@@ -160,7 +160,7 @@ class Phase:
         """``(n, r)`` with ``x = n + r``, n whole and |r| <= 1/2."""
         small = self._lower(times)
         small += self.start[1]
-        product = times.high * self.rate[0]
+        product = times.halves[0] * self.rate[0]
         whole = product + self.start[0]
         whole += small
         np.rint(whole, out=whole)

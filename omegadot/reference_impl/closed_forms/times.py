@@ -8,15 +8,14 @@ from functools import cached_property
 
 import numpy as np
 
-from omegadot.reference_impl.double_words import SPLITTER
+from omegadot.reference_impl.double_words import split
 from omegadot.reference_impl.system import Array
 
 COLUMNS = 512
 _FEWEST = 8  # rows; with fewer of them a grid saves nothing
 _EVEN = 2.0**-32  # of the span of a row: others are not worth the trouble
-_WITHIN = (
-    1 - 2.0**-10
-)  # of a row's first time: its span, so that no time in it is beyond twice that
+# Of a row's first time: its span, so that no time in it is beyond twice that.
+_WITHIN = 1 - 2.0**-10
 
 
 @dataclass(frozen=True)
@@ -27,18 +26,9 @@ class Times:
     grid: Grid | None = None
 
     @cached_property
-    def high(self) -> Array:
-        """The leading 26 bits (T. J. Dekker, Numer. Math. 18 (1971) 224-242, section 5)."""
-        scaled = SPLITTER * self.value
-        high: Array = scaled - self.value
-        np.subtract(scaled, high, out=high)
-        return high
-
-    @cached_property
-    def low(self) -> Array:
-        """What the leading bits leave, exactly."""
-        low: Array = self.value - self.high
-        return low
+    def halves(self) -> tuple[Array, Array]:
+        """The leading 26 bits, and what they leave, exactly."""
+        return split(self.value)
 
 
 @dataclass(frozen=True)
