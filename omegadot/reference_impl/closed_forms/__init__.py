@@ -3,6 +3,10 @@
 ``closed_form_of(system, initial)`` gives the motion as a function of time, or None where no closed
 form is known; ``floor(system, initial, times)`` is how far a perfect answer in double precision
 may be off. Inputs are taken as exact (the orientation after normalisation); times may be negative.
+
+A symmetric body that friction slows down is left to the series: its ω is elementary, but its
+Cayley-Klein parameters obey a biconfluent Heun equation where it is a flat disc (DLMF 31.12.3),
+and in general an equation that no standard function solves.
 """
 
 from __future__ import annotations
