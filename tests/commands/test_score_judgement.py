@@ -14,7 +14,8 @@ from score_line import (
     write_brick,
 )
 
-from omegadot.reports import draw_page, read_record
+from omegadot.reports.page.page import draw_page
+from omegadot.reports.record.record import read_record
 from omegadot.reports.summary.summary import summarise
 
 TIMES = 0.1 * np.arange(301)

@@ -4,7 +4,7 @@ import pytest
 from chromium import Chromium
 from synthetic_record import build, scenario_entry
 
-from omegadot.reports import draw_page
+from omegadot.reports.page.page import draw_page
 
 HOSTILE = "<script>document.title='broken'</script><img src=x onerror=\"document.title='broken'\">"
 CHARTS = 14

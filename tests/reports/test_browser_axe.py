@@ -5,7 +5,7 @@ from axe_check import LOOKS, VIOLATIONS, axe
 from chromium import Chromium
 from synthetic_record import build, metric, task, with_metrics
 
-from omegadot.reports import draw_page
+from omegadot.reports.page.page import draw_page
 
 CHARTS = 7
 

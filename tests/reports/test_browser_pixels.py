@@ -6,7 +6,7 @@ from chromium import Chromium
 from synthetic_record import build
 
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
-from omegadot.reports import draw_page
+from omegadot.reports.page.page import draw_page
 from omegadot.reports.page.templating import asset
 from omegadot.reports.page.view_3d.solids import Solid, solid_of
 from omegadot.scenarios.parts import SHAPES

@@ -16,7 +16,7 @@ from omegadot.reference_impl.rotations import (
     rotate,
     rotation_between,
 )
-from omegadot.reports import draw_page
+from omegadot.reports.page.page import draw_page
 from omegadot.reports.page.templating import asset
 from omegadot.reports.page.view_3d.view import Codes
 

@@ -7,7 +7,7 @@ import pytest
 from chromium import Chromium
 from synthetic_record import build, scenario_entry
 
-from omegadot.reports import draw_page
+from omegadot.reports.page.page import draw_page
 
 CHARTS = 14
 DRAWN = f"Number(document.documentElement.dataset.drawn || 0) >= {CHARTS}"

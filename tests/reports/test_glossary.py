@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from synthetic_record import build
 
-from omegadot.reports import draw_page
 from omegadot.reports.page.glossary import TERMS, glossary_markdown, linked, terms_in
+from omegadot.reports.page.page import draw_page
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "glossary.md"
 REQUIRED = {

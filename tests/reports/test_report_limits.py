@@ -135,7 +135,7 @@ def test_every_run_is_matched_by_the_front_and_no_member_beats_another(values):
 
 
 def test_a_default_record_has_a_line_of_the_front_as_text():
-    from omegadot.reports import draw_page
+    from omegadot.reports.page.page import draw_page
 
     page = draw_page(build(("sphere",)))
     assert "mujoco RK4 at step 0.02 s" in page

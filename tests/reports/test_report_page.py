@@ -8,8 +8,8 @@ from itertools import pairwise
 import pytest
 from synthetic_record import build, metric, scenario_entry, task, with_metrics
 
-from omegadot.reports import Record, draw_page, read_record, write_record
-from omegadot.reports.page.page import _JUDGED_SHOWN
+from omegadot.reports.page.page import _JUDGED_SHOWN, draw_page
+from omegadot.reports.record.record import Record, read_record, write_record
 from omegadot.reports.record.schema import METRICS, TRAJECTORIES, empty
 from omegadot.reports.text.numbers import short
 

@@ -11,11 +11,10 @@ import pytest
 from polars.testing import assert_frame_equal
 from synthetic_record import build, with_metrics
 
-from omegadot.reports import Record, RecordError, check_folder, read_record, write_record
 from omegadot.reports.record import record as record_module
-from omegadot.reports.record.record import FILES
+from omegadot.reports.record.record import FILES, Record, check_folder, read_record, write_record
 from omegadot.reports.record.run_json import dump_json
-from omegadot.reports.record.schema import METRICS, TRAJECTORIES, conform
+from omegadot.reports.record.schema import METRICS, TRAJECTORIES, RecordError, conform
 
 
 @pytest.fixture

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 from synthetic_record import INTEGRATORS, build, metric, task, with_metrics
 
-from omegadot.reports import Record, summarise
+from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import METRICS, OUTCOMES, TRAJECTORIES, empty
 from omegadot.reports.summary.headline import headline, remarks
-from omegadot.reports.summary.summary import STATUSES, task_status, worst
+from omegadot.reports.summary.summary import STATUSES, summarise, task_status, worst
 from omegadot.reports.text.numbers import short
 
 

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 from synthetic_record import INTEGRATORS, build
 
-from omegadot.reports import print_summary
+from omegadot.reports.text.terminal import print_summary
 
 FIVE = dict.fromkeys(("reference", "mujoco", "pinocchio", "dart", "drake"), INTEGRATORS["mujoco"])
 NAMES = ("sleeping-top-unstable", "sphere")

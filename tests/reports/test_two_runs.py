@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from synthetic_record import build, metric, task, with_metrics
 
 from omegadot.reports.record.run_json import dump_json
-from omegadot.reports.two_runs import compare_records
+from omegadot.reports.two_runs.comparison import compare_records
 from omegadot.reports.two_runs.page import draw_two_runs
 from omegadot.reports.two_runs.text import as_json, as_markdown, as_text
 

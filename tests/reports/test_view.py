@@ -18,10 +18,10 @@ from omegadot.reference_impl.rotations import (
     exp_quaternion,
     quaternion_product,
 )
-from omegadot.reports import draw_page
 from omegadot.reports.charts.deviations import chart_deviations
 from omegadot.reports.charts.packing import pack_codes
 from omegadot.reports.charts.payload import lines_of
+from omegadot.reports.page.page import draw_page
 from omegadot.reports.page.view_3d import view
 from omegadot.reports.page.view_3d.attitudes import DIVERGED, FRAMES, attitudes_of
 from omegadot.reports.page.view_3d.three_js import library_of, packed_three

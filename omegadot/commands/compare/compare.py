@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from omegadot.reports.record.record import Record, read_record
-from omegadot.reports.two_runs import Comparison, compare_records
+from omegadot.reports.two_runs.comparison import Comparison, compare_records
 
 RunLike = str | os.PathLike[str] | Record
 """The folder of a run, or its record."""

@@ -9,6 +9,7 @@ from omegadot.reports.charts.bounds import Residual
 from omegadot.reports.charts.front import FrontPoint
 from omegadot.reports.charts.palette import colours
 from omegadot.reports.summary.provenance import Sources
+from omegadot.reports.text.numbers import engine_name
 
 
 def _digits(value: float | None) -> float | None:
@@ -26,7 +27,7 @@ def equation_payload(
     return [
         [
             r.engine,
-            " ".join(filter(None, (r.engine, "" if r.setup == "physics" else r.setup))),
+            engine_name(r.engine, setup=r.setup),
             colour[r.engine],
             sources.number({**vars(r), "engine_version": r.version}),
             *(_digits(value) for value in (*r.random, *r.path)),

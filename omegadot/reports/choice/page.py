@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +10,7 @@ from omegadot.reports.choice import sentences as texts
 from omegadot.reports.choice import tables as tables
 from omegadot.reports.choice.chart import HEIGHT, WIDTH, Drawing, drawing
 from omegadot.reports.page.templating import asset, environment
+from omegadot.reports.summary.provenance import command_of
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def section_of(choice: Mapping[str, Any]) -> Section:
     """The section of a choice, as ``choice.json`` holds it."""
     return Section(
         texts.requested(choice),
-        shlex.join(choice.get("command", ())),
+        command_of(choice),
         texts.GUARANTEE,
         tables.everywhere(choice),
         parts(choice),

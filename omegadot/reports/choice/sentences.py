@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from omegadot.reports.record.impossible import impossible_bodies
-from omegadot.reports.text.numbers import listed, plain, short, times
+from omegadot.reports.text.numbers import listed, plain, quantity, short, times
 
 Row = Mapping[str, Any]
 NAMES = {
@@ -36,11 +36,6 @@ def figure(value: float) -> str:
     if not math.isfinite(value) or not 1e-3 <= abs(value) < 1e7:
         return short(value, 3)
     return f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
-
-
-def measure_text(value: float | None, unit: str) -> str:
-    """A number with its unit."""
-    return short(value) if unit == "1" else f"{short(value)} {unit}"
 
 
 def requested(choice: Row) -> str:
@@ -102,8 +97,8 @@ def missed_text(missed: Row) -> str:
     name = NAMES[missed["requirement"]]
     if missed["found"] is None or missed["factor"] is None:
         return f"{name} not finite"
-    limit = measure_text(missed["limit"], missed["unit"])
-    found = measure_text(missed["found"], missed["unit"])
+    limit = quantity(missed["limit"], missed["unit"])
+    found = quantity(missed["found"], missed["unit"])
     wanted = "at least" if missed["requirement"] == "real-time-factor" else "at most"
     return f"{name} {found}, required {wanted} {limit} (off by {figure(missed['factor'])}x)"
 
@@ -112,7 +107,7 @@ def variant_lines(case: Row) -> Iterator[str]:
     """How the ranking changes when a requirement is halved or doubled."""
     for variant in case["variants"]:
         term = {0.5: "halved", 2.0: "doubled"}.get(variant["factor"], f"x {variant['factor']}")
-        limit = measure_text(variant["limit"], variant["unit"])
+        limit = quantity(variant["limit"], variant["unit"])
         start = f"{NAMES[variant['requirement']]} {term} ({limit}): "
         order = variant["order"]
         changes = []
@@ -147,7 +142,7 @@ def notes(choice: Row) -> Iterator[str]:
     for case in choice["scenarios"]:
         for key in case["unverifiable"]:
             unit = {r["requirement"]: r["unit"] for r in choice["requirements"]["accuracy"]}[key]
-            floor = measure_text(case["floor"][key], unit)
+            floor = quantity(case["floor"][key], unit)
             yield (
                 f"{case['name']}: double precision resolves the {NAMES[key]} to {floor} only; "
                 "require a larger limit."

@@ -10,11 +10,10 @@ from omegadot.reports.choice.sentences import (
     LONGEST,
     NAMES,
     figure,
-    measure_text,
     missed_text,
     step_text,
 )
-from omegadot.reports.text.numbers import short
+from omegadot.reports.text.numbers import quantity, short
 
 Row = Mapping[str, Any]
 MEGABYTE = 1e6
@@ -58,7 +57,7 @@ def _error(found: Row, requirement: Row) -> str:
     error = found["errors"].get(requirement["requirement"])
     if error is None:
         return "–"
-    text = measure_text(error["value"], requirement["unit"])
+    text = quantity(error["value"], requirement["unit"])
     margin = error["margin"]
     return text if margin is None else f"{text} (margin {figure(margin)}x)"
 

@@ -13,7 +13,7 @@ from omegadot.reports.charts.deviations import Chart
 from omegadot.reports.record.schema import GATES
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import task_status
-from omegadot.reports.text.numbers import knob, short
+from omegadot.reports.text.numbers import engine_name, knob, short
 
 CHANNEL_NAMES = {
     "omega_dot": "omega-dot",
@@ -125,16 +125,15 @@ def deviation_table(chart: Chart, sources: Sources | None = None) -> Table:
 
 
 def _engine_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
-    engine, version, setup = key
-    return (" ".join(filter(None, (engine, version, "" if setup == "physics" else setup))),)
+    return (engine_name(*key),)
 
 
 @lru_cache(maxsize=4096)
 def run_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
     """The cells that name a run: (engine, version, setup, integrator, step, accuracy) as text."""
     engine, _, setup, integrator, timestep, accuracy = key
-    name = engine if setup in ("physics", None) else f"{engine} {setup}"
-    return name, ", ".join(filter(None, (integrator, knob(timestep, accuracy))))
+    run = ", ".join(filter(None, (integrator, knob(timestep, accuracy))))
+    return engine_name(engine, setup=setup), run
 
 
 def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any, sources: Sources) -> Table:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-from omegadot.reports.text.numbers import listed, plain, times
+from omegadot.reports.text.numbers import first, listed, plain, times
 
 _SCENARIOS_NAMED = 3
 
@@ -118,9 +118,8 @@ def extent(cluster: Cluster) -> str:
     total = len(cluster.together) + len(cluster.apart)
     if not cluster.apart:
         return f"On all {total} scenarios." if total > 1 else "On 1 scenario."
-    named = list(cluster.apart[:_SCENARIOS_NAMED])
-    more = len(cluster.apart) - len(named)
-    shown = listed([*named, f"{more} more"] if more else named)
+    several = len(cluster.apart) > _SCENARIOS_NAMED
+    shown = first(cluster.apart, _SCENARIOS_NAMED) if several else listed(cluster.apart)
     return (
         f"On {len(cluster.together)} of {times(total, 'scenario')}; "
         f"the trajectories differ on {shown}."

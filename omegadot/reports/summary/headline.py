@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.summary import YARDSTICKS, Cell, Summary
-from omegadot.reports.text.numbers import knob, listed, short, times
+from omegadot.reports.text.numbers import first, knob, listed, quantity, times
 
 
 def headline(summary: Summary) -> str:
@@ -44,10 +44,9 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     failing = [name for name, cells in engines.items() if any(c.status == "fail" for c in cells)]
     if failing:
         places = sorted({s for (s, c), cell in summary.cells.items() if cell.status == "fail"})
-        shown = ", ".join(places[:3]) + (f" and {len(places) - 3} more" if len(places) > 3 else "")
         verb = "fails" if len(failing) == 1 else "fail"
         count = f"{len(failing)} of {times(len(engines), 'engine')}"
-        return f"{count} {verb} a gate: {listed(failing)}, on {shown}."
+        return f"{count} {verb} a gate: {listed(failing)}, on {first(places, 3)}."
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
     # A declared exception is a known failure: such an engine is not reported as agreeing.
@@ -65,8 +64,8 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     apart = f" Declared exceptions: {listed(excused)}." if excused else ""
     return (
         f"{named} {verb} with the Newton–Euler equations at identical states: the largest "
-        f"omega-dot residual is {_quantity(largest)} ({largest.engine} on {largest.scenario})."
-        f"{apart}"
+        f"omega-dot residual is {quantity(largest.value, largest.unit)} "
+        f"({largest.engine} on {largest.scenario}).{apart}"
     )
 
 
@@ -89,14 +88,9 @@ def _spread(engines: dict[str, list[Cell]]) -> str:
 
 
 def _run(figure: Figure) -> str:
-    settings = knob(figure.timestep, figure.accuracy)
-    settings = f", {settings}" if settings else ""
     name = " ".join(filter(None, (figure.engine, figure.integrator)))
-    return f"{_quantity(figure)} ({name}{settings})"
-
-
-def _quantity(figure: Figure) -> str:
-    return short(figure.value) + ("" if figure.unit == "1" else f" {figure.unit}")
+    run = ", ".join(filter(None, (name, knob(figure.timestep, figure.accuracy))))
+    return f"{quantity(figure.value, figure.unit)} ({run})"
 
 
 def _remainder(summary: Summary) -> list[str]:

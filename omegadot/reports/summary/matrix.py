@@ -8,7 +8,7 @@ from typing import Any
 from omegadot.reports.summary.figures import Figure, Range
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import STATUSES, Cell, Column, Summary
-from omegadot.reports.text.numbers import knob, short
+from omegadot.reports.text.numbers import knob, quantity, short
 
 MARKS = {"pass": "✓", "fail": "✗", "declared": "!", "absent": ""}
 # The numbers that the matrix can show, one at a time: the key of `Shown.numbers`, its name.
@@ -115,10 +115,9 @@ def named(figure: Figure | None) -> tuple[str, str]:
     """A figure as text: the value with its unit, and the run behind it."""
     if figure is None:
         return "–", ""
-    unit = "" if figure.unit == "1" else f" {figure.unit}"
     path = "along the trajectory" if figure.metric == "residual_on_path" else ""
     run = (path, figure.integrator, knob(figure.timestep, figure.accuracy))
-    return short(figure.value) + unit, ", ".join(filter(None, run))
+    return quantity(figure.value, figure.unit), ", ".join(filter(None, run))
 
 
 def text(status: str) -> str:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.headline import headline, remarks, truth
+from omegadot.reports.summary.provenance import command_of
 from omegadot.reports.summary.summary import STATUSES, Cell, Summary, summarise, task_status
 from omegadot.reports.text.markdown_text import COMMENT, code, escape, folded, table
-from omegadot.reports.text.numbers import times
+from omegadot.reports.text.numbers import first, times
 
 _FAILING = ("fail", "declared", "crashed", "timeout", "raised", "diverged")
 
@@ -27,7 +27,7 @@ def markdown_of(record: Record) -> str:
     lines += _failures(record, COMMENT // 4)
     lines += _missing(summary, COMMENT // 8)
     lines += folded("Versions and machine", _versions(record, COMMENT // 8))
-    command = code(shlex.join(str(term) for term in record.run.get("command") or ()))
+    command = code(command_of(record.run))
     lines += ["", command] if command else []
     return "\n".join(lines) + "\n"
 
@@ -87,10 +87,8 @@ def _failures(record: Record, room: int) -> list[str]:
 
 
 def _places(scenarios: list[str]) -> str:
-    names = list(dict.fromkeys(scenarios))
-    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
     runs = f", {times(len(scenarios), 'run')}" if len(scenarios) > 1 else ""
-    return ", ".join(names[:3]) + more + runs
+    return first(list(dict.fromkeys(scenarios)), 3) + runs
 
 
 def _missing(summary: Summary, room: int) -> list[str]:

@@ -33,6 +33,22 @@ def listed(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
+def first(names: Sequence[str], most: int) -> str:
+    """As many names as `most`, and how many more there are: a, b and 3 more; or a, b."""
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+
+
+def quantity(value: float | None, unit: str, digits: int = 2) -> str:
+    """A number with its unit; a pure number has none."""
+    return short(value, digits) + ("" if unit == "1" else f" {unit}")
+
+
+def engine_name(engine: str, version: str = "", setup: str | None = None) -> str:
+    """An engine, its version where that is given, and its setup where it is not the usual one."""
+    return " ".join(filter(None, (engine, version, "" if setup == "physics" else setup)))
+
+
 def knob(timestep: float | None, accuracy: float | None) -> str:
     """The step or the accuracy of a run, as text."""
     if timestep is not None:

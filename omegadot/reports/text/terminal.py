@@ -14,7 +14,7 @@ from omegadot.reports.summary.clusters import clusters_over_scenarios, sentence
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.summary import Cell, Column, Missing, Summary, summarise
-from omegadot.reports.text.numbers import short, times
+from omegadot.reports.text.numbers import first, short, times
 
 _STYLES = {"pass": "green", "fail": "bold red", "declared": "yellow", "absent": "dim"}
 _NOT_RUN = "magenta"
@@ -164,9 +164,7 @@ def _named(figure: Figure) -> str:
 def _missing_line(missing: Missing) -> str:
     line = f"{missing.engine}: {missing.status}"
     if missing.runs:
-        line += f", {times(missing.runs, 'run')} on {', '.join(missing.scenarios[:4])}"
-        hidden = len(missing.scenarios) - 4
-        line += f" and {hidden} more" if hidden > 0 else ""
+        line += f", {times(missing.runs, 'run')} on {first(missing.scenarios, 4)}"
     return line + (f": {missing.reason}" if missing.reason else "")
 
 

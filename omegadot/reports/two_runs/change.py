@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from omegadot.reports.page.tables import CHANNEL_NAMES
-from omegadot.reports.text.numbers import knob, plain, short
+from omegadot.reports.text.numbers import engine_name, knob, plain, quantity, short
 from omegadot.reports.two_runs.sides import RunKey
 
 
@@ -92,11 +92,10 @@ def from_to(change: Change) -> str:
     measure = change.measure
     if measure is None:
         return message
-    unit = "" if measure.unit == "1" else f" {measure.unit}"
-    was, now = (short(value, 3) for value in (measure.was, measure.now))
-    figures = f"{was} → {now}{unit}"
+    figures = f"{short(measure.was, 3)} → {quantity(measure.now, measure.unit, 3)}"
     if change.moved:
-        figures += f" ({of_factor(measure)}; rounding allows {short(measure.band)}{unit})"
+        band = quantity(measure.band, measure.unit)
+        figures += f" ({of_factor(measure)}; rounding allows {band})"
     return f"{message}: {figures}" if message else figures
 
 
@@ -109,8 +108,7 @@ def place(change: Change) -> str:
 
 def name_of(key: RunKey) -> str:
     """Engine, its version where there are several, its setup where it is not the usual one."""
-    setup = "" if key.setup == "physics" else key.setup
-    return " ".join(filter(None, (key.engine, key.version, setup)))
+    return engine_name(key.engine, key.version, key.setup)
 
 
 @dataclass(frozen=True)

@@ -9,19 +9,12 @@ from dataclasses import dataclass
 import polars as pl
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.text.numbers import listed, times
+from omegadot.reports.text.numbers import first, listed, times
 from omegadot.reports.two_runs.change import Change, name_of
-from omegadot.reports.two_runs.cost import Cost, costs
-from omegadot.reports.two_runs.figures import changed_figures, paired
+from omegadot.reports.two_runs.figures import Cost, changed_figures, costs, paired
 from omegadot.reports.two_runs.runs import changed_runs, pair_runs, without_repetition
 from omegadot.reports.two_runs.settings import Difference, differences
-from omegadot.reports.two_runs.sides import (
-    Side,
-    Task,
-    redefined,
-    several_versions,
-    tasks_of,
-)
+from omegadot.reports.two_runs.sides import Side, Task, redefined, several_versions, tasks_of
 
 _NAMED = 4
 
@@ -78,10 +71,9 @@ def _engines(changes: Iterable[Change]) -> str:
         found.setdefault(name, Counter())["value" if change.metric else "run"] += 1
     shown = [
         f"{name} ({listed([times(count, noun) for noun, count in counts.items()])})"
-        for name, counts in list(found.items())[:_NAMED]
+        for name, counts in found.items()
     ]
-    more = len(found) - len(shown)
-    return listed([*shown, f"{more} more"] if more else shown)
+    return first(shown, _NAMED) if len(shown) > _NAMED else listed(shown)
 
 
 def compare_records(was: Record, now: Record, labels: tuple[str, str] = ("A", "B")) -> Comparison:
@@ -98,8 +90,9 @@ def compare_records(was: Record, now: Record, labels: tuple[str, str] = ("A", "B
     others = redefined(one, other)
     pairs = paired(one, other, versioned)
     same_seed = was.run.get("seed") == now.run.get("seed")
-    figures = changed_figures(pairs, same_seed, others)
-    changes = without_repetition(changed_runs(runs.pairs), figures)
+    figures = pairs.filter(pl.col("gate") != "cost")
+    found = changed_figures(figures, same_seed, others)
+    changes = without_repetition(changed_runs(runs.pairs), found)
     changes.sort(key=lambda change: change.weight, reverse=True)
     return Comparison(
         one,
@@ -109,12 +102,8 @@ def compare_records(was: Record, now: Record, labels: tuple[str, str] = ("A", "B
         runs.appeared,
         runs.vanished,
         tuple(differences(one, other)),
-        tuple(costs(one, other, versioned)),
+        tuple(costs(pairs)),
         len(runs.pairs),
-        _with_bounds(pairs),
+        len(figures.drop_nulls(["bound", "bound_now"])),
         frozenset(others),
     )
-
-
-def _with_bounds(pairs: pl.DataFrame) -> int:
-    return len(pairs.filter(pl.col("bound").is_not_null() & pl.col("bound_now").is_not_null()))

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import polars as pl
 
+from omegadot.reports.text.numbers import engine_name
 from omegadot.reports.two_runs.change import Change, Measure
 from omegadot.reports.two_runs.sides import RunKey, Side
 
@@ -27,11 +29,11 @@ VERDICT_RANK = {"fail": 0, "declared": 1, "info": 2, "pass": 3}
 
 
 def figures_by_run(side: Side, versioned: set[str]) -> pl.DataFrame:
-    """The metrics without the costs, under the keys of `tasks_of`; nth: of equal names."""
+    """The metrics, under the keys of `tasks_of`; nth: of equal names."""
     engine = pl.col("engine")
     version = pl.when(engine.is_in(sorted(versioned))).then(pl.col("engine_version"))
     integrator = pl.when(engine != "exact").then(pl.col("integrator"))
-    frame = side.record.metrics.filter(pl.col("gate") != "cost").with_columns(
+    frame = side.record.metrics.with_columns(
         version=version.otherwise(pl.lit("")).fill_null(""),
         integrator=integrator.otherwise(pl.lit("")).fill_null(""),
     )
@@ -43,7 +45,8 @@ def figures_by_run(side: Side, versioned: set[str]) -> pl.DataFrame:
 def paired(was: Side, now: Side, versioned: set[str]) -> pl.DataFrame:
     """Every figure that both records hold, the second one's with the suffix ``_now``."""
     one, other = (figures_by_run(side, versioned) for side in (was, now))
-    return one.join(other, on=_KEY + _NAME, how="inner", nulls_equal=True, suffix="_now")
+    keys = _KEY + _NAME
+    return one.join(other, keys, nulls_equal=True, suffix="_now", maintain_order="right")
 
 
 def _held(same_seed: bool, redefined: set[str]) -> pl.Expr:
@@ -107,3 +110,41 @@ def _change(row: dict[str, Any]) -> Change:
 def _size(value: float) -> float:
     """How far off; what is not a number is farther off than any number."""
     return math.inf if math.isnan(value) else abs(value)
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Time per step now over that before, over the runs that both records timed.
+
+    median; low and high: quartiles.  runs: how many there are.
+    """
+
+    engine: str
+    integrator: str
+    median: float
+    low: float
+    high: float
+    runs: int
+
+
+def costs(pairs: pl.DataFrame) -> list[Cost]:
+    """One entry an engine and integrator, in the order of the second record; never judged.
+
+    pairs: of `paired`.
+    """
+    before, now = pl.col("value"), pl.col("value_now")
+    timed = pairs.filter(
+        pl.col("metric") == "time_per_step",
+        *(value.is_finite() & (value > 0.0) for value in (before, now)),
+    )
+    ratio = now / before
+    found = timed.group_by("engine", "version", "setup", "integrator", maintain_order=True).agg(
+        ratio.median().alias("median"),
+        ratio.quantile(0.25, "linear").alias("low"),
+        ratio.quantile(0.75, "linear").alias("high"),
+        pl.len().alias("runs"),
+    )
+    return [
+        Cost(engine_name(engine, version, setup), integrator, *spread)
+        for engine, version, setup, integrator, *spread in found.rows()
+    ]

@@ -2,24 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
-from omegadot.reports.text.numbers import plain, times
+from omegadot.reports.summary.summary import YARDSTICKS
+from omegadot.reports.text.numbers import engine_name, first, plain, times
 from omegadot.reports.two_runs.change import Change, Group, from_to, grouped, name_of, place
 from omegadot.reports.two_runs.comparison import Comparison
 from omegadot.reports.two_runs.sides import Side, Task
 
-CHANGE_HEADS = ("engine", "integrator", "what", "largest at", "change", "total", "reason now")
-PRESENCE_HEADS = ("engine", "outcome", "runs", "scenarios", "reason")
-SETTING_HEADS = ("", "first", "second")
-COST_HEADS = ("engine", "integrator", "median", "quartiles", "runs")
-COST_NOTE = "Time per step, second over first; reported, not judged."
+_CHANGE_HEADS = ("engine", "integrator", "what", "largest at", "change", "total", "reason now")
+_PRESENCE_HEADS = ("engine", "outcome", "runs", "scenarios", "reason")
+_SETTING_HEADS = ("", "first", "second")
+_COST_HEADS = ("engine", "integrator", "median", "quartiles", "runs")
 _SCENARIOS_NAMED = 4
 
 Rows = list[tuple[str, ...]]
 
 
-def change_rows(changes: Iterable[Change]) -> Rows:
+@dataclass(frozen=True)
+class Part:
+    """A table of a comparison. more: of its title, where there is room."""
+
+    anchor: str
+    title: str
+    more: str
+    heads: tuple[str, ...]
+    rows: Rows
+
+
+def parts_of(comparison: Comparison) -> list[Part]:
+    """The tables; one without rows is left out."""
+    presences = _presences(comparison.vanished), _presences(comparison.appeared)
+    found = (
+        Part("worse", "Worse", "", _CHANGE_HEADS, _change_rows(comparison.worse)),
+        Part("better", "Better", "", _CHANGE_HEADS, _change_rows(comparison.better)),
+        Part("vanished", "Vanished", ": in the first record alone", _PRESENCE_HEADS, presences[0]),
+        Part("appeared", "Appeared", ": in the second record alone", _PRESENCE_HEADS, presences[1]),
+        Part("settings", "Different settings", "", _SETTING_HEADS, _settings(comparison)),
+        Part("cost", "Time per step, second over first", "", _COST_HEADS, _costs(comparison)),
+    )
+    return [part for part in found if part.rows]
+
+
+def _change_rows(changes: Iterable[Change]) -> Rows:
     """One row an engine, integrator, gate and channel, with the largest of its changes."""
     return [_change_row(group) for group in grouped(changes)]
 
@@ -39,54 +66,47 @@ def _change_row(group: Group) -> tuple[str, ...]:
     )
 
 
-def presence_rows(tasks: Iterable[Task]) -> Rows:
+def _presences(tasks: Iterable[Task]) -> Rows:
     """Runs that one record alone has: one row an engine and outcome."""
-    groups: dict[tuple[str, str, str], list[Task]] = {}
+    groups: dict[tuple[str, str, str], list[str]] = {}
     for task in tasks:
         why = "" if task.status == "pass" else task.why
-        groups.setdefault((name_of(task.key), task.status, why), []).append(task)
-    rows: Rows = []
-    for (engine, status, why), own in groups.items():
-        names = list(dict.fromkeys(task.key.scenario for task in own))
-        more = len(names) - _SCENARIOS_NAMED
-        named = ", ".join(names[:_SCENARIOS_NAMED]) + (f" and {more} more" if more > 0 else "")
-        rows.append((engine, status, str(len(own)), named, why))
-    return rows
+        groups.setdefault((name_of(task.key), task.status, why), []).append(task.key.scenario)
+    return [
+        (engine, status, str(len(own)), first(list(dict.fromkeys(own)), _SCENARIOS_NAMED), why)
+        for (engine, status, why), own in groups.items()
+    ]
 
 
-def setting_rows(comparison: Comparison) -> Rows:
-    """What the records were made with, where it differs."""
+def _settings(comparison: Comparison) -> Rows:
     return [(d.what, d.was, d.now) for d in comparison.settings]
 
 
-def cost_rows(comparison: Comparison) -> Rows:
-    """How the time per step went, with its spread."""
+def _costs(comparison: Comparison) -> Rows:
     return [
-        (
-            cost.engine,
-            cost.integrator,
-            f"{cost.median:.2f}",
-            f"{cost.low:.2f} … {cost.high:.2f}",
-            str(cost.runs),
-        )
-        for cost in comparison.costs
+        (c.engine, c.integrator, f"{c.median:.2f}", f"{c.low:.2f} … {c.high:.2f}", str(c.runs))
+        for c in comparison.costs
     ]
+
+
+def engines_of(run: Mapping[str, Any]) -> dict[str, str]:
+    """By engine that is installed: its name and version."""
+    return {
+        entry["name"]: engine_name(entry["name"], entry.get("version") or "")
+        for entry in run["engines"]
+        if entry.get("installed") is not False
+    }
 
 
 def side_facts(side: Side) -> str:
     """A record in a line: when, with what and where it was made."""
     run = side.run
-    engines = [
-        f"{entry['name']} {entry.get('version') or ''}".strip()
-        for entry in run["engines"]
-        if entry.get("installed") is not False and entry["name"] not in ("exact", "reference")
-    ]
     machine = run.get("machine") or {}
     seed = run.get("seed")
     facts = (
         str(run.get("created") or ""),
         f"omegadot {run['omegadot']}" if run.get("omegadot") else "",
-        *engines,
+        *(text for name, text in engines_of(run).items() if name not in YARDSTICKS),
         str(machine.get("processor") or ""),
         f"seed {plain(seed)}" if isinstance(seed, int | float) else "",
         "" if side.complete else "interrupted",

@@ -43,30 +43,26 @@ def _stand_in(key: RunKey, tasks: Mapping[tuple[str, str, str], list[Task]]) -> 
 
 def pair_runs(was: Mapping[RunKey, Task], now: Mapping[RunKey, Task]) -> Runs:
     """Each run with the same one of the other record; an engine that did not start stands in."""
-    pairs, vanished, appeared = [], [], []
     absent_now, absent_then = _stand_ins(now.values()), _stand_ins(was.values())
-    stood_in: set[RunKey] = set()
-    for key, task in was.items():
-        other = now.get(key) or _stand_in(key, absent_now)
-        if other is None:
-            vanished.append(task)
-            continue
-        stood_in.add(other.key)
-        pairs.append((task, other))
-    for key, task in now.items():
-        if key in was or key in stood_in:
-            continue
-        other = _stand_in(key, absent_then)
-        if other is None:
-            appeared.append(task)
-            continue
-        stood_in.add(other.key)
-        pairs.append((other, task))
-    unknown = [pair for pair in pairs if _unknown_before(*pair)]
-    known = [pair for pair in pairs if not _unknown_before(*pair)]
-    appeared += [task for _, task in unknown]
-    vanished = [task for task in vanished if task.key not in stood_in]
-    return Runs(tuple(known), tuple(vanished), tuple(appeared))
+    pairs = [
+        (task, other)
+        for key, task in was.items()
+        if (other := now.get(key) or _stand_in(key, absent_now))
+    ]
+    seen = {other.key for _, other in pairs}
+    pairs += [
+        (other, task)
+        for key, task in now.items()
+        if key not in seen and (other := _stand_in(key, absent_then))
+    ]
+    first, second = ({pair[place].key for pair in pairs} for place in (0, 1))
+    appeared = [task for key, task in now.items() if key not in second]
+    appeared += [task for pair in pairs if _unknown_before(*pair) for task in pair[1:]]
+    return Runs(
+        tuple(pair for pair in pairs if not _unknown_before(*pair)),
+        tuple(task for key, task in was.items() if key not in first),
+        tuple(appeared),
+    )
 
 
 def _unknown_before(was: Task, now: Task) -> bool:

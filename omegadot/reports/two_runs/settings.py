@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +12,8 @@ from omegadot.reports.two_runs.sides import Side, definition_of
 
 _OF_AN_ENGINE = ("version", "precision", "conventions", "switched_off", "features")
 NONE = "–"
+
+Facts = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -26,13 +28,10 @@ class Difference:
 def differences(was: Side, now: Side) -> list[Difference]:
     """Everything that differs but the figures, the time and the command itself."""
     found = [
-        *_plain("omegadot", was.run.get("omegadot"), now.run.get("omegadot")),
-        *_plain("seed", was.run.get("seed"), now.run.get("seed")),
-        *_plain("complete", was.complete, now.complete),
-        *_each("machine", was.run.get("machine"), now.run.get("machine")),
-        *_each("version of", was.run.get("versions"), now.run.get("versions")),
-        *_engines(was, now),
-        *_scenarios(was, now),
+        Difference(what, _text(one.get(what)), _text(other.get(what)))
+        for one, other in _facts(was, now)
+        for what in dict.fromkeys((*one, *other))
+        if one.get(what) != other.get(what)
     ]
     return list(dict.fromkeys(found))
 
@@ -45,62 +44,57 @@ def _text(value: Any) -> str:
     return NONE if value is None or value == "" else str(value)
 
 
-def _plain(what: str, was: Any, now: Any) -> Iterator[Difference]:
-    if was != now:
-        yield Difference(what, _text(was), _text(now))
+def _facts(*sides: Side) -> Iterator[list[Facts]]:
+    """Subject by subject, the facts of either side. Only what both records describe is compared."""
+    runs = [side.run for side in sides]
+    yield [
+        {"omegadot": s.run.get("omegadot"), "seed": s.run.get("seed"), "complete": s.complete}
+        for s in sides
+    ]
+    yield [_flat(run.get("machine"), "machine ") for run in runs]
+    yield [_flat(run.get("versions"), "version of ") for run in runs]
+    for name, entries in _of_both(run["engines"] for run in runs):
+        if all(entry.get("installed") is not False for entry in entries):
+            yield from _of_an_engine(name, entries)
+    for name, entries in _of_both(run["scenarios"] for run in runs):
+        yield [_flat(definition_of(entry), f"{name} ") for entry in entries]
+    then, today = map(_steps_of, sides)
+    for name in (name for name in then if name in today):
+        # The steps that it was really run with.
+        yield [{f"{name} steps in s": steps[name]} for steps in (then, today)]
+    if runs[0]["scenarios"] == runs[1]["scenarios"]:
+        truths = (summarise(side.record).truths for side in sides)
+        yield [_flat(own, "scenarios with a truth by ") for own in truths]
 
 
-def _each(what: str, was: Any, now: Any) -> Iterator[Difference]:
-    then, today = (value if isinstance(value, Mapping) else {} for value in (was, now))
-    for key in dict.fromkeys((*then, *today)):
-        yield from _plain(f"{what} {key}", then.get(key), today.get(key))
+def _of_both(lists: Iterable[Iterable[Facts]]) -> Iterator[tuple[str, list[Facts]]]:
+    """The entries of one name in both lists, in the order of the second."""
+    then, today = ({entry["name"]: entry for entry in entries} for entries in lists)
+    yield from ((name, [then[name], entry]) for name, entry in today.items() if name in then)
 
 
-def _engines(was: Side, now: Side) -> Iterator[Difference]:
-    """Of the engines that both records describe: what they declare."""
-    then = {entry["name"]: entry for entry in was.run["engines"]}
-    for entry in now.run["engines"]:
-        before = then.get(entry["name"])
-        if before is None or before.get("installed") is False or entry.get("installed") is False:
-            continue
-        for key in _OF_AN_ENGINE:
-            name = f"{entry['name']} {key.replace('_', ' ')}"
-            yield from _plain(name, before.get(key), entry.get(key))
-        yield from _integrators(entry["name"], before, entry)
+def _of_an_engine(name: str, entries: list[Facts]) -> Iterator[list[Facts]]:
+    """What the engine declares."""
+    yield [
+        {f"{name} {key.replace('_', ' ')}": entry.get(key) for key in _OF_AN_ENGINE}
+        for entry in entries
+    ]
+    then, today = ({i["name"]: i for i in entry.get("integrators") or ()} for entry in entries)
+    for integrator in dict.fromkeys((*then, *today)):
+        one, other = then.get(integrator), today.get(integrator)
+        if one and other:
+            start = f"{name} {integrator}, declared"
+            yield [
+                {f"{start} {k}": own.get(k) for k in ("scheme", "orders")} for own in (one, other)
+            ]
+        else:
+            yield [{f"{name} integrator {integrator}": own and "there"} for own in (one, other)]
 
 
-def _integrators(name: str, was: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[Difference]:
-    then = {entry["name"]: entry for entry in was.get("integrators") or ()}
-    today = {entry["name"]: entry for entry in now.get("integrators") or ()}
-    for key in dict.fromkeys((*then, *today)):
-        if key not in then or key not in today:
-            there = ("there", NONE) if key in then else (NONE, "there")
-            yield Difference(f"{name} integrator {key}", *there)
-            continue
-        for field in ("scheme", "orders"):
-            message = f"{name} {key}, declared {field}"
-            yield from _plain(message, then[key].get(field), today[key].get(field))
-
-
-def _scenarios(was: Side, now: Side) -> Iterator[Difference]:
-    then = {entry["name"]: entry for entry in was.run["scenarios"]}
-    for entry in now.run["scenarios"]:
-        before = then.get(entry["name"])
-        if before is None:
-            continue
-        own = (_flat(definition_of(before)), _flat(definition_of(entry)))
-        for key in dict.fromkeys((*own[0], *own[1])):
-            yield from _plain(f"{entry['name']} {key}", own[0].get(key), own[1].get(key))
-    yield from _steps(was, now)
-    truths = [summarise(side.record).truths for side in (was, now)]
-    if was.run["scenarios"] == now.run["scenarios"]:
-        yield from _each("scenarios with a truth by", *truths)
-
-
-def _flat(table: Mapping[str, Any], above: str = "") -> dict[str, Any]:
-    """A definition's keys as they stand in its file: load.torque.frame."""
-    found: dict[str, Any] = {}
-    for key, value in table.items():
+def _flat(table: Any, above: str) -> Facts:
+    """Keys as they stand in a scenario's file: load.torque.frame; none where it is no table."""
+    found: Facts = {}
+    for key, value in table.items() if isinstance(table, Mapping) else ():
         if isinstance(value, Mapping):
             found |= _flat(value, f"{above}{key}.")
         else:
@@ -108,18 +102,9 @@ def _flat(table: Mapping[str, Any], above: str = "") -> dict[str, Any]:
     return found
 
 
-def _steps(was: Side, now: Side) -> Iterator[Difference]:
-    """The steps that a scenario was really run with."""
-    then, today = (_steps_of(side) for side in (was, now))
-    for name in then:
-        if name in today and then[name] != today[name]:
-            texts = (", ".join(map(plain, sorted(steps))) for steps in (then[name], today[name]))
-            yield Difference(f"{name} steps in s", *texts)
-
-
-def _steps_of(side: Side) -> dict[str, set[float]]:
+def _steps_of(side: Side) -> dict[str, str]:
     found: dict[str, set[float]] = {}
     for task in side.run["tasks"]:
         if task.get("timestep") is not None:
             found.setdefault(task["scenario"], set()).add(task["timestep"])
-    return found
+    return {name: ", ".join(map(plain, sorted(steps))) for name, steps in found.items()}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -53,11 +52,6 @@ class Side:
     def run(self) -> Mapping[str, Any]:
         """What its ``run.json`` holds."""
         return self.record.run
-
-    @property
-    def command(self) -> str:
-        """The command that made it, as one would type it."""
-        return shlex.join(str(text) for text in self.run.get("command") or ())
 
     @property
     def complete(self) -> bool:

@@ -9,22 +9,23 @@ from typing import Any
 
 from omegadot.reports.text.markdown_text import COMMENT, code, escape, folded, table
 from omegadot.reports.text.numbers import times
-from omegadot.reports.two_runs import listing as listing
 from omegadot.reports.two_runs.change import Change
 from omegadot.reports.two_runs.comparison import Comparison
+from omegadot.reports.two_runs.listing import Part, parts_of, remarks, side_facts
 from omegadot.reports.two_runs.sides import Side, Task
 
 _ROWS_SHOWN = 12
+# Reported for information, after what is judged.
+_FOLDED = ("settings", "cost")
 
 
 def as_text(comparison: Comparison) -> str:
     """What changed, the largest change first, and the verdict in the last line."""
-    lines = [f"{side.label}: {listing.side_facts(side)}" for side in _sides(comparison)]
-    for title, rows in _sections(comparison):
-        if rows:
-            lines += ["", title, *_paragraphs(rows)]
-    lines += ["", comparison.headline, *listing.remarks(comparison)]
-    return "\n".join(" ".join(_printable(line).split(" ")) for line in lines)
+    lines = [f"{side.label}: {side_facts(side)}" for side in (comparison.was, comparison.now)]
+    for part in parts_of(comparison):
+        lines += ["", _title(part), *_paragraphs(part)]
+    lines += ["", comparison.headline, *remarks(comparison)]
+    return "\n".join(map(_printable, lines))
 
 
 def _printable(line: str) -> str:
@@ -32,59 +33,39 @@ def _printable(line: str) -> str:
     return "".join(c if c.isprintable() else " " for c in line)
 
 
-def _sides(comparison: Comparison) -> tuple[Side, Side]:
-    return comparison.was, comparison.now
+def _title(part: Part) -> str:
+    return part.title + ("; reported, not judged." if part.anchor == "cost" else "")
 
 
-def _sections(comparison: Comparison) -> list[tuple[str, listing.Rows]]:
-    return [
-        ("Worse", listing.change_rows(comparison.worse)),
-        ("Better", listing.change_rows(comparison.better)),
-        ("Vanished", listing.presence_rows(comparison.vanished)),
-        ("Appeared", listing.presence_rows(comparison.appeared)),
-        ("Different settings", [(f"{a}:", f"{b} → {c}") for a, b, c in _settings(comparison)]),
-        (listing.COST_NOTE, _costs(comparison)),
-    ]
-
-
-def _settings(comparison: Comparison) -> listing.Rows:
-    return listing.setting_rows(comparison)
-
-
-def _costs(comparison: Comparison) -> listing.Rows:
-    rows = listing.cost_rows(comparison)
-    return [
-        (e, i, f"{median} times ({span}), {times(int(n), 'run')}") for e, i, median, span, n in rows
-    ]
-
-
-def _paragraphs(rows: listing.Rows) -> list[str]:
-    shown = ["  " + "  ".join(filter(None, row)) for row in rows[:_ROWS_SHOWN]]
-    left = len(rows) - _ROWS_SHOWN
+def _paragraphs(part: Part) -> list[str]:
+    shown = ["  " + "  ".join(filter(None, _cells(part, row))) for row in part.rows[:_ROWS_SHOWN]]
+    left = len(part.rows) - _ROWS_SHOWN
     return [*shown, f"  and {left} more; --format json has them all"] if left > 0 else shown
+
+
+def _cells(part: Part, row: tuple[str, ...]) -> tuple[str, ...]:
+    """A row as it reads without heads above it."""
+    if part.anchor == "settings":
+        what, was, now = row
+        return f"{what}:", f"{was} → {now}"
+    if part.anchor == "cost":
+        *names, median, span, runs = row
+        return *names, f"{median} times ({span}), {times(int(runs), 'run')}"
+    return row
 
 
 def as_markdown(comparison: Comparison) -> str:
     """A comment for a pull request, below the length that one may have."""
     mark = "❌ " if comparison.regressed else ""
     lines = [f"### {mark}{escape(comparison.headline, 1000)}", ""]
-    lines += [f"{escape(message, 1000)}\n" for message in listing.remarks(comparison)]
-    for name, side in zip(("First", "Second"), _sides(comparison), strict=True):
-        lines.append(f"- {name}: {code(side.label, 300)}, {escape(listing.side_facts(side), 600)}")
-    parts = (
-        ("Worse", listing.CHANGE_HEADS, listing.change_rows(comparison.worse)),
-        ("Better", listing.CHANGE_HEADS, listing.change_rows(comparison.better)),
-        ("Vanished", listing.PRESENCE_HEADS, listing.presence_rows(comparison.vanished)),
-        ("Appeared", listing.PRESENCE_HEADS, listing.presence_rows(comparison.appeared)),
-    )
-    for title, heads, rows in parts:
-        if rows:
-            lines += ["", f"**{title}**", "", *table(heads, rows, COMMENT // 6)]
-    if rows := listing.setting_rows(comparison):
-        lines += folded("Different settings", table(listing.SETTING_HEADS, rows, COMMENT // 8))
-    if rows := listing.cost_rows(comparison):
-        reported = table(listing.COST_HEADS, rows, COMMENT // 8)
-        lines += folded(listing.COST_NOTE, reported)
+    lines += [f"{escape(message, 1000)}\n" for message in remarks(comparison)]
+    for name, side in (("First", comparison.was), ("Second", comparison.now)):
+        lines.append(f"- {name}: {code(side.label, 300)}, {escape(side_facts(side), 600)}")
+    for part in parts_of(comparison):
+        if part.anchor in _FOLDED:
+            lines += folded(_title(part), table(part.heads, part.rows, COMMENT // 8))
+        else:
+            lines += ["", f"**{part.title}**", "", *table(part.heads, part.rows, COMMENT // 6)]
     return "\n".join(lines) + "\n"
 
 
