@@ -23,7 +23,7 @@ from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, check_number
-from omegadot.reports.choice.files import check_choice_folder
+from omegadot.reports.record.whole_file import make_folder
 from omegadot.scenarios import ScenarioLike
 from omegadot.workers.machine import describe_machine, package_versions
 
@@ -106,7 +106,7 @@ def choose(
     )
     check_number("--budget", budget, 0.0)
     if out is not None:
-        check_choice_folder(Path(out))
+        make_folder(Path(out))
     with reporting(progress) as report:
         choice = _execute(Chooser(request, wanted, budget), report)
     seconds = round(time.perf_counter() - started, 3)

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from omegadot.commands.report.report import redraw
-from omegadot.reports.choice.files import write_choice
-from omegadot.reports.choice.page import draw_choice
+from omegadot.reports.choice.page import draw_choice, write_choice
 from omegadot.reports.notebook import framed
 from omegadot.reports.record.record import RUN
 

@@ -38,7 +38,7 @@ def redraw(folder: Path, out: Path | None = None) -> Path:
     collecting = gc.isenabled()
     gc.disable()  # nothing that is made here is garbage before the page is whole
     try:
-        from omegadot.reports.choice.files import read_choice
+        from omegadot.reports.choice.page import read_choice
         from omegadot.reports.page.page import draw_page
         from omegadot.reports.record.record import PAGE, read_record
 

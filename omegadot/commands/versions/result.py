@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from omegadot.reports.notebook import framed
-from omegadot.reports.versions.files import write_versions
-from omegadot.reports.versions.page import draw_versions
+from omegadot.reports.versions.page import draw_versions, write_versions
 
 FEWEST = 2
 Value = float | str | None

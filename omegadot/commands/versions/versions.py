@@ -22,7 +22,7 @@ from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, check_count, check_number, check_setup
-from omegadot.reports.versions.files import check_folder
+from omegadot.reports.record.whole_file import make_folder
 from omegadot.scenarios import ScenarioLike
 
 
@@ -66,7 +66,7 @@ def versions(
         check_count("--jobs", jobs, 1)
     aims = aims_of(several(scenarios), several(integrators), timestep)
     if out is not None:
-        check_folder(Path(out))
+        make_folder(Path(out))
     fetching = None if offline else _installer(installer)
     environments = Environments(Path(cache or default_cache()), product, fetching)
     requested = requested_releases(several(releases), environments.releases)

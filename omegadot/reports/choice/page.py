@@ -1,82 +1,85 @@
-"""The page of a choice: one file, nothing outside it, in the report's look, without script."""
+"""The page of a choice, in the report's look and without script, and the folder that holds it."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from omegadot.reports.choice import sentences as texts
-from omegadot.reports.choice import tables as tables
-from omegadot.reports.choice.chart import HEIGHT, WIDTH, Drawing, drawing
+from omegadot.reports.choice import sentences, tables
+from omegadot.reports.choice.chart import HEIGHT, WIDTH, drawing
 from omegadot.reports.page.templating import asset, environment
+from omegadot.reports.record.run_json import dump_json
+from omegadot.reports.record.schema import RecordError
+from omegadot.reports.record.whole_file import write_whole
 from omegadot.reports.summary.provenance import command_of
 
+NAME = "choice.json"
 
-@dataclass(frozen=True)
-class Part:
-    """One scenario of a section."""
-
-    name: str
-    title: str
-    headline: str
-    qualify: tables.Grid
-    out: tables.Grid
-    changes: list[str]
-    chart: Drawing | None
-
-
-def parts(choice: Mapping[str, Any]) -> list[Part]:
-    """What the section shows of each scenario."""
-    return [
-        Part(
-            case["name"],
-            case["title"],
-            texts.headline(case),
-            tables.ranking(choice, case),
-            tables.refusals(case),
-            list(texts.variant_lines(case)),
-            drawing(case, choice["engines"]),
-        )
-        for case in choice["scenarios"]
-    ]
-
-
-@dataclass(frozen=True)
-class Section:
-    """A choice on a page, its own or a run's. requested: the requirements as text."""
-
-    requested: str
-    command: str
-    guarantee: str
-    overall: tables.Grid | None
-    parts: list[Part]
-    notes: list[str]
-    width: float = WIDTH
-    height: float = HEIGHT
+# A choice as the template takes it, on a page of its own or in a run's.
+Section = dict[str, Any]
 
 
 def section_of(choice: Mapping[str, Any]) -> Section:
-    """The section of a choice, as ``choice.json`` holds it."""
-    return Section(
-        texts.requested(choice),
-        command_of(choice),
-        texts.GUARANTEE,
-        tables.everywhere(choice),
-        parts(choice),
-        list(texts.notes(choice)),
-    )
+    """The section of a choice, as ``choice.json`` holds it: a part for each scenario."""
+    return {
+        "requested": sentences.requested(choice),
+        "command": command_of(choice),
+        "guarantee": sentences.GUARANTEE,
+        "overall": tables.everywhere(choice),
+        "parts": [
+            {
+                "name": case["name"],
+                "title": case["title"],
+                "headline": sentences.headline(case),
+                "qualify": tables.ranking(choice, case),
+                "out": tables.refusals(case),
+                "changes": list(sentences.variant_lines(case)),
+                "chart": drawing(case, choice["engines"]),
+            }
+            for case in choice["scenarios"]
+        ],
+        "notes": list(sentences.notes(choice)),
+        "width": WIDTH,
+        "height": HEIGHT,
+    }
 
 
 def draw_choice(choice: Mapping[str, Any]) -> str:
     """The whole page."""
     section = section_of(choice)
-    lines = [texts.headline(case) for case in choice["scenarios"]]
-    template = environment().get_template("choice_page.html.j2")
-    return template.render(
-        choice=choice,
-        headline=texts.verdict_everywhere(choice) if section.overall else lines[0],
-        chosen=section,
-        css=asset("report.css"),
-        own_css=asset("choice.css"),
+    (first, *_) = section["parts"]
+    several = section["overall"] is not None
+    return (
+        environment()
+        .get_template("choice_page.html.j2")
+        .render(
+            choice=choice,
+            headline=sentences.verdict_everywhere(choice) if several else first["headline"],
+            chosen=section,
+            css=asset("report.css") + asset("choice.css"),
+        )
     )
+
+
+def read_choice(folder: Path) -> Section | None:
+    """The section of a choice that is stored with a run; None where there is none.
+
+    Raises RecordError, one sentence, where it is not one that omegadot wrote.
+    """
+    path = folder / NAME
+    if not path.is_file():
+        return None
+    try:
+        return section_of(json.loads(path.read_text(encoding="utf-8")))
+    except (OSError, ValueError, RecursionError, LookupError, TypeError, AttributeError) as error:
+        raise RecordError(
+            f"{path}: not a choice that omegadot wrote; remove it or choose again."
+        ) from error
+
+
+def write_choice(choice: Mapping[str, Any], folder: Path) -> None:
+    """Page and JSON, each whole or not at all. Raises RecordError."""
+    write_whole(folder / NAME, dump_json(choice))
+    write_whole(folder / "choice.html", draw_choice(choice))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from omegadot.reports.choice.sentences import (
@@ -14,18 +13,10 @@ from omegadot.reports.choice.sentences import (
     step_text,
 )
 from omegadot.reports.text.numbers import quantity, short
+from omegadot.reports.text.text_grid import Grid
 
 Row = Mapping[str, Any]
 MEGABYTE = 1e6
-
-
-@dataclass(frozen=True)
-class Grid:
-    """A plain table; every row has as many texts as there are heads."""
-
-    title: str
-    heads: tuple[str, ...]
-    rows: list[tuple[str, ...]]
 
 
 def ranking(choice: Row, case: Row) -> Grid:

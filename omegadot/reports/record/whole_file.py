@@ -1,10 +1,23 @@
-"""A text file written whole or not at all."""
+"""A text file written whole or not at all, and the folder that it goes to."""
 
 from __future__ import annotations
 
 import os
 import secrets
 from pathlib import Path
+
+
+def make_folder(folder: Path) -> None:
+    """Make the folder before the work begins. Raises RecordError where that cannot be done."""
+    from omegadot.reports.record.schema import RecordError
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise RecordError(f"{folder}: cannot be written to ({reason}); give another.") from error
+    if not os.access(folder, os.W_OK):
+        raise RecordError(f"{folder}: cannot be written to; give another.")
 
 
 def write_whole(target: Path, text: str) -> Path:

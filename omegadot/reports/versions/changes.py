@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 from omegadot.reports.text.numbers import listed, times
@@ -101,15 +103,15 @@ def _drift(change: Record) -> str:
     return f"{what} on {case} at {step} s {_from_to(change)}"
 
 
-def pace_text(ratio: Record) -> str:
-    """A ratio of times with its spread."""
-    return f"{ratio['value']:.2f} ({ratio['least']:.2f}–{ratio['most']:.2f})"
+def pace_text(value: float, least: float, most: float) -> str:
+    """A time, or a ratio of times, with its spread."""
+    return f"{value:.2f} ({least:.2f}–{most:.2f})"
 
 
 def pace_lines(step: Record) -> list[Line]:
     """Integrators whose time per step changed beyond the range of the timings."""
     return [
-        (name, f"time per step ×{pace_text(ratio)}")
+        (name, f"time per step ×{pace_text(ratio['value'], ratio['least'], ratio['most'])}")
         for name, ratio in step["paces"].items()
         if ratio["apart"]
     ]
@@ -117,13 +119,8 @@ def pace_lines(step: Record) -> list[Line]:
 
 def runs_of(values: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
     """(versions, text): neighbours of one text together, as 3.7.0–3.10.0."""
-    runs: list[tuple[list[str], str]] = []
-    for version, text in values:
-        if runs and runs[-1][1] == text:
-            runs[-1][0].append(version)
-        else:
-            runs.append(([version], text))
-    return [
-        (versions[0] if len(versions) == 1 else f"{versions[0]}–{versions[-1]}", text)
-        for versions, text in runs
-    ]
+    runs = []
+    for text, group in groupby(values, itemgetter(1)):
+        versions = [version for version, _ in group]
+        runs.append(("–".join(dict.fromkeys((versions[0], versions[-1]))), text))
+    return runs

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
 from omegadot.reports.charts.palette import COLOURS
 from omegadot.reports.page.templating import asset, environment
+from omegadot.reports.record.whole_file import write_whole
 from omegadot.reports.versions import chart as versions_chart
 from omegadot.reports.versions.chart import charts_of
 from omegadot.reports.versions.sheet import sheet_of
@@ -23,3 +26,9 @@ def draw_versions(record: dict[str, Any]) -> str:
         colours=COLOURS,
         css=asset("report.css"),
     )
+
+
+def write_versions(record: dict[str, Any], folder: Path) -> None:
+    """``versions.json`` and ``versions.html``, each whole or not at all. Raises RecordError."""
+    write_whole(folder / "versions.json", json.dumps(record, indent=2) + "\n")
+    write_whole(folder / "versions.html", draw_versions(record))

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Any
 
 from omegadot.reports.text.numbers import listed, plain, times
+from omegadot.reports.text.text_grid import Grid
 from omegadot.reports.versions.changes import (
     RATIO,
     Line,
@@ -30,15 +32,6 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Table:
-    """A title, the heads of the columns, the rows."""
-
-    title: str
-    heads: tuple[str, ...]
-    rows: list[tuple[str, ...]]
-
-
-@dataclass(frozen=True)
 class Sheet:
     """title: one line.  absent: versions that did not run.  wrong: faults and troubles."""
 
@@ -46,7 +39,7 @@ class Sheet:
     remarks: list[str]
     absent: list[Line]
     parts: list[Part]
-    tables: list[Table]
+    tables: list[Grid]
     wrong: list[Line]
 
 
@@ -83,10 +76,8 @@ def _title(record: Record, known: Sequence[Record]) -> str:
     if record["bisect"]:
         return f"{named} {ends}: {record['bisect']['query']}"
     changed = sum(bool(step["changes"]) for step in record["steps"])
-    answered = (
-        f"{requested}" if len(known) == len(record["versions"]) else f"{len(known)} of {requested}"
-    )
-    return f"{named} {ends}: {answered}, {times(changed, 'step')} with changes"
+    some = "" if len(known) == len(record["versions"]) else f"{len(known)} of "
+    return f"{named} {ends}: {some}{requested}, {times(changed, 'step')} with changes"
 
 
 def _remarks(record: Record) -> list[str]:
@@ -107,18 +98,19 @@ def _remarks(record: Record) -> list[str]:
 
 def _parts(steps: Sequence[Record]) -> list[Part]:
     parts: list[Part] = []
-    quiet: list[Record] = []
-    for step in [*steps, None]:
-        if step is not None and not (step["changes"] or pace_lines(step)):
-            quiet.append(step)
+    for changed, group in groupby(steps, _changed):
+        own = list(group)
+        if not changed:
+            parts.append(Part(f"{own[0]['from']} → {own[-1]['to']}", [("", NOTHING)]))
             continue
-        if quiet:
-            parts.append(Part(f"{quiet[0]['from']} → {quiet[-1]['to']}", [("", NOTHING)]))
-            quiet = []
-        if step is not None:
+        for step in own:
             lines = lines_of(step["changes"]) or [("", NOTHING)]
             parts.append(Part(f"{step['from']} → {step['to']}", lines + pace_lines(step)))
     return parts
+
+
+def _changed(step: Record) -> bool:
+    return bool(step["changes"] or pace_lines(step))
 
 
 def _bisected(bisected: Record) -> list[Part]:
@@ -131,17 +123,16 @@ def _bisected(bisected: Record) -> list[Part]:
     for step in bisected["found"]:
         lines = lines_of(step["changes"])
         if step["skipped"]:
-            between = f"{listed(step['skipped'])} between them did not run"
-            lines.append(("", between))
+            lines.append(("", f"{listed(step['skipped'])} between them did not run"))
         parts.append(Part(f"changed in {step['to']} (after {step['from']})", lines))
     return parts
 
 
-def _tables(record: Record, known: Sequence[Record]) -> Iterator[Table]:
+def _tables(record: Record, known: Sequence[Record]) -> Iterator[Grid]:
     rows: list[tuple[str, ...]] = [(what, _values(known, what)) for what in _history(record, known)]
-    yield Table("History", ("figure", "versions"), rows)
+    yield Grid("History", ("figure", "versions"), rows)
     names = list(dict.fromkeys(name for v in known for name in v["integrators"]))
-    yield Table(
+    yield Grid(
         "Time per step, µs: median (min–max)",
         ("version", *names),
         [(v["version"], *(_pace(v["seconds_per_step"].get(n)) for n in names)) for v in known]
@@ -151,15 +142,9 @@ def _tables(record: Record, known: Sequence[Record]) -> Iterator[Table]:
 
 
 def _pace(pace: Record | None) -> str:
-    return "–" if pace is None else pace_text(_microseconds(pace))
-
-
-def _microseconds(pace: Record) -> Record:
-    return {
-        "value": 1e6 * pace["median"],
-        "least": 1e6 * pace["least"],
-        "most": 1e6 * pace["most"],
-    }
+    if pace is None:
+        return "–"
+    return pace_text(*(1e6 * pace[name] for name in ("median", "least", "most")))
 
 
 def _history(record: Record, known: Sequence[Record]) -> list[str]:
@@ -179,8 +164,7 @@ def _history(record: Record, known: Sequence[Record]) -> list[str]:
     integrators = dict.fromkeys(name for v in known for name in v["integrators"])
     found = [name for name in names if name in reported]
     for integrator in integrators:
-        for kind in ("free", "pivoted-damped"):
-            found.append(f"scheme:{integrator}:{kind}")
+        found += [f"scheme:{integrator}:{kind}" for kind in ("free", "pivoted-damped")]
         found.append(f"order:{integrator}:free:attitude")
         found.append(f"drift:{first['name']}:{integrator}{case}")
     return [name for name in found if name in names]

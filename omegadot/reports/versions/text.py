@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import sys
+from collections.abc import Sequence
 
+from rich.table import Table
+from rich.text import Text
+
+from omegadot.reports.text.text_grid import plain_console, text_grid
 from omegadot.reports.versions.sheet import Part, Sheet
-
-WIDTH_WHEN_PIPED = 160
 
 
 def markdown_of(sheet: Sheet) -> str:
@@ -30,20 +32,13 @@ def _listed(head: str, lines: list[tuple[str, str]]) -> list[str]:
     return [head, "", *items, ""]
 
 
-def _row(cells: tuple[str, ...]) -> str:
+def _row(cells: Sequence[str]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
 def print_sheet(sheet: Sheet) -> None:
     """The sheet in the terminal."""
-    from rich.console import Console
-    from rich.text import Text
-
-    from omegadot.reports.text.text_grid import text_grid
-
-    console = Console(
-        width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False, emoji=False
-    )
+    console = plain_console(160)
     console.print(Text(sheet.title, style="bold"))
     for line in sheet.remarks:
         console.print(Text(line, style="dim"))
@@ -57,14 +52,11 @@ def print_sheet(sheet: Sheet) -> None:
         console.print(_grid(part.lines))
     for table in sheet.tables:
         console.print()
-        console.print(text_grid(table.title, table.heads, table.rows))
+        console.print(text_grid(*table))
 
 
-def _grid(lines: list[tuple[str, str]]) -> object:
-    from rich.table import Table as Grid
-    from rich.text import Text
-
-    grid = Grid.grid(padding=(0, 2))
+def _grid(lines: list[tuple[str, str]]) -> Table:
+    grid = Table.grid(padding=(0, 2))
     grid.add_column(no_wrap=True)
     grid.add_column(overflow="fold")
     for what, text in lines:
