@@ -98,7 +98,7 @@ class RunRecord(Record):
 
     def figures(self, folder: str | os.PathLike[str]) -> list[Path]:
         """Write the charts as SVG and PNG, for papers; the paths. Raises RecordError."""
-        from omegadot.reports.charts.static import write_figures
+        from omegadot.reports.charts.static.write import write_figures
 
         return write_figures(self, Path(folder))
 

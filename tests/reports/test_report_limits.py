@@ -9,9 +9,9 @@ from synthetic_record import build, metric, with_metrics
 
 from omegadot.reports.charts.bounds import bounds_of, floors_of, limits_of, residuals_of
 from omegadot.reports.charts.deviations import chart_deviations
-from omegadot.reports.charts.diagrams import equation_payload
 from omegadot.reports.charts.front import named, pareto_front
-from omegadot.reports.charts.payload import lines_of, payload
+from omegadot.reports.charts.palette import lines_of
+from omegadot.reports.charts.payload import equation_payload, payload
 from omegadot.reports.charts.sweeps import Point, Sweep
 from omegadot.reports.summary.provenance import Sources
 
@@ -64,7 +64,7 @@ def test_limits_are_drawn_in_the_chart_s_unit_alone(judged):
 def test_the_axes_hold_the_floor_and_the_bounds(judged):
     charts = chart_deviations(judged)
     lines = lines_of(charts.values(), judged.run["engines"])
-    described, _ = payload(charts, {}, lines, limits_of(judged.metrics))
+    described, _ = payload(charts, {}, lines, limits_of(judged.metrics), Sources())
     scenario = described["scenarios"]["sphere"]
     axes = {axis["channel"]: axis for axis in scenario["charts"]}
     assert axes["attitude"]["resolvable"] == 3e-14

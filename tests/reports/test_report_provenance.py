@@ -3,23 +3,22 @@
 from synthetic_record import build, metric, with_metrics
 
 from omegadot.reports.page.glance import glances
-from omegadot.reports.page.matrix_cards import cards
 from omegadot.reports.page.tables import deviation_table, engine_table, run_table
 from omegadot.reports.summary import matrix
-from omegadot.reports.summary.provenance import (
-    Sources,
-    command_of,
-    kept_options,
-    provenance_payload,
-    requested_as,
-    sources_for,
-    steps_given,
-)
+from omegadot.reports.summary.provenance import Sources, command_of, provenance_payload, sources_for
 from omegadot.reports.summary.summary import summarise
 
 
 def run(*arguments, names=("sphere", "spun")):
     return {"command": ["omegadot", "run", *arguments], "scenarios": [{"name": n} for n in names]}
+
+
+def payload_of(given):
+    return provenance_payload(given, Sources(), {e["name"]: e["name"] for e in given["scenarios"]})
+
+
+def requested_as(given):
+    return dict(payload_of(given)["scenarios"].values())
 
 
 def test_a_scenario_of_a_file_is_requested_by_its_path():
@@ -35,8 +34,8 @@ def test_where_nothing_or_something_else_was_requested_the_name_stands():
 
 def test_options_that_change_what_is_computed_are_kept():
     given = run("--adapter", "mine.py:Mine", "--out", "x", "--timestep", "0.1", "--timestep=0.2")
-    assert kept_options(given) == ["--adapter", "mine.py:Mine"]
-    assert steps_given(given) == ["0.1", "0.2"]
+    assert payload_of(given)["options"] == ["--adapter", "mine.py:Mine"]
+    assert payload_of(given)["steps"] == ["0.1", "0.2"]
     assert command_of(given).startswith("omegadot run --adapter mine.py:Mine --out x")
 
 
@@ -70,7 +69,7 @@ def test_rows_of_all_tables_name_one_and_the_same_run(record):
 def test_cards_follow_the_matrix_and_name_the_runs_of_its_numbers(record):
     summary, sources = summarise(record), Sources()
     cells = [shown for _, row in matrix.matrix(summary) for shown in row]
-    found = cards(summary, sources, {"sphere": "one", "spun-again": "two"})
+    found = matrix.cards(summary, sources, {"sphere": "one", "spun-again": "two"})
     assert [cell.card for cell in cells] == list(range(len(found)))
     place = next(k for k, c in enumerate(summary.columns) if c.engine == "mujoco")
     anchor, status, part, numbers, own = found[place]

@@ -24,6 +24,7 @@ from omegadot.reports.summary.clusters import (
     sentence,
 )
 from omegadot.reports.summary.headline import truth
+from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import summarise
 
 
@@ -112,7 +113,7 @@ def row(table, *heads):
 
 
 def test_the_scheme_table_leaves_the_reference_out(record):
-    table = scheme_table(record)
+    table = scheme_table(record, Sources())
     assert {r.heads[0] for r in table.rows} == {"mujoco", "dart"}
     euler = row(table, "mujoco", "Euler")
     assert euler.heads[2] == "semi-implicit-euler"
@@ -122,7 +123,7 @@ def test_the_scheme_table_leaves_the_reference_out(record):
 def test_a_scheme_that_is_not_implemented_stands_out(record):
     add = ["sphere", "dart", "semi-implicit", 0.04, "scheme", "omega", "match"]
     found = with_metrics(record, metric(*add, 3e8, verdict="fail"))
-    equalled, share, *_ = row(scheme_table(found), "dart").values
+    equalled, share, *_ = row(scheme_table(found, Sources()), "dart").values
     assert (equalled.text, equalled.mark) == ("6 of 7 ✗ fail", "fail")
     assert share.text == "3.0e8"
 
@@ -134,7 +135,7 @@ def test_a_scheme_that_depends_on_the_system_is_reported(record):
             task["scheme"] = "another" if task["timestep"] == 0.02 else task["scheme"]
         if task["engine"] == "dart":
             task["scheme"] = None
-    table = scheme_table(replace(record, run={**record.run, "tasks": tasks}))
+    table = scheme_table(replace(record, run={**record.run, "tasks": tasks}), Sources())
     assert row(table, "mujoco", "Euler").heads[2] == "semi-implicit-euler (another in 1 run)"
     assert row(table, "dart").heads[2] == "none declared"
 
@@ -145,11 +146,11 @@ def test_orders_are_ranges_of_what_was_judged(record):
         metric(*add, 0.88, bound=1.0),
         metric(*add, 0.2, bound=1.0, verdict="info", note="not resolved"),
     ]
-    cells = row(order_table(with_metrics(record, *more)), "dart").values
+    cells = row(order_table(with_metrics(record, *more), Sources()), "dart").values
     assert cells[1].text == "0.88 … 1.01 (1)"
     assert {cell.text for place, cell in enumerate(cells) if place != 1} == {"–"}
     failed = metric(*add, 0.3, bound=1.0, verdict="fail")
-    cell = row(order_table(with_metrics(record, failed)), "dart").values[1]
+    cell = row(order_table(with_metrics(record, failed), Sources()), "dart").values[1]
     assert (cell.text, cell.mark) == ("0.30 … 1.01 (1) ✗ fail", "fail")
 
 
@@ -212,11 +213,11 @@ def test_axes_hold_all_values_and_know_of_zeros():
 
 
 def test_only_lines_of_the_page_are_drawn():
-    found = sweep_payload([sweep(1.0, 1e-3, 2e-3, None)], {("x", "physics", "a"): 4})
+    found = sweep_payload([sweep(1.0, 1e-3, 2e-3, None)], {("x", "physics", "a"): 4}, Sources())
     # Step, error, cost, and the number of the run that they are of.
     points = [[0.01, 0.001, 1.0, 0], [0.02, 0.002, 1.0, 1], [0.04, None, 1.0, 2]]
     assert found["lines"] == [[4, points]]
-    assert sweep_payload([sweep(1.0, 1e-3, 2e-3, 4e-3)], {})["lines"] == []
+    assert sweep_payload([sweep(1.0, 1e-3, 2e-3, 4e-3)], {}, Sources())["lines"] == []
 
 
 def test_the_kinds_of_exact_solution_are_counted(record):

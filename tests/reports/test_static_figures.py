@@ -19,13 +19,12 @@ from synthetic_record import build, metric, with_metrics
 
 from omegadot.reports.charts.bounds import Limits
 from omegadot.reports.charts.palette import colours
-from omegadot.reports.charts.static import write_figures
 from omegadot.reports.charts.static.charts import charts_of
 from omegadot.reports.charts.static.deviations import draw, shown
 from omegadot.reports.charts.static.legend import Entry, blocks_of
-from omegadot.reports.charts.static.names import file_stems
 from omegadot.reports.charts.static.style import RC, SOFT
 from omegadot.reports.charts.static.sweeps import draw_convergence, draw_work_precision
+from omegadot.reports.charts.static.write import file_stems, write_figures
 from omegadot.reports.record.schema import RecordError
 
 CHARTS = {

@@ -20,7 +20,7 @@ from omegadot.reference_impl.rotations import (
 )
 from omegadot.reports.charts.deviations import chart_deviations
 from omegadot.reports.charts.packing import pack_codes
-from omegadot.reports.charts.payload import lines_of
+from omegadot.reports.charts.palette import lines_of
 from omegadot.reports.page.page import draw_page
 from omegadot.reports.page.view_3d import view
 from omegadot.reports.page.view_3d.attitudes import DIVERGED, FRAMES, attitudes_of

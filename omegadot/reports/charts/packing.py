@@ -16,6 +16,11 @@ _MISSING = 0xFFFF
 _LARGEST_CODE = _MISSING - 1
 
 
+def rounded(value: float | None, digits: int = 4) -> float | None:
+    """A number to so many significant digits: what a picture shows, in few characters."""
+    return None if value is None else float(f"{value:.{digits}g}")
+
+
 def pack_json(value: object) -> str:
     """`pack` of the value as compact, strict JSON."""
     return pack(json.dumps(value, separators=(",", ":"), allow_nan=False).encode())

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
+
+from omegadot.reports.charts.deviations import Chart
 
 # Apart in the common forms of colour blindness, 3:1 or more against the page (light, dark).
 INK = ("#1c1f23", "#e6e8eb")
@@ -69,3 +72,44 @@ def dashes(engines: Iterable[Mapping[str, Any]]) -> dict[tuple[str, str], str]:
         for k, name in enumerate(waiting):
             given[engine["name"], name] = DASHES[free[k % len(free)]]
     return given
+
+
+@dataclass(frozen=True)
+class Line:
+    """How one engine's integrator is drawn everywhere. colour: (light, dark); width in px."""
+
+    engine: str
+    integrator: str
+    setup: str
+    colour: tuple[str, str]
+    dash: str
+    width: float
+
+    @property
+    def name(self) -> str:
+        """Its name in the legend and the hover text."""
+        return f"{self.engine} {self.integrator}" + (self.setup != "physics") * f" ({self.setup})"
+
+
+def lines_of(charts: Iterable[Chart], engines: list[Mapping[str, Any]]) -> list[Line]:
+    """Every line on the page, in the order of the engines.
+
+    The engines first in order are drawn broadest, below the others: where lines coincide, each
+    stays visible.
+    """
+    runs = {(c.engine, c.setup, c.integrator): None for chart in charts for c in chart.deviations}
+    order = {entry["name"]: place for place, entry in enumerate(engines)}
+    names = sorted({engine for engine, _, _ in runs}, key=lambda n: (order.get(n, len(order)), n))
+    colour, dash = colours(names), dashes(engines)
+    width = {name: min(4.0, 1.4 + 0.7 * k) for k, name in enumerate(reversed(names))}
+    return [
+        Line(
+            engine,
+            name,
+            setup,
+            colour[engine],
+            dash.get((engine, name), ""),
+            width[engine] * (1.0 if setup == "physics" else 0.5),
+        )
+        for engine, setup, name in sorted(runs, key=lambda run: names.index(run[0]))
+    ]

@@ -2,64 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from omegadot.reference_impl.system import Array
-from omegadot.reports.charts.axes import axis_of, bounds_drawn, captions, drawn
-from omegadot.reports.charts.bounds import Limits, floor_of
-from omegadot.reports.charts.deviations import Chart
-from omegadot.reports.charts.packing import CEILING_DECADE, FLOOR_DECADE, codes_of
-from omegadot.reports.charts.palette import colours, dashes
-from omegadot.reports.charts.sweeps import Sweep, sweep_payload
+from omegadot.reports.charts.bounds import Limits, Residual, floor_of
+from omegadot.reports.charts.deviations import Chart, Series
+from omegadot.reports.charts.packing import CEILING_DECADE, FLOOR, FLOOR_DECADE, codes_of, rounded
+from omegadot.reports.charts.palette import Line, colours
+from omegadot.reports.charts.sweeps import Sweep, decades, sweep_payload
 from omegadot.reports.summary.provenance import Sources
-from omegadot.reports.text.numbers import plain
+from omegadot.reports.text.numbers import engine_name, knob, plain
 
 _ORDINALS = ("finest", "second finest", "third finest")
-
-
-@dataclass(frozen=True)
-class Line:
-    """How one engine's integrator is drawn everywhere. colour: (light, dark); width in px."""
-
-    engine: str
-    integrator: str
-    setup: str
-    colour: tuple[str, str]
-    dash: str
-    width: float
-
-    @property
-    def name(self) -> str:
-        """Its name in the legend and the hover text."""
-        return f"{self.engine} {self.integrator}" + (self.setup != "physics") * f" ({self.setup})"
-
-
-def lines_of(charts: Iterable[Chart], engines: list[Mapping[str, Any]]) -> list[Line]:
-    """Every line on the page, in the order of the engines.
-
-    The engines first in order are drawn broadest, below the others: where lines coincide, each
-    stays visible.
-    """
-    runs = {(c.engine, c.setup, c.integrator): None for chart in charts for c in chart.deviations}
-    order = {entry["name"]: place for place, entry in enumerate(engines)}
-    names = sorted({engine for engine, _, _ in runs}, key=lambda n: (order.get(n, len(order)), n))
-    colour, dash = colours(names), dashes(engines)
-    width = {name: min(4.0, 1.4 + 0.7 * k) for k, name in enumerate(reversed(names))}
-    return [
-        Line(
-            engine,
-            name,
-            setup,
-            colour[engine],
-            dash.get((engine, name), ""),
-            width[engine] * (1.0 if setup == "physics" else 0.5),
-        )
-        for engine, setup, name in sorted(runs, key=lambda run: names.index(run[0]))
-    ]
 
 
 def rank_of(chart: Chart) -> dict[tuple[float | None, float | None], int]:
@@ -88,8 +45,8 @@ def payload(
     charts: Mapping[str, Chart],
     sweeps: Mapping[str, list[Sweep]],
     lines: list[Line],
-    limits: Mapping[str, Limits] | None = None,
-    sources: Sources | None = None,
+    limits: Mapping[str, Limits],
+    sources: Sources,
 ) -> tuple[dict[str, Any], Array]:
     """The script's description of every chart, by the scenario's place, and all codes in a row.
 
@@ -97,34 +54,33 @@ def payload(
     each other from `start`, `count` of each, in the order of the scenario's charts; bounds, a
     channel each, are ``[fraction, bound, fraction, bound, ...]``.
     """
-    known = sources or Sources()
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
     times: dict[bytes, int] = {}
-    clocks: list[list[float]] = []
+    clocks: list[list[float | None]] = []
     values: list[Array] = []
     used = 0
     scenarios: dict[str, Any] = {}
     for name, chart in charts.items():
         rank, entries = rank_of(chart), []
-        own = (limits or {}).get(name, Limits({}, {}))
+        own = limits.get(name, Limits({}, {}))
         for deviation in chart.deviations:
             key = deviation.time.tobytes()
             if key not in times:
                 times[key] = len(clocks)
-                clocks.append([float(f"{t:.6g}") for t in deviation.time])
+                clocks.append([rounded(t, 6) for t in deviation.time])
             line = places[deviation.engine, deviation.setup, deviation.integrator]
             count = len(deviation.time)
             knobs = rank[deviation.timestep, deviation.accuracy]
-            bounds, source = bounds_drawn(own, deviation, chart), known.number(vars(deviation))
+            bounds, source = _bounds_drawn(own, deviation, chart), sources.number(vars(deviation))
             entries.append([line, knobs, times[key], used, count, bounds, source])
             for channel in chart.units:
-                values.append(drawn(deviation, channel))
+                values.append(_drawn(deviation, channel))
                 used += count
         scenarios[name] = {
-            "charts": [axis_of(chart, channel, own) for channel in chart.units],
+            "charts": [_axis_of(chart, channel, own) for channel in chart.units],
             "deviations": entries,
-            "steps": captions(rank),
-            "sweeps": sweep_payload(sweeps.get(name, []), places, known, floor_of(own)),
+            "steps": _captions(rank),
+            "sweeps": sweep_payload(sweeps.get(name, []), places, sources, floor_of(own)),
         }
     description = {
         "floor": FLOOR_DECADE,
@@ -134,3 +90,60 @@ def payload(
         "scenarios": scenarios,
     }
     return description, codes_of(np.concatenate([np.empty(0), *values]))
+
+
+def _bounds_drawn(limits: Limits, deviation: Series, chart: Chart) -> list[list[float | None]]:
+    """A list a channel: ``[fraction, bound, fraction, bound, ...]``."""
+    return [
+        [rounded(v, 3) for step in limits.bound(deviation, channel, unit) for v in step]
+        for channel, unit in chart.units.items()
+    ]
+
+
+def _drawn(deviation: Series, channel: str) -> Array:
+    """The errors as drawn: without the start, which is given and so has no error."""
+    values = deviation.values[channel]
+    start = (deviation.time == 0.0) & (values <= FLOOR)
+    return np.where(start, np.nan, values)
+
+
+def _axis_of(chart: Chart, channel: str, limits: Limits) -> dict[str, Any]:
+    """Decades that hold the errors of every step size, so that a change of step moves no axis.
+
+    They hold the bounds and the floor too: what judges an error must be visible.
+    """
+    unit = chart.units[channel]
+    values = np.concatenate([_drawn(deviation, channel) for deviation in chart.deviations])
+    floor = limits.floor(channel, unit)
+    seen = [bound for c in chart.deviations for _, bound in limits.bound(c, channel, unit)]
+    known = np.append(values[~np.isnan(values)], seen + ([] if floor is None else [floor]))
+    return {"channel": channel, "unit": unit, "resolvable": rounded(floor, 3), **decades(known)}
+
+
+def _captions(rank: Mapping[tuple[float | None, float | None], int]) -> list[str]:
+    """By rank: the steps and accuracies that it stands for, as text."""
+    by_rank: dict[int, list[str]] = {}
+    for (timestep, accuracy), place in rank.items():
+        by_rank.setdefault(place, []).append(knob(timestep, accuracy))
+    return [", ".join(filter(None, by_rank[place])) for place in sorted(by_rank)]
+
+
+def equation_payload(
+    residuals: Iterable[Residual], sources: Sources, engines: Sequence[str]
+) -> list[list[Any]]:
+    """``[engine, label, colour, source, random, bound, path, bound]`` an engine, in their order.
+
+    engines: all of the page, so that each has the colour that its lines have.
+    """
+    colour = colours(engines)
+    return [
+        [
+            r.engine,
+            engine_name(r.engine, setup=r.setup),
+            colour[r.engine],
+            sources.number({**vars(r), "engine_version": r.version}),
+            *(rounded(value) for value in (*r.random, *r.path)),
+        ]
+        for r in residuals
+        if r.engine != "exact"
+    ]

@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 
 from omegadot.reference_impl.system import Array
-from omegadot.reports.charts.packing import CEILING_DECADE, FLOOR
+from omegadot.reports.charts.packing import CEILING_DECADE, FLOOR, rounded
 from omegadot.reports.summary.provenance import Sources
 
 # A guide of the declared order stands this much above the errors that it goes with.
@@ -138,7 +138,7 @@ def decades(values: Array) -> dict[str, Any]:
 def sweep_payload(
     sweeps: list[Sweep],
     places: Mapping[tuple[str, str, str], int],
-    sources: Sources | None = None,
+    sources: Sources,
     floor: float = 0.0,
 ) -> dict[str, Any]:
     """What the script draws: ``[line, [[h, error, cost, source], ...]]`` an integrator, guides,
@@ -146,28 +146,21 @@ def sweep_payload(
 
     floor: rad, below which attitude errors cannot be distinguished; 0 where it is unknown.
     """
-
-    def digits(value: float | None) -> float | None:
-        return None if value is None else float(f"{value:.4g}")
-
-    known = sources or Sources()
-
-    def number(sweep: Sweep, point: Point) -> int:
-        return known.number({**vars(sweep), "timestep": point.timestep})
-
     lines = [
-        [
-            places[sweep.engine, sweep.setup, sweep.integrator],
-            [[p.timestep, digits(p.error), digits(p.cost), number(sweep, p)] for p in sweep.points],
-        ]
+        [places[lane], [_drawn(sweep, point, sources) for point in sweep.points]]
         for sweep in sweeps
-        if (sweep.engine, sweep.setup, sweep.integrator) in places
+        if (lane := (sweep.engine, sweep.setup, sweep.integrator)) in places
     ]
     errors = [p.error for sweep in sweeps for p in sweep.points if p.error is not None]
     return {
         "lines": lines,
-        "guides": [[digits(value) for value in guide] for guide in guides(sweeps)],
-        "rounding": [[step, digits(bound)] for step, bound in rounding(sweeps)],
-        "resolvable": digits(floor) if floor else None,
+        "guides": [[rounded(value) for value in guide] for guide in guides(sweeps)],
+        "rounding": [[step, rounded(bound)] for step, bound in rounding(sweeps)],
+        "resolvable": rounded(floor) if floor else None,
         **decades(np.array(errors + ([floor] if floor else []))),
     }
+
+
+def _drawn(sweep: Sweep, point: Point, sources: Sources) -> list[float | None]:
+    number = sources.number(vars(sweep) | vars(point))
+    return [point.timestep, rounded(point.error), rounded(point.cost), number]

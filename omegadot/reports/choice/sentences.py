@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from omegadot.reports.record.impossible import impossible_bodies
+from omegadot.reports.record.run_json import impossible_bodies
 from omegadot.reports.text.numbers import listed, plain, quantity, short, times
 
 Row = Mapping[str, Any]

@@ -11,7 +11,7 @@ import polars as pl
 
 from omegadot.reports.record.schema import GATES
 from omegadot.reports.summary.figures import Figure, Range, size
-from omegadot.reports.summary.matrix import MARKS
+from omegadot.reports.summary.matrix import MARKS, origin_of
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import STATUSES, YARDSTICKS, Cell, Column, Summary
 from omegadot.reports.text.numbers import knob, short, times
@@ -54,10 +54,8 @@ def _glance(column: Column, summary: Summary, metrics: pl.DataFrame, sources: So
     )
     status = min((cell.status for cell in cells), key=STATUSES.index, default="absent")
     ranges = [cell.attitude for cell in cells if cell.attitude]
-    version = "" if column.version in column.label else f" {column.version}"
-    origin = {"engine": column.engine, "engine_version": column.version, "setup": column.setup}
     return Glance(
-        column.label + version,
+        column.name,
         status.replace("-", " "),
         MARKS.get(status, "–"),
         _runs(cells),
@@ -66,7 +64,7 @@ def _glance(column: Column, summary: Summary, metrics: pl.DataFrame, sources: So
         _spread(ranges, lambda found: found.worst),
         _error_source(own),
         _cost(own),
-        sources.number(origin),
+        sources.number(origin_of(column)),
     )
 
 

@@ -10,11 +10,11 @@ import polars as pl
 from omegadot.reports.charts.chart_library import packed_library
 from omegadot.reports.charts.deviations import POINTS, chart_deviations
 from omegadot.reports.charts.packing import FLOOR_DECADE, pack_codes, pack_json
-from omegadot.reports.charts.payload import lines_of, step_choices
+from omegadot.reports.charts.palette import lines_of
+from omegadot.reports.charts.payload import step_choices
 from omegadot.reports.choice.page import Section
 from omegadot.reports.page.glance import glances
 from omegadot.reports.page.glossary import INTRODUCTION, TERMS
-from omegadot.reports.page.matrix_cards import cards
 from omegadot.reports.page.sections import drawings, measured_in, sections_of
 from omegadot.reports.page.templating import asset, environment, script
 from omegadot.reports.page.view_3d.view import view_section
@@ -23,12 +23,7 @@ from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
 from omegadot.reports.summary.headline import headline, remarks, truth
-from omegadot.reports.summary.provenance import (
-    Sources,
-    command_of,
-    provenance_payload,
-    sources_for,
-)
+from omegadot.reports.summary.provenance import Sources, command_of, provenance_payload, sources_for
 from omegadot.reports.summary.summary import STATUSES, summarise
 
 _JUDGED_SHOWN = 50
@@ -55,14 +50,14 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
     lines = lines_of(charts.values(), record.run["engines"])
     anchors = _anchors(summary.scenarios)
     measured = measured_in(record.metrics)
-    sections = sections_of(record, summary, charts, anchors, sources, measured)
+    sections = [*sections_of(record, summary, charts, anchors, sources, measured)]
     description, codes = drawings(measured, charts, lines, anchors, sources)
     judged = _judged(record.metrics, sources)
     schemes, orders = scheme_table(record, sources), order_table(record, sources)
     engines = glances(summary, record.metrics, sources)
-    matrix_cards = cards(summary, sources, anchors)
+    cards = matrix.cards(summary, sources, anchors)
     # Last, when every table and chart has named its sources.
-    origins = provenance_payload(record.run, sources, anchors) | {"cards": matrix_cards}
+    origins = provenance_payload(record.run, sources, anchors) | {"cards": cards}
     template = environment().get_template("report.html.j2")
     return template.render(
         run=record.run,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import polars as pl
@@ -15,18 +16,6 @@ from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import task_status
 from omegadot.reports.text.numbers import engine_name, knob, short
 
-CHANNEL_NAMES = {
-    "omega_dot": "omega-dot",
-    "omega": "omega",
-    "attitude": "attitude",
-    "energy": "energy",
-    "angular_momentum": "angular momentum",
-    "linear_momentum": "linear momentum",
-    "position": "position",
-    "torque": "torque",
-    "model": "model",
-    "time": "time",
-}
 # One value an engine, whatever it is stepped with; the others are one value a run.
 ENGINE_GATES = ("model", "equation")
 _PLAIN_NUMBERS = ("scheme", "cost")
@@ -65,6 +54,11 @@ class Table:
 EMPTY = Value("")
 
 
+def channel_name(channel: str) -> str:
+    """A channel in plain English."""
+    return "omega-dot" if channel == "omega_dot" else channel.replace("_", " ")
+
+
 def unit_text(unit: str, gate: str = "") -> str:
     """How a unit stands behind a name: a pure number is a relative error, or an order or factor."""
     if unit == "1":
@@ -72,17 +66,14 @@ def unit_text(unit: str, gate: str = "") -> str:
     return unit
 
 
-def engine_table(metrics: pl.DataFrame, sources: Sources | None = None) -> Table:
+def engine_table(metrics: pl.DataFrame, sources: Sources) -> Table:
     """Model and equation, one row an engine: the worst value over its runs."""
     own = metrics.filter(pl.col("gate").is_in(ENGINE_GATES))
-    return _pivot(own, _ENGINE, _engine_heads, sources or Sources())
+    return _pivot(own, _ENGINE, _engine_heads, sources)
 
 
-def run_table(
-    metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]], sources: Sources | None = None
-) -> Table:
+def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]], sources: Sources) -> Table:
     """What each run came to, one row a run, with its verdict and the reason of it."""
-    sources = sources or Sources()
     # A match stands under the channel that is farthest off; here it has a column of its own.
     whole = pl.when(pl.col("metric") == "match").then(pl.lit("")).otherwise(pl.col("channel"))
     own = metrics.filter(~pl.col("gate").is_in(ENGINE_GATES)).with_columns(channel=whole)
@@ -103,9 +94,8 @@ def run_table(
     return Table(("engine", "run"), groups, ("verdict", *table.columns, "why"), tuple(rows))
 
 
-def deviation_table(chart: Chart, sources: Sources | None = None) -> Table:
+def deviation_table(chart: Chart, sources: Sources) -> Table:
     """The numbers behind a scenario's charts: each run's largest error, and its last."""
-    sources = sources or Sources()
     rows = [
         Row(
             run_heads((c.engine, "", c.setup, c.integrator, c.timestep, c.accuracy)),
@@ -119,7 +109,7 @@ def deviation_table(chart: Chart, sources: Sources | None = None) -> Table:
         for c in chart.deviations
     ]
     groups = tuple(
-        (f"{CHANNEL_NAMES[channel]}, {unit_text(unit)}", 2) for channel, unit in chart.units.items()
+        (f"{channel_name(channel)}, {unit_text(unit)}", 2) for channel, unit in chart.units.items()
     )
     return Table(("engine", "run"), groups, ("largest", "at the end") * len(groups), tuple(rows))
 
@@ -139,43 +129,28 @@ def run_heads(key: tuple[Any, ...]) -> tuple[str, ...]:
 def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any, sources: Sources) -> Table:
     """One row a key, one column a (gate, channel, metric, unit), each cell its worst row."""
     keys = ["gate", "channel", "metric", "unit"]
-    # Runs and measures by number: comparing their names row by row would take most of the time.
-    measures = metrics.select(keys).unique(maintain_order=True)
-    order = sorted(range(len(measures)), key=lambda k: GATES.index(measures["gate"][k]))
-    measures = measures[order].with_row_index("place")
-    columns = measures.select(keys).rows()
-    found = metrics.with_columns(run=pl.struct(heads).rle_id()).join(
-        measures, on=keys, how="left", nulls_equal=True, maintain_order="left"
-    )
-    rows: dict[tuple[str, ...], list[Value]] = {}
+    columns = metrics.select(keys).unique(maintain_order=True).rows()
+    columns.sort(key=lambda column: GATES.index(column[0]))
     numbers: dict[tuple[str, ...], int] = {}
-    weights: dict[tuple[str, ...], list[tuple[bool, float]]] = {}
-    keyed = []
-    for key in found.unique("run", keep="first", maintain_order=True).select(heads).rows():
+    for key in metrics.select(heads).unique(maintain_order=True).rows():
         names = name(key)
-        keyed.append(names)
         if names not in numbers:
             numbers[names] = sources.number(dict(zip(heads, key, strict=True)))
-            rows[names] = [EMPTY] * len(columns)
-            weights[names] = [(False, float("-inf"))] * len(columns)
-    for at, place, value, bound, verdict in found.select(
-        "run", "place", "value", "bound", "verdict"
-    ).rows():
-        names = keyed[at]
-        weight = (verdict == "fail", float("inf") if value is None or value != value else value)
-        if weights[names][place] <= weight:
-            weights[names][place] = weight
-            rows[names][place] = _value(value, bound, verdict)
-    titles = [": ".join(filter(None, (g, CHANNEL_NAMES.get(c)))) for g, c, _, _ in columns]
-    groups: list[tuple[str, int]] = []
-    for title in titles:
-        count = groups.pop()[1] if groups and groups[-1][0] == title else 0
-        groups.append((title, count + 1))
+    # The worst comes last and stays: a failure, and there the largest value.
+    size = pl.col("value").fill_nan(float("inf")).fill_null(float("inf"))
+    ordered = metrics.sort(pl.col("verdict") == "fail", size, maintain_order=True)
+    cells: dict[tuple[tuple[str, ...], tuple[str, ...]], tuple[Any, ...]] = {}
+    for row in ordered.select(*heads, *keys, "value", "bound", "verdict").iter_rows():
+        cells[name(row[:-7]), row[-7:-3]] = row[-3:]
+    titles = [": ".join(filter(None, (g, channel_name(c)))) for g, c, _, _ in columns]
     return Table(
         ("engine",),
-        tuple(groups),
+        tuple((title, len(list(group))) for title, group in groupby(titles)),
         tuple(_column_name(*column) for column in columns),
-        tuple(Row(names, tuple(line), numbers[names]) for names, line in rows.items()),
+        tuple(
+            Row(names, tuple(_value(cells.get((names, column))) for column in columns), number)
+            for names, number in numbers.items()
+        ),
     )
 
 
@@ -183,7 +158,10 @@ def _column_name(gate: str, _channel: str, metric: str, unit: str) -> str:
     return ", ".join(filter(None, (metric.replace("_", " "), unit_text(unit, gate))))
 
 
-def _value(value: float | None, bound: float | None, verdict: str) -> Value:
+def _value(figure: tuple[Any, ...] | None) -> Value:
+    if figure is None:
+        return EMPTY
+    value, bound, verdict = figure
     text = short(value)
     if verdict not in ("fail", "declared"):
         return Value(text)

@@ -8,7 +8,7 @@ from typing import Any
 
 import polars as pl
 
-from omegadot.reports.page.tables import CHANNEL_NAMES, Row, Table, Value, run_heads
+from omegadot.reports.page.tables import Row, Table, Value, channel_name, run_heads
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.text.numbers import short, times
@@ -31,13 +31,12 @@ def _declared(record: Record) -> dict[Key, Counter[str]]:
     return found
 
 
-def scheme_table(record: Record, sources: Sources | None = None) -> Table:
+def scheme_table(record: Record, sources: Sources) -> Table:
     """One row an integrator, over all scenarios and steps: does it implement the declared scheme?
 
     In how many runs, with what largest deviation as a fraction of the round-off bound, and in
     omega and attitude. The reference is left out: the others are compared with it.
     """
-    sources = sources or Sources()
     metrics = _of_runs(record).filter(pl.col("engine") != "reference")
     matches = _by_key(metrics.filter(pl.col("metric") == "match"))
     deviations = _by_key(metrics.filter(pl.col("metric") == "unexplained_max"))
@@ -61,7 +60,7 @@ def scheme_table(record: Record, sources: Sources | None = None) -> Table:
     )
 
 
-def order_table(record: Record, sources: Sources | None = None) -> Table:
+def order_table(record: Record, sources: Sources) -> Table:
     """One row an integrator: the range of its observed orders over all scenarios, by channel."""
     metrics = _of_runs(record)
     orders = _by_key(metrics.filter(pl.col("metric") == "observed_order"))
@@ -69,14 +68,14 @@ def order_table(record: Record, sources: Sources | None = None) -> Table:
         Row(
             _heads(key),
             tuple(_order_cell(found, channel) for channel in _CHANNELS),
-            _source(key, sources or Sources()),
+            _source(key, sources),
         )
         for key, found in orders.items()
     ]
     return Table(
         ("engine", "integrator"),
         (("observed order (declared)", len(_CHANNELS)),),
-        tuple(CHANNEL_NAMES[channel] for channel in _CHANNELS),
+        tuple(map(channel_name, _CHANNELS)),
         tuple(rows),
     )
 

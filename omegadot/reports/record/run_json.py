@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from omegadot.reports.record import schema
 from omegadot.reports.record.schema import RecordError
+from omegadot.scenarios.tensor import ALLOWED, broken_triangle
 
 
 def read_run(path: Path) -> dict[str, Any]:
@@ -46,6 +49,20 @@ def check_run(run: dict[str, Any], where: str) -> None:
         _check_value(task.get("outcome"), schema.OUTCOMES, f"{where}: tasks[{number}].outcome")
         for gate, verdict in (task.get("gates") or {}).items():
             _check_value(verdict, schema.VERDICTS, f"{where}: tasks[{number}].gates.{gate}")
+
+
+def impossible_bodies(scenarios: Iterable[Mapping[str, Any]]) -> list[str]:
+    """A sentence on each. scenarios: rows with `name` and `definition`, as records have them."""
+    found = []
+    for entry in scenarios:
+        body = (entry.get("definition") or {}).get("body") or {}
+        broken = broken_triangle(np.array(body["inertia"])) if body.get(ALLOWED) else None
+        if broken:
+            found.append(
+                f"{entry['name']}: an impossible inertia, allowed on request: its greatest"
+                f" principal moment exceeds the sum of the other two ({broken} kg m^2)."
+            )
+    return found
 
 
 def _check_clusters(clusters: object, where: str) -> None:

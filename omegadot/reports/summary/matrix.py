@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from omegadot.reports.summary.figures import Figure, Range
@@ -45,7 +46,7 @@ class Line:
     engine: str
     shown: Shown
     numbers: list[tuple[str, str]]
-    source: int | None = None
+    source: int
 
 
 def origin_of(column: Column, figure: Figure | None = None) -> dict[str, Any]:
@@ -82,26 +83,16 @@ def matrix(summary: Summary) -> list[tuple[str, list[Shown]]]:
     ]
 
 
-def lines(summary: Summary, scenario: str, sources: Sources | None = None) -> list[Line]:
+def lines(summary: Summary, scenario: str, sources: Sources) -> list[Line]:
     """A scenario's row of the matrix, spelt out: one line an engine."""
-    sources = sources or Sources()
-    return [
-        replace(
-            _line(column, summary.cells[scenario, column]),
-            source=sources.number(origin_of(column)),
-        )
-        for column in summary.columns
-    ]
-
-
-def _line(column: Column, cell: Cell) -> Line:
-    version = "" if column.version in column.label else f" {column.version}"
-    ends = [end for span in (cell.drift, cell.attitude) for end in _ends(span)]
-    return Line(column.label + version, shown(cell), [named(f) for f in (cell.residual, *ends)])
-
-
-def _ends(span: Range | None) -> tuple[Figure | None, Figure | None]:
-    return (None, None) if span is None else (span.best, span.worst)
+    found = []
+    for column in summary.columns:
+        cell = summary.cells[scenario, column]
+        ends = [(s.best, s.worst) if s else (None, None) for s in (cell.drift, cell.attitude)]
+        figures = [cell.residual, *(figure for pair in ends for figure in pair)]
+        numbers = [named(figure) for figure in figures]
+        found.append(Line(column.name, shown(cell), numbers, sources.number(origin_of(column))))
+    return found
 
 
 def _span(span: Range | None) -> str:
@@ -125,3 +116,34 @@ def text(status: str) -> str:
     return {"not-judged": "not judged", "not-installed": "not installed", "absent": "not run"}.get(
         status, status
     )
+
+
+def cards(summary: Summary, sources: Sources, anchors: Mapping[str, str]) -> list[list[Any]]:
+    """The card of each cell: ``[address, verdict, part, [[what, value, source], ...]]``.
+
+    In the order of the matrix, row by row.
+    """
+    return [
+        [
+            anchors[name],
+            text(summary.cells[name, column].status),
+            shown(summary.cells[name, column]).part,
+            [
+                [what, named(figure)[0], sources.number(origin_of(column, figure))]
+                for what, figure in _figures(summary.cells[name, column])
+            ],
+            sources.number(origin_of(column)),
+        ]
+        for name in summary.scenarios
+        for column in summary.columns
+    ]
+
+
+def _figures(cell: Cell) -> list[tuple[str, Figure]]:
+    found = [("worst omega-dot residual, relative", cell.residual)]
+    names = ("angular-momentum drift, relative", "attitude error")
+    for what, span in zip(names, (cell.drift, cell.attitude), strict=True):
+        if span is not None:
+            found += [(f"{what}: best integrator, finest step", span.best)]
+            found += [(f"{what}: worst integrator, finest step", span.worst)]
+    return [(what, figure) for what, figure in found if figure is not None]

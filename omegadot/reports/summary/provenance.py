@@ -49,6 +49,32 @@ def sources_for(engines: Iterable[Mapping[str, Any]]) -> Sources:
     return Sources({engine["name"]: str(engine.get("version") or "") for engine in engines})
 
 
+def provenance_payload(
+    run: Mapping[str, Any], sources: Sources, anchors: Mapping[str, str]
+) -> dict[str, Any]:
+    """What the page's script makes its cards from: sources by number, scenarios by address.
+
+    scenarios: each with the argument that requested it, which for a file is its path as given.
+    options: those that the run's repetition needs.  steps: those requested instead of the
+    scenarios' own.
+    """
+    texts, options = _arguments([str(text) for text in run.get("command") or ()])
+    names = [entry["name"] for entry in run["scenarios"]]
+    requested = dict(zip(names, texts, strict=True)) if len(texts) == len(names) else {}
+    return {
+        "sources": [list(vars(source).values()) for source in sources.numbers],
+        "scenarios": {
+            anchor: [name, requested.get(name, name)] for name, anchor in anchors.items()
+        },
+        "requested": texts,
+        "seed": run.get("seed"),
+        "options": [text for option in options if option[0] in _KEPT for text in option],
+        "steps": [value for name, value in options if name == "--timestep"],
+        "command": command_of(run),
+        "traces": [engine["name"] for engine in run.get("engines", []) if "trace" in engine],
+    }
+
+
 def _arguments(command: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
     """The positional arguments after ``run``, and the options with their values."""
     texts: list[str] = []
@@ -63,47 +89,6 @@ def _arguments(command: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]
         else:  # every option of the command takes a value
             options.append((text, next(rest, "")))
     return texts, options
-
-
-def requested_as(run: Mapping[str, Any]) -> dict[str, str]:
-    """By scenario: the argument that requested it, which for a file is its path as given."""
-    names = [entry["name"] for entry in run["scenarios"]]
-    texts, _ = _arguments([str(text) for text in run.get("command") or ()])
-    given = texts if len(texts) == len(names) else names
-    return dict(zip(names, given, strict=True))
-
-
-def kept_options(run: Mapping[str, Any]) -> list[str]:
-    """The options of the run's command that its repetition needs, as arguments."""
-    _, options = _arguments([str(text) for text in run.get("command") or ()])
-    return [text for option in options if option[0] in _KEPT for text in option]
-
-
-def steps_given(run: Mapping[str, Any]) -> list[str]:
-    """The steps that the run's command requested instead of the scenarios' own."""
-    _, options = _arguments([str(text) for text in run.get("command") or ()])
-    return [value for name, value in options if name == "--timestep"]
-
-
-def provenance_payload(
-    run: Mapping[str, Any], sources: Sources, anchors: Mapping[str, str]
-) -> dict[str, Any]:
-    """What the page's script makes its cards from: sources by number, scenarios by address."""
-    requested = requested_as(run)
-    texts, _ = _arguments([str(text) for text in run.get("command") or ()])
-    return {
-        "sources": [list(vars(source).values()) for source in sources.numbers],
-        "scenarios": {
-            anchor: [name, requested.get(name, name)] for name, anchor in anchors.items()
-        },
-        "requested": texts,
-        "seed": run.get("seed"),
-        "options": kept_options(run),
-        "steps": steps_given(run),
-        "omegadot": run.get("omegadot"),
-        "command": command_of(run),
-        "traces": [engine["name"] for engine in run.get("engines", []) if "trace" in engine],
-    }
 
 
 def command_of(run: Mapping[str, Any]) -> str:

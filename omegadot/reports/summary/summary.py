@@ -12,8 +12,8 @@ from typing import Any
 
 import polars as pl
 
-from omegadot.reports.record.impossible import impossible_bodies
 from omegadot.reports.record.record import Record
+from omegadot.reports.record.run_json import impossible_bodies
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
 
 # From the worst to the best. A skip is never a pass, and neither is a run that was not judged.
@@ -42,6 +42,11 @@ class Column:
     version: str
     setup: str
     label: str
+
+    @property
+    def name(self) -> str:
+        """The label, with the version in any case."""
+        return self.label if self.version in self.label else f"{self.label} {self.version}"
 
 
 @dataclass(frozen=True)

@@ -44,10 +44,7 @@ def _matrix(summary: Summary, room: int) -> list[str]:
     """Scenarios by engines, those of the worst verdict first where there is no room for all."""
     if not summary.columns:
         return []
-    heads = ["scenario"]
-    for column in summary.columns:
-        version = "" if column.version in column.label else f" {column.version}"
-        heads.append(column.label + version)
+    heads = ["scenario", *(column.name for column in summary.columns)]
 
     def rank(scenario: str) -> int:
         own = (summary.cells[scenario, column].status for column in summary.columns)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from omegadot.reports.page.tables import CHANNEL_NAMES
+from omegadot.reports.page.tables import channel_name
 from omegadot.reports.text.numbers import engine_name, knob, plain, quantity, short
 from omegadot.reports.two_runs.sides import RunKey
 
@@ -63,7 +63,7 @@ class Change:
     @property
     def what(self) -> str:
         """The gate and the figure: trajectory: attitude error_max."""
-        name = " ".join(filter(None, (CHANNEL_NAMES.get(self.channel), self.metric)))
+        name = " ".join(filter(None, (channel_name(self.channel), self.metric)))
         if self.channel == "model" or self.channel == self.metric:
             name = self.metric
         return ": ".join(filter(None, (self.gate, name))) or "outcome"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from omegadot.reports.charts.bounds import Limits, limits_of
 from omegadot.reports.charts.deviations import Chart, Series, chart_deviations
-from omegadot.reports.charts.payload import Line, lines_of
+from omegadot.reports.charts.palette import Line, lines_of
 from omegadot.reports.charts.sweeps import Sweep, sweeps_of
 from omegadot.reports.record.record import Record
 

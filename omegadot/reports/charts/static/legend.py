@@ -1,17 +1,27 @@
-"""The legend below a picture: engine by engine, each with its integrators in two columns."""
+"""A picture and its legend below: engine by engine, each with its integrators in two columns."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
-from omegadot.reports.charts.payload import Line
-from omegadot.reports.charts.static.style import LEGEND_ROW, plain_text
+from omegadot.reports.charts.palette import Line
+from omegadot.reports.charts.static.style import (
+    DOTTED,
+    GREY,
+    LEGEND_ROW,
+    log_axis,
+    new_figure,
+    plain_text,
+)
+from omegadot.reports.text.numbers import short
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _LONGEST = 44
@@ -20,6 +30,8 @@ _LEFT = 0.02
 _ROOM = 58
 # in: in addition to the rows, between two blocks.
 _GAP = 0.035
+# Decades below the smallest error that are drawn for the floor's sake; more would flatten the rest.
+_NEAR = 1e-3
 
 
 @dataclass(frozen=True)
@@ -29,6 +41,10 @@ class Entry:
     line: Line | None
     name: str
     message: str = ""
+
+
+# What is drawn, and what draws it and returns its handle for the legend.
+Part = tuple[Entry, Callable[["Axes"], Any]]
 
 
 @dataclass(frozen=True)
@@ -89,8 +105,22 @@ def height_of(entries: Sequence[Entry]) -> float:
     return sum(block.height for block in blocks_of(entries))
 
 
-def add_legend(
-    figure: Figure, handles: Sequence[Artist], entries: Sequence[Entry], above: float = 0.0
+def picture(parts: Sequence[Part], log: str, room: float = 0.0) -> tuple[Figure, Axes]:
+    """The parts with their legend; `log`: the logarithmic axes.
+
+    room: inches that are kept free below the legend.
+    """
+    entries = [entry for entry, _ in parts]
+    figure, axes = new_figure(height_of(entries) + room)
+    for name in log:
+        axes.set(**{f"{name}scale": "log"})
+        log_axis(getattr(axes, f"{name}axis"))
+    _add_legend(figure, [draw(axes) for _, draw in parts], entries, room)
+    return figure, axes
+
+
+def _add_legend(
+    figure: Figure, handles: Sequence[Artist], entries: Sequence[Entry], above: float
 ) -> None:
     """Write the legend at the foot of a picture, `above` so many inches that are kept free."""
     whole = float(figure.get_size_inches()[1])
@@ -115,3 +145,32 @@ def add_legend(
                 fontsize=6.0,
                 fontweight="bold",
             )
+
+
+def bound_part(xs: Sequence[float], ys: Sequence[float]) -> list[Part]:
+    """How far rounding may take the error, where that is known."""
+    if not xs:
+        return []
+    return [(Entry(None, "round-off bound"), partial(_dotted, xs=xs, ys=ys))]
+
+
+def _dotted(axes: Axes, xs: Sequence[float], ys: Sequence[float]) -> Any:
+    return axes.plot(xs, ys, color=GREY, linestyle=DOTTED, linewidth=0.8)[0]
+
+
+def floor_part(floor: float | None, smallest: float) -> list[Part]:
+    """The floor, where there is one. smallest: the smallest error drawn."""
+    if not floor:
+        return []
+    if floor >= _NEAR * smallest:
+        return [(Entry(None, "floor"), partial(_level, floor=floor))]
+    return [(Entry(None, "floor", f" {short(floor)}, below"), _level_below)]
+
+
+def _level(axes: Axes, floor: float) -> Any:
+    return axes.axhline(floor, color=GREY, linewidth=0.6, zorder=1)
+
+
+def _level_below(axes: Axes) -> Any:
+    """A handle for the legend alone."""
+    return axes.plot([], [], color=GREY, linewidth=0.6)[0]

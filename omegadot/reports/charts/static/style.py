@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from omegadot.reports.charts.payload import Line
+from omegadot.reports.charts.palette import Line
 from omegadot.reports.record.schema import RecordError
 
 if TYPE_CHECKING:

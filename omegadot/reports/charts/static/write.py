@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
+import re
 import secrets
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from omegadot.reports.charts.static.charts import Charts, charts_of
-from omegadot.reports.charts.static.names import file_stems
 from omegadot.reports.charts.static.style import RC, require_matplotlib
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import RecordError
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS = ("svg", "png")
+_LONGEST = 60
+# Devices, on systems where no file may be called so.
+_DEVICES = re.compile(r"^(con|prn|aux|nul|com\d|lpt\d)$")
 
 
 def write_figures(record: Record, folder: Path) -> list[Path]:
@@ -49,6 +52,21 @@ def write_figures(record: Record, folder: Path) -> list[Path]:
         reason = error.strerror or str(error)
         raise RecordError(f"{folder}: the figures cannot be written ({reason}).") from error
     return written
+
+
+def file_stems(names: Iterable[str]) -> dict[str, str]:
+    """The start of the file names of each scenario: plain letters, digits and hyphens, unique."""
+    stems: dict[str, str] = {}
+    taken: set[str] = set()
+    for place, name in enumerate(names, 1):
+        stem = re.sub(r"[^a-z0-9]+", "-", name.lower())[:_LONGEST].strip("-")
+        if not stem or _DEVICES.match(stem) or stem in taken:
+            stem = f"{stem}-{place}".lstrip("-") if stem else f"scenario-{place}"
+        while stem in taken:
+            stem += "-x"
+        taken.add(stem)
+        stems[name] = stem
+    return stems
 
 
 def _figures(charts: Charts) -> Iterator[tuple[str, Figure]]:

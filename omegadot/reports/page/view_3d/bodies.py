@@ -12,6 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.schemes.short_turns_euler import quaternion_read
 from omegadot.reference_impl.system import Array, System
+from omegadot.reports.charts.packing import rounded
 from omegadot.reports.page.view_3d.solids import Solid, solid_of
 from omegadot.scenarios.parts import Part
 from omegadot.scenarios.solids import mass
@@ -154,5 +155,5 @@ def _ellipsoid(inertia: Array) -> Array:
     return np.asarray(axes * np.sqrt(moments[0] / moments))
 
 
-def _short(values: Array) -> list[float]:
-    return [float(f"{x:.6g}") for x in np.ravel(values)]
+def _short(values: Array) -> list[float | None]:
+    return [rounded(x, 6) for x in np.ravel(values).tolist()]

@@ -15,10 +15,11 @@ from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array
 from omegadot.reports.charts.deviations import Chart
 from omegadot.reports.charts.divergence import system_from
-from omegadot.reports.charts.packing import pack_codes, pack_json
-from omegadot.reports.charts.payload import Line, rank_of
+from omegadot.reports.charts.packing import pack_codes, pack_json, rounded
+from omegadot.reports.charts.palette import Line
+from omegadot.reports.charts.payload import rank_of
 from omegadot.reports.page.templating import script
-from omegadot.reports.page.view_3d.attitudes import DIVERGED, Attitudes, RunAttitudes, attitudes_of
+from omegadot.reports.page.view_3d.attitudes import DIVERGED, Attitudes, attitudes_of
 from omegadot.reports.page.view_3d.bodies import look_of
 from omegadot.reports.page.view_3d.three_js import packed_three
 from omegadot.reports.record.record import Record
@@ -95,7 +96,7 @@ def view_payload(
         scenario: dict[str, Any] = {
             "name": entry["name"],
             "title": entry.get("title") or entry["name"],
-            "times": [float(f"{t:.7g}") for t in own.time],
+            "times": [rounded(t, 7) for t in own.time],
             "start": codes.used,
             "fastest": fastest,
             "coarse": own.coarse,
@@ -138,14 +139,9 @@ def _runs(
             clocks[clock] = len(frames)
             frames.append(run.frames.tolist())
         texts = knob(run.timestep, run.accuracy)
-        runs.append(
-            [line, rank, texts, clocks[clock], codes.used, len(run.frames), *_reported(run)]
-        )
+        # When it diverges, s, its largest error, degrees, and when its samples end, s.
+        reported = run.diverges, rounded(np.rad2deg(run.largest), 3), run.end
+        runs.append([line, rank, texts, clocks[clock], codes.used, len(run.frames), *reported])
         codes.add(run.error, np.pi)
         codes.add(run.spin, _SPINS * fastest)
     return {"frames": frames, "runs": sorted(runs, key=lambda entry: entry[:2])}
-
-
-def _reported(run: RunAttitudes) -> tuple[float | None, float, float]:
-    """When it diverges, s, its largest error, degrees, and when its samples end, s."""
-    return run.diverges, float(f"{np.rad2deg(run.largest):.3g}"), run.end
