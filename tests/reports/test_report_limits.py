@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from synthetic_record import build, metric, with_metrics
 
-from omegadot.reports.charts.bounds import bounds_of, floors_of, limits_of, residuals_of
+from omegadot.reports.charts.bounds import limits_of, residuals_of
 from omegadot.reports.charts.deviations import chart_deviations
 from omegadot.reports.charts.front import named, pareto_front
 from omegadot.reports.charts.palette import lines_of
@@ -36,7 +36,7 @@ def judged(record):
 
 
 def test_a_bound_holds_up_to_its_fraction_of_the_run_and_means_something(judged):
-    found = bounds_of(judged.metrics)["sphere"][KEY]
+    found = limits_of(judged.metrics)["sphere"].bounds[KEY]
     # A relative bound of 2 allows everything: it is no bound.
     assert found["energy"] == [(0.25, 1e-12), (1.0, 4e-12)]
     assert found["attitude"] == [(1.0, 1e-13)]
@@ -45,11 +45,11 @@ def test_a_bound_holds_up_to_its_fraction_of_the_run_and_means_something(judged)
 def test_half_a_turn_is_no_bound_for_an_attitude(record):
     row = [*RUN, "trajectory", "attitude", "error_max", 1.0]
     beyond = with_metrics(record, metric(*row, bound=math.pi), metric(*row, bound=math.inf))
-    assert bounds_of(beyond.metrics) == bounds_of(record.metrics)
+    assert limits_of(beyond.metrics) == limits_of(record.metrics)
 
 
 def test_floors_are_those_of_the_exact_solution_and_zero_is_none(judged):
-    assert floors_of(judged.metrics) == {"sphere": {"attitude": 3e-14, "energy": 2e-15}}
+    assert limits_of(judged.metrics)["sphere"].floors == {"attitude": 3e-14, "energy": 2e-15}
 
 
 def test_limits_are_drawn_in_the_chart_s_unit_alone(judged):

@@ -18,13 +18,13 @@ from omegadot.reference_impl.rotations import (
     exp_quaternion,
     quaternion_product,
 )
+from omegadot.reports.charts.chart_library import library_of, packed_three
 from omegadot.reports.charts.deviations import chart_deviations
 from omegadot.reports.charts.packing import pack_codes
 from omegadot.reports.charts.palette import lines_of
 from omegadot.reports.page.page import draw_page
 from omegadot.reports.page.view_3d import view
 from omegadot.reports.page.view_3d.attitudes import DIVERGED, FRAMES, attitudes_of
-from omegadot.reports.page.view_3d.three_js import library_of, packed_three
 from omegadot.reports.page.view_3d.view import view_payload
 
 HALF = 0.5 / 32767

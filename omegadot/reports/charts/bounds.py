@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from bisect import insort
+from dataclasses import dataclass, field
 from typing import Any
 
 import polars as pl
@@ -21,8 +21,6 @@ RunKey = tuple[Any, ...]
 Steps = list[tuple[float, float]]
 Judged = tuple[float | None, float | None]
 _NONE: Judged = (None, None)
-
-
 # Recorded relative to the exact motion's sizes, and drawn only where the chart is relative too.
 _RELATIVE = ("energy", "angular_momentum", "linear_momentum")
 
@@ -31,13 +29,13 @@ _RELATIVE = ("energy", "angular_momentum", "linear_momentum")
 class Limits:
     """What may be drawn into a scenario's charts with the errors.
 
-    bounds: by run and channel, how far rounding may take the error: ``(fraction, bound)``,
-    fraction of the run's length up to which it holds.  floors: by channel, the uncertainty of the
-    exact solution.
+    bounds: by run (engine, setup, integrator, step, accuracy) and channel, how far rounding may
+    take the error: ``(fraction, bound)``, fraction of the run's length up to which it holds.
+    floors: by channel, the uncertainty of the exact solution.
     """
 
-    bounds: Mapping[RunKey, Mapping[str, Steps]]
-    floors: Mapping[str, float]
+    bounds: dict[RunKey, dict[str, Steps]] = field(default_factory=dict)
+    floors: dict[str, float] = field(default_factory=dict)
 
     def bound(self, deviation: Series, channel: str, unit: str) -> Steps:
         """The bounds of one run in one chart; none where they have another unit."""
@@ -56,12 +54,6 @@ def floor_of(limits: Limits) -> float:
     return limits.floors.get("attitude", 0.0)
 
 
-def limits_of(metrics: pl.DataFrame) -> dict[str, Limits]:
-    """The limits of every scenario that has any."""
-    bounds, floors = bounds_of(metrics), floors_of(metrics)
-    return {n: Limits(bounds.get(n, {}), floors.get(n, {})) for n in {**bounds, **floors}}
-
-
 @dataclass(frozen=True)
 class Residual:
     """An engine's omega-dot residuals at identical states: the worst at random states and along
@@ -75,47 +67,30 @@ class Residual:
     path: Judged
 
 
-def bounds_of(metrics: pl.DataFrame) -> dict[str, dict[RunKey, dict[str, Steps]]]:
-    """By scenario, run and channel: how far rounding may take the error, ``(fraction, bound)``.
+def limits_of(metrics: pl.DataFrame) -> dict[str, Limits]:
+    """The limits of every scenario that has any.
 
-    run: (engine, setup, integrator, step, accuracy).  fraction: of the run's length, up to which
-    the bound holds.  Bounds that are not finite, or allow everything, are left out.
+    Bounds that are not finite, or allow everything, are left out. So are floors that are not
+    recorded: an error below a floor cannot be distinguished from zero, as a perfect answer in
+    double is that far off.
     """
-    wanted = metrics.filter(
+    found: dict[str, Limits] = {}
+    invariant = (pl.col("gate") == "invariants") & pl.col("metric").is_in(list(HORIZONS))
+    attitude = (pl.col("channel") == "attitude") & (pl.col("metric") == "error_max")
+    bounded = metrics.filter(
         pl.col("bound").is_finite()
         & pl.col("integrator").is_not_null()
-        & (
-            ((pl.col("gate") == "invariants") & pl.col("metric").is_in(list(HORIZONS)))
-            | (
-                (pl.col("gate") == "trajectory")
-                & (pl.col("channel") == "attitude")
-                & (pl.col("metric") == "error_max")
-            )
-        )
+        & (invariant | ((pl.col("gate") == "trajectory") & attitude))
     )
-    found: dict[str, dict[RunKey, dict[str, Steps]]] = {}
-    columns = wanted.select("scenario", *_RUN, "channel", "metric", "bound")
+    columns = bounded.select("scenario", *_RUN, "channel", "metric", "bound")
     for scenario, *run, channel, metric, bound in columns.iter_rows():
         if 0.0 < bound < WITHOUT_MEANING.get(channel, 1.0):
-            own = found.setdefault(scenario, {}).setdefault(tuple(run), {})
-            own.setdefault(channel, []).append((HORIZONS.get(metric, 1.0), bound))
-    for runs in found.values():
-        for channels in runs.values():
-            for steps in channels.values():
-                steps.sort()
-    return found
-
-
-def floors_of(metrics: pl.DataFrame) -> dict[str, dict[str, float]]:
-    """By scenario and channel: the exact solution's own uncertainty, where it is recorded.
-
-    An error below it cannot be distinguished from zero: a perfect answer in double is that far off.
-    """
+            own = found.setdefault(scenario, Limits()).bounds.setdefault(tuple(run), {})
+            insort(own.setdefault(channel, []), (HORIZONS.get(metric, 1.0), bound))
     rows = metrics.filter((pl.col("metric") == "resolvable_floor") & (pl.col("value") > 0.0))
-    found: dict[str, dict[str, float]] = {}
     for scenario, channel, value in rows.select("scenario", "channel", "value").iter_rows():
         if math.isfinite(value):
-            found.setdefault(scenario, {})[channel] = value
+            found.setdefault(scenario, Limits()).floors[channel] = value
     return found
 
 

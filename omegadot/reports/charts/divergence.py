@@ -45,12 +45,6 @@ def _norm(vectors: Array) -> Array:
     return np.asarray(np.sqrt(np.sum(vectors * vectors, axis=-1)))
 
 
-def _relative(error: Array, size: Array) -> tuple[Array, bool]:
-    """The error over the largest size of the exact solution; absolute where that is zero."""
-    greatest = float(np.fmax.reduce(size, initial=0.0))
-    return (error / greatest, True) if greatest > 0.0 else (error, False)
-
-
 def _placed(found: State, exact: State) -> State:
     """A trace that gives no position and velocity has the energy of its rotation compared."""
     given = (found.position, found.linear_velocity)
@@ -98,10 +92,10 @@ def divergence(system: System, samples: pl.DataFrame) -> tuple[Array, dict[str, 
             absolute[channel] = (_norm(momentum(system, found) - truth[at]), _norm(truth), unit)
         for k, channel in enumerate(CHANNELS):
             error, size, unit = absolute[channel]
-            relative = False
-            if size is not None:
-                error, relative = _relative(error, size)
-            errors[:, k], units[channel] = error, "1" if relative else unit
+            greatest = 0.0 if size is None else float(np.fmax.reduce(size, initial=0.0))
+            relative = greatest > 0.0
+            errors[:, k] = error / greatest if relative else error
+            units[channel] = "1" if relative else unit
     if _without_meaning(system, absolute["linear_momentum"]):
         del units["linear_momentum"]
     return errors, units

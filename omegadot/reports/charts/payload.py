@@ -62,7 +62,7 @@ def payload(
     scenarios: dict[str, Any] = {}
     for name, chart in charts.items():
         rank, entries = rank_of(chart), []
-        own = limits.get(name, Limits({}, {}))
+        own = limits.get(name, Limits())
         for deviation in chart.deviations:
             key = deviation.time.tobytes()
             if key not in times:

@@ -5,13 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from omegadot.reports.choice.sentences import (
-    LONGEST,
-    NAMES,
-    figure,
-    missed_text,
-    step_text,
-)
+from omegadot.reports.choice.sentences import LONGEST, NAMES, figure, missed_text, step_text
 from omegadot.reports.text.numbers import quantity, short
 from omegadot.reports.text.text_grid import Grid
 

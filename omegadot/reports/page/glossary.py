@@ -33,8 +33,8 @@ class Term:
         return self.name.lower().replace(" ", "-")
 
 
-# Of each term its name, with other forms of it in parentheses; then its text; then, behind an equals
-# sign, its formula or unit.
+# Of each term its name, with other forms of it in parentheses; then its text; then, behind =, its
+# formula or unit.
 _TEXT = """
 cluster (clusters, identical trajectories)
 Runs of one scenario and step whose omega and attitude are the same within the round-off bound,

@@ -106,8 +106,7 @@ def _judged(metrics: pl.DataFrame, sources: Sources) -> tuple[list[dict[str, Any
         maintain_order=True,
     )
     rows = rows.group_by(measure, maintain_order=True).agg(
-        *(pl.col(name).first() for name in rows.columns if name not in measure),
-        runs=pl.len(),
+        *(pl.col(name).first() for name in rows.columns if name not in measure), runs=pl.len()
     )
     shown = [row | {"source": sources.number(row)} for row in rows.head(_JUDGED_SHOWN).to_dicts()]
     return shown, max(0, len(rows) - _JUDGED_SHOWN)

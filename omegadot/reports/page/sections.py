@@ -40,7 +40,7 @@ def measured_in(metrics: pl.DataFrame) -> Measured:
 
     A Pareto front is one of cost and attitude error, above the floor.
     """
-    limits, sweeps, none = limits_of(metrics), sweeps_of(metrics), Limits({}, {})
+    limits, sweeps, none = limits_of(metrics), sweeps_of(metrics), Limits()
     fronts = {n: pareto_front(own, floor_of(limits.get(n, none))) for n, own in sweeps.items()}
     return Measured(limits, sweeps, residuals_of(metrics), fronts)
 

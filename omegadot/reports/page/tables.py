@@ -146,16 +146,15 @@ def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any, sources: Sources)
     return Table(
         ("engine",),
         tuple((title, len(list(group))) for title, group in groupby(titles)),
-        tuple(_column_name(*column) for column in columns),
+        tuple(
+            ", ".join(filter(None, (metric.replace("_", " "), unit_text(unit, gate))))
+            for gate, _, metric, unit in columns
+        ),
         tuple(
             Row(names, tuple(_value(cells.get((names, column))) for column in columns), number)
             for names, number in numbers.items()
         ),
     )
-
-
-def _column_name(gate: str, _channel: str, metric: str, unit: str) -> str:
-    return ", ".join(filter(None, (metric.replace("_", " "), unit_text(unit, gate))))
 
 
 def _value(figure: tuple[Any, ...] | None) -> Value:

@@ -29,13 +29,10 @@ def truth(summary: Summary) -> list[str]:
 
 def _judged_engines(summary: Summary) -> dict[str, list[Cell]]:
     """Cells per column; the yardsticks are left out unless they alone ran or they fail."""
+    every = [(column, cell) for (_, column), cell in summary.cells.items()]
+    judged = [(c, cell) for c, cell in every if c.engine not in YARDSTICKS or cell.status == "fail"]
     cells: dict[str, list[Cell]] = {}
-    for (_, column), cell in summary.cells.items():
-        if column.engine not in YARDSTICKS or cell.status == "fail":
-            cells.setdefault(column.label, []).append(cell)
-    if cells:
-        return cells
-    for (_, column), cell in summary.cells.items():
+    for column, cell in judged or every:
         cells.setdefault(column.label, []).append(cell)
     return cells
 
@@ -98,12 +95,9 @@ def _remainder(summary: Summary) -> list[str]:
     declared = summary.runs.get("declared", 0)
     if declared:
         message.append(f"{times(declared, 'declared exception')}.")
-    skipped = sum(
-        count for s, count in summary.runs.items() if s not in ("pass", "fail", "declared")
-    )
+    total = sum(summary.runs.values())
+    skipped = total - sum(summary.runs[status] for status in ("pass", "fail", "declared"))
     if skipped:
-        total = sum(summary.runs.values())
-        message.append(
-            f"{skipped} of {times(total, 'run')} gave no verdict; the reasons are listed."
-        )
+        runs = f"{skipped} of {times(total, 'run')}"
+        message.append(f"{runs} gave no verdict; the reasons are listed.")
     return message

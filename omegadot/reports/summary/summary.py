@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import polars as pl
@@ -116,28 +117,22 @@ def summarise(record: Record) -> Summary:
     """The matrix of scenarios and engines, the counts, and what did not run."""
     tasks = record.run["tasks"]
     columns = _columns(tasks)
-    by_key = {(c.engine, c.version, c.setup): c for c in columns}
-    scenarios = [entry["name"] for entry in record.run["scenarios"]]
-    scenarios += [t["scenario"] for t in tasks if t["scenario"] not in scenarios]
-    scenarios = list(dict.fromkeys(scenarios))
-    statuses: dict[tuple[str, Column], list[str]] = {}
+    named = [entry["name"] for entry in record.run["scenarios"]]
+    scenarios = tuple(dict.fromkeys([*named, *(task["scenario"] for task in tasks)]))
+    statuses: dict[Key, list[str]] = {}
     for task in tasks:
-        key = (task["scenario"], by_key[_identity(task)])
-        statuses.setdefault(key, []).append(task_status(task))
+        statuses.setdefault((task["scenario"], *column_of(task)), []).append(task_status(task))
     figures = figures_of(record.metrics)
-    judged = _judged_rows(record.metrics)
-    cells = {
-        (scenario, column): _cell(
-            statuses.get((scenario, column), []),
-            judged.get((scenario, column.engine, column.version, column.setup), []),
-            figures.get((scenario, column.engine, column.version, column.setup), {}),
-        )
-        for scenario in scenarios
-        for column in columns
-    }
+    failures = record.metrics.filter(pl.col("verdict") == "fail")
+    failed = set(failures.select("scenario", "engine", "engine_version", "setup").rows())
+    cells = {}
+    for scenario, column in product(scenarios, columns):
+        key = (scenario, column.engine, column.version, column.setup)
+        own = statuses.get(key, []), figures.get(key, {})
+        cells[scenario, column] = _cell(key in failed, *own)
     return Summary(
         bool(record.run.get("complete", True)),
-        tuple(scenarios),
+        scenarios,
         columns,
         cells,
         Counter(task_status(task) for task in tasks),
@@ -152,14 +147,15 @@ def _truths(trajectories: pl.DataFrame) -> Counter[str]:
     return Counter(name for _, name in exact.select("scenario", "integrator").unique().rows())
 
 
-def _identity(task: Mapping[str, Any]) -> tuple[str, str, str]:
+def column_of(task: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Engine, version and setup: the column in which a run stands."""
     return task["engine"], task.get("engine_version") or "", task.get("setup") or "physics"
 
 
 def _columns(tasks: Iterable[Mapping[str, Any]]) -> tuple[Column, ...]:
     # The engines stand first: they are what the reader came for, and a phone shows two columns.
     keys = sorted(
-        dict.fromkeys(_identity(task) for task in tasks), key=lambda k: k[0] in YARDSTICKS
+        dict.fromkeys(column_of(task) for task in tasks), key=lambda k: k[0] in YARDSTICKS
     )
     columns = []
     for engine, version, setup in keys:
@@ -169,23 +165,15 @@ def _columns(tasks: Iterable[Mapping[str, Any]]) -> tuple[Column, ...]:
     return tuple(columns)
 
 
-def _cell(statuses: list[str], rows: list[str], figures: dict[str, list[Figure]]) -> Cell:
+def _cell(failed: bool, statuses: list[str], figures: dict[str, list[Figure]]) -> Cell:
     # A row's verdict counts even where its task has none: no failure gets lost.
-    status = worst([*statuses, *(verdict for verdict in rows if verdict == "fail")])
-    residuals = figures.get("omega_dot", [])
     return Cell(
-        status,
+        "fail" if failed else worst(statuses),
         Counter(statuses),
-        max(residuals, key=size, default=None),
+        max(figures.get("omega_dot", []), key=size, default=None),
         range_of(figures.get("angular_momentum", [])),
         range_of(figures.get("attitude", [])),
     )
-
-
-def _judged_rows(metrics: pl.DataFrame) -> dict[Key, list[str]]:
-    names = ("scenario", "engine", "engine_version", "setup")
-    groups = metrics.group_by(*names, maintain_order=True).agg(pl.col("verdict").unique())
-    return {row[:4]: row[4] for row in groups.iter_rows()}
 
 
 def _missing(run: Mapping[str, Any]) -> tuple[Missing, ...]:

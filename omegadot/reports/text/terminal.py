@@ -13,7 +13,7 @@ from omegadot.reports.record.record import Record
 from omegadot.reports.summary.clusters import clusters_over_scenarios, sentence
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.headline import headline, remarks, truth
-from omegadot.reports.summary.summary import Cell, Column, Missing, Summary, summarise
+from omegadot.reports.summary.summary import Cell, Missing, Summary, summarise
 from omegadot.reports.text.numbers import first, short, times
 
 _STYLES = {"pass": "green", "fail": "bold red", "declared": "yellow", "absent": "dim"}
@@ -37,8 +37,7 @@ def print_summary(record: Record, console: Console | None = None) -> None:
     finest step the angular-momentum drift and the attitude error. Numbers give way from the right
     where the terminal is too narrow for them.
     """
-    if console is None:
-        console = Console(width=None if sys.stdout.isatty() else _WIDTH_WHEN_PIPED)
+    console = console or Console(width=None if sys.stdout.isatty() else _WIDTH_WHEN_PIPED)
     summary = summarise(record)
     shown, table = _fitting_table(summary, console)
     if summary.columns:
@@ -136,24 +135,17 @@ def _extremes(summary: Summary) -> list[str]:
     """Per engine: its worst attitude error, and that of its best integrator on that scenario."""
     lines = []
     for column in summary.columns:
-        found = _worst_attitude(summary, column)
-        if found is None:
+        cells = [summary.cells[scenario, column] for scenario in summary.scenarios]
+        ranges = [cell.attitude for cell in cells if cell.attitude is not None]
+        if not ranges:
             continue
-        worst, best = found
+        widest = max(ranges, key=lambda r: size(r.worst))
+        worst, best = widest.worst, widest.best
         span = _named(worst) if best is worst else f"{_named(best)} to {_named(worst)}"
         lines.append(
             f"{column.label}: attitude error {span} on {worst.scenario}, at the finest step."
         )
     return lines
-
-
-def _worst_attitude(summary: Summary, column: Column) -> tuple[Figure, Figure] | None:
-    cells = [summary.cells[scenario, column] for scenario in summary.scenarios]
-    ranges = [cell.attitude for cell in cells if cell.attitude is not None]
-    if not ranges:
-        return None
-    widest = max(ranges, key=lambda r: size(r.worst))
-    return widest.worst, widest.best
 
 
 def _named(figure: Figure) -> str:

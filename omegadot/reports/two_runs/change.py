@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from operator import attrgetter
 
 from omegadot.reports.page.tables import channel_name
-from omegadot.reports.text.numbers import engine_name, knob, plain, quantity, short
+from omegadot.reports.text.numbers import engine_name, plain, quantity, short
 from omegadot.reports.two_runs.sides import RunKey
 
 
@@ -99,45 +100,20 @@ def from_to(change: Change) -> str:
     return f"{message}: {figures}" if message else figures
 
 
-def place(change: Change) -> str:
-    """Scenario and step."""
-    return ", ".join(
-        filter(None, (change.key.scenario, knob(change.key.timestep, change.key.accuracy)))
-    )
-
-
 def name_of(key: RunKey) -> str:
     """Engine, its version where there are several, its setup where it is not the usual one."""
     return engine_name(key.engine, key.version, key.setup)
 
 
-@dataclass(frozen=True)
-class Group:
-    """Changes of one engine and integrator in one gate and channel. worst: the largest of them."""
+def grouped(changes: Iterable[Change]) -> list[list[Change]]:
+    """Changes of one engine, integrator, gate and channel, the largest first.
 
-    engine: str
-    integrator: str
-    worst: Change
-    count: int
-    scenarios: tuple[str, ...]
-
-
-def grouped(changes: Iterable[Change]) -> list[Group]:
-    """Outcomes and verdicts first, then by how large the largest change is."""
+    Outcomes and verdicts come first, then the groups by how large their largest change is.
+    """
     groups: dict[tuple[object, ...], list[Change]] = {}
     for change in changes:
-        key = change.key
-        kind = change.weight[0]
+        key, kind = change.key, change.weight[0]
         name = (key.engine, key.version, key.setup, key.integrator, change.gate, change.channel)
         groups.setdefault((*name, kind, change.was, change.now), []).append(change)
-    found = [
-        Group(
-            name_of(own[0].key),
-            own[0].key.integrator,
-            max(own, key=lambda c: c.weight),
-            len(own),
-            tuple(dict.fromkeys(c.key.scenario for c in own)),
-        )
-        for own in groups.values()
-    ]
-    return sorted(found, key=lambda group: group.worst.weight, reverse=True)
+    found = [sorted(own, key=attrgetter("weight"), reverse=True) for own in groups.values()]
+    return sorted(found, key=lambda own: own[0].weight, reverse=True)

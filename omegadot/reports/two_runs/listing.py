@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from omegadot.reports.summary.summary import YARDSTICKS
-from omegadot.reports.text.numbers import engine_name, first, plain, times
-from omegadot.reports.two_runs.change import Change, Group, from_to, grouped, name_of, place
+from omegadot.reports.text.numbers import engine_name, first, knob, plain, times
+from omegadot.reports.two_runs.change import Change, from_to, grouped, name_of
 from omegadot.reports.two_runs.comparison import Comparison
 from omegadot.reports.two_runs.sides import Side, Task
 
@@ -48,20 +48,20 @@ def parts_of(comparison: Comparison) -> list[Part]:
 
 def _change_rows(changes: Iterable[Change]) -> Rows:
     """One row an engine, integrator, gate and channel, with the largest of its changes."""
-    return [_change_row(group) for group in grouped(changes)]
+    return [_change_row(own) for own in grouped(changes)]
 
 
-def _change_row(group: Group) -> tuple[str, ...]:
-    worst, many = group.worst, group.count > 1
-    noun = "value" if worst.metric else "run"
-    in_all = f"{times(group.count, noun)} on {times(len(group.scenarios), 'scenario')}"
+def _change_row(changes: list[Change]) -> tuple[str, ...]:
+    worst, count = changes[0], len(changes)
+    key, scenarios = worst.key, len({change.key.scenario for change in changes})
+    in_all = f"{times(count, 'value' if worst.metric else 'run')} on {times(scenarios, 'scenario')}"
     return (
-        group.engine,
-        group.integrator,
+        name_of(key),
+        key.integrator,
         worst.what,
-        place(worst),
+        ", ".join(filter(None, (key.scenario, knob(key.timestep, key.accuracy)))),
         from_to(worst),
-        in_all if many else "",
+        in_all if count > 1 else "",
         worst.why,
     )
 

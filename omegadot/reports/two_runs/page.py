@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from operator import attrgetter
 
 from omegadot.reports.page.templating import asset, environment
 from omegadot.reports.summary import matrix
@@ -89,7 +90,7 @@ def _columns(summaries: Iterable[Summary], versioned: set[str]) -> list[Pair]:
 
     both = [summary.columns for summary in summaries]
     # An engine that did not start has no version, and is no column of its own.
-    then, today = ({key(c): c for c in sorted(own, key=_has_version)} for own in both)
+    then, today = ({key(c): c for c in sorted(own, key=attrgetter("version"))} for own in both)
     found = []
     for place in dict.fromkeys(key(column) for own in both for column in own):
         pair = then.get(place), today.get(place)
@@ -98,10 +99,6 @@ def _columns(summaries: Iterable[Summary], versioned: set[str]) -> list[Pair]:
         shown = "" if version else " → ".join(versions)
         found.append(Pair(place, engine_name(engine, version, setup), shown, pair))
     return found
-
-
-def _has_version(column: Column) -> bool:
-    return bool(column.version)
 
 
 def _matrix(

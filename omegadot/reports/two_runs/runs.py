@@ -99,15 +99,9 @@ def without_repetition(gates: Iterable[Change], figures: Iterable[Change]) -> li
     covered = {
         (change.key, change.gate, change.worse) for change in reported if change.was != change.now
     }
-    whole = [
-        change
-        for change in gates
-        if not {(k, change.gate, change.worse) for k in (change.key, engine_key(change.key))}
-        & covered
-    ]
+    whole = []
+    for change in gates:
+        keys = change.key, change.key._replace(integrator="", timestep=None, accuracy=None)
+        if not any((key, change.gate, change.worse) in covered for key in keys):
+            whole.append(change)
     return whole + reported
-
-
-def engine_key(key: RunKey) -> RunKey:
-    """The key of what belongs to engine and scenario, whatever the integrator and step."""
-    return key._replace(integrator="", timestep=None, accuracy=None)

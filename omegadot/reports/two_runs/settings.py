@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from omegadot.reports.summary.summary import summarise
 from omegadot.reports.text.numbers import plain
-from omegadot.reports.two_runs.sides import Side, definition_of
+from omegadot.reports.two_runs.sides import Side, definition_of, of_both
 
 _OF_AN_ENGINE = ("version", "precision", "conventions", "switched_off", "features")
 NONE = "–"
@@ -53,10 +53,10 @@ def _facts(*sides: Side) -> Iterator[list[Facts]]:
     ]
     yield [_flat(run.get("machine"), "machine ") for run in runs]
     yield [_flat(run.get("versions"), "version of ") for run in runs]
-    for name, entries in _of_both(run["engines"] for run in runs):
+    for name, *entries in of_both(*(run["engines"] for run in runs)):
         if all(entry.get("installed") is not False for entry in entries):
             yield from _of_an_engine(name, entries)
-    for name, entries in _of_both(run["scenarios"] for run in runs):
+    for name, *entries in of_both(*(run["scenarios"] for run in runs)):
         yield [_flat(definition_of(entry), f"{name} ") for entry in entries]
     then, today = map(_steps_of, sides)
     for name in (name for name in then if name in today):
@@ -67,13 +67,7 @@ def _facts(*sides: Side) -> Iterator[list[Facts]]:
         yield [_flat(own, "scenarios with a truth by ") for own in truths]
 
 
-def _of_both(lists: Iterable[Iterable[Facts]]) -> Iterator[tuple[str, list[Facts]]]:
-    """The entries of one name in both lists, in the order of the second."""
-    then, today = ({entry["name"]: entry for entry in entries} for entries in lists)
-    yield from ((name, [then[name], entry]) for name, entry in today.items() if name in then)
-
-
-def _of_an_engine(name: str, entries: list[Facts]) -> Iterator[list[Facts]]:
+def _of_an_engine(name: str, entries: list[Mapping[str, Any]]) -> Iterator[list[Facts]]:
     """What the engine declares."""
     yield [
         {f"{name} {key.replace('_', ' ')}": entry.get(key) for key in _OF_AN_ENGINE}

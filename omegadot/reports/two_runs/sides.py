@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.summary.summary import task_status, worst
+from omegadot.reports.summary.summary import column_of, task_status, worst
 
 # Scenario keys that change no number: its description, and the steps it is run with.
 DESCRIPTION_OR_STEPS = {"schema", "name", "title", "shows", "source"}
@@ -63,31 +64,24 @@ def several_versions(sides: Iterable[Side]) -> set[str]:
     """The engines of which a record holds more than one version: they are paired by version."""
     found = set()
     for side in sides:
-        versions: dict[tuple[str, str], set[str]] = {}
-        for task in side.run["tasks"]:
-            version = task.get("engine_version") or ""
-            own = versions.setdefault((task["engine"], task.get("setup") or "physics"), set())
-            own.update({version} - {""})
-        found |= {engine for (engine, _), own in versions.items() if len(own) > 1}
+        columns = {column_of(task) for task in side.run["tasks"]}
+        counts = Counter((engine, setup) for engine, version, setup in columns if version)
+        found |= {engine for (engine, _), count in counts.items() if count > 1}
     return found
-
-
-def integrator_of(engine: str, integrator: str | None) -> str:
-    """The exact solution is one engine, however it is computed."""
-    return "" if engine == "exact" else integrator or ""
 
 
 def tasks_of(side: Side, versioned: set[str]) -> dict[RunKey, Task]:
     """Every run of a record; where one key stands several times, the worst of them."""
     found: dict[RunKey, Task] = {}
     for entry in side.run["tasks"]:
-        engine = entry["engine"]
+        engine, version, setup = column_of(entry)
         key = RunKey(
             entry["scenario"],
             engine,
-            (entry.get("engine_version") or "") if engine in versioned else "",
-            entry.get("setup") or "physics",
-            integrator_of(engine, entry.get("integrator")),
+            version if engine in versioned else "",
+            setup,
+            # The exact solution is one engine, however it is computed.
+            "" if engine == "exact" else entry.get("integrator") or "",
             entry.get("timestep"),
             entry.get("accuracy"),
         )
@@ -109,9 +103,13 @@ def definition_of(entry: Mapping[str, Any]) -> dict[str, Any]:
 
 def redefined(was: Side, now: Side) -> set[str]:
     """The scenarios that differ between the two records under one name."""
-    then = {entry["name"]: definition_of(entry) for entry in was.run["scenarios"]}
-    return {
-        entry["name"]
-        for entry in now.run["scenarios"]
-        if entry["name"] in then and definition_of(entry) != then[entry["name"]]
-    }
+    both = of_both(was.run["scenarios"], now.run["scenarios"])
+    return {name for name, one, other in both if definition_of(one) != definition_of(other)}
+
+
+def of_both(
+    was: Iterable[Mapping[str, Any]], now: Iterable[Mapping[str, Any]]
+) -> Iterator[tuple[str, Mapping[str, Any], Mapping[str, Any]]]:
+    """Each name that two lists have, in the order of the second, with its entry in either."""
+    then = {entry["name"]: entry for entry in was}
+    yield from ((e["name"], then[e["name"]], e) for e in now if e["name"] in then)

@@ -9,14 +9,7 @@ from typing import Any
 
 from omegadot.reports.text.numbers import listed, plain, times
 from omegadot.reports.text.text_grid import Grid
-from omegadot.reports.versions.changes import (
-    RATIO,
-    Line,
-    lines_of,
-    pace_lines,
-    pace_text,
-    runs_of,
-)
+from omegadot.reports.versions.changes import RATIO, Line, lines_of, pace_lines, pace_text, runs_of
 
 Record = dict[str, Any]
 MOST_NAMED = 4

@@ -13,8 +13,8 @@ from omegadot.reports.charts.bounds import Steps
 from omegadot.reports.charts.deviations import Series
 from omegadot.reports.charts.packing import FLOOR
 from omegadot.reports.charts.palette import Line
-from omegadot.reports.charts.static.charts import Charts
-from omegadot.reports.charts.static.legend import Entry, Part, bound_part, floor_part, picture
+from omegadot.reports.charts.static.charts import Charts, bound_part, floor_part
+from omegadot.reports.charts.static.legend import Entry, Part, picture
 from omegadot.reports.charts.static.style import line_style, title
 from omegadot.reports.page.tables import unit_text
 from omegadot.reports.text.numbers import plain, short

@@ -5,19 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from omegadot.reports.charts.palette import Line
-from omegadot.reports.charts.static.style import (
-    DOTTED,
-    GREY,
-    LEGEND_ROW,
-    log_axis,
-    new_figure,
-    plain_text,
-)
-from omegadot.reports.text.numbers import short
+from omegadot.reports.charts.static.style import LEGEND_ROW, log_axis, new_figure, plain_text
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -30,8 +21,6 @@ _LEFT = 0.02
 _ROOM = 58
 # in: in addition to the rows, between two blocks.
 _GAP = 0.035
-# Decades below the smallest error that are drawn for the floor's sake; more would flatten the rest.
-_NEAR = 1e-3
 
 
 @dataclass(frozen=True)
@@ -145,32 +134,3 @@ def _add_legend(
                 fontsize=6.0,
                 fontweight="bold",
             )
-
-
-def bound_part(xs: Sequence[float], ys: Sequence[float]) -> list[Part]:
-    """How far rounding may take the error, where that is known."""
-    if not xs:
-        return []
-    return [(Entry(None, "round-off bound"), partial(_dotted, xs=xs, ys=ys))]
-
-
-def _dotted(axes: Axes, xs: Sequence[float], ys: Sequence[float]) -> Any:
-    return axes.plot(xs, ys, color=GREY, linestyle=DOTTED, linewidth=0.8)[0]
-
-
-def floor_part(floor: float | None, smallest: float) -> list[Part]:
-    """The floor, where there is one. smallest: the smallest error drawn."""
-    if not floor:
-        return []
-    if floor >= _NEAR * smallest:
-        return [(Entry(None, "floor"), partial(_level, floor=floor))]
-    return [(Entry(None, "floor", f" {short(floor)}, below"), _level_below)]
-
-
-def _level(axes: Axes, floor: float) -> Any:
-    return axes.axhline(floor, color=GREY, linewidth=0.6, zorder=1)
-
-
-def _level_below(axes: Axes) -> Any:
-    """A handle for the legend alone."""
-    return axes.plot([], [], color=GREY, linewidth=0.6)[0]

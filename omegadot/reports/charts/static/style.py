@@ -91,12 +91,7 @@ def new_figure(room: float) -> tuple[Figure, Axes]:
     figure = Figure(figsize=(WIDTH, height))
     left, right, top = 0.52, 0.1, 0.36
     axes = figure.add_axes(
-        (
-            left / WIDTH,
-            below / height,
-            1.0 - (left + right) / WIDTH,
-            1.0 - (below + top) / height,
-        )
+        (left / WIDTH, below / height, 1.0 - (left + right) / WIDTH, 1.0 - (below + top) / height)
     )
     return figure, axes
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from omegadot.reports.charts.bounds import floor_of
 from omegadot.reports.charts.front import FrontPoint, named, pareto_front
 from omegadot.reports.charts.palette import Line
-from omegadot.reports.charts.static.charts import Charts
-from omegadot.reports.charts.static.legend import Entry, Part, bound_part, floor_part, picture
+from omegadot.reports.charts.static.charts import Charts, bound_part, floor_part
+from omegadot.reports.charts.static.legend import Entry, Part, picture
 from omegadot.reports.charts.static.style import (
     GREY,
     LEGEND_ROW,

@@ -13,6 +13,7 @@ import numpy as np
 
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array
+from omegadot.reports.charts.chart_library import packed_three
 from omegadot.reports.charts.deviations import Chart
 from omegadot.reports.charts.divergence import system_from
 from omegadot.reports.charts.packing import pack_codes, pack_json, rounded
@@ -21,7 +22,6 @@ from omegadot.reports.charts.payload import rank_of
 from omegadot.reports.page.templating import script
 from omegadot.reports.page.view_3d.attitudes import DIVERGED, Attitudes, attitudes_of
 from omegadot.reports.page.view_3d.bodies import look_of
-from omegadot.reports.page.view_3d.three_js import packed_three
 from omegadot.reports.record.record import Record
 from omegadot.reports.text.numbers import knob
 
