@@ -10,6 +10,7 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.charts.deviations import Series
+from omegadot.reports.text.numbers import magnitude
 
 # The fraction of a run up to which each of an invariant's bounds holds.
 HORIZONS = {"drift_quarter": 0.25, "drift_half": 0.5, "drift_full": 1.0}
@@ -102,7 +103,7 @@ def residuals_of(metrics: pl.DataFrame) -> dict[str, list[Residual]]:
     for scenario, engine, version, setup, metric, value, bound in rows.select(names).iter_rows():
         own = worst.setdefault(scenario, {}).setdefault((engine, version, setup), {})
         value = value if value is None or math.isfinite(value) else None
-        if metric not in own or _size(value) > _size(own[metric][0]):
+        if metric not in own or magnitude(value) > magnitude(own[metric][0]):
             own[metric] = (value, bound)
     return {
         scenario: [
@@ -111,8 +112,3 @@ def residuals_of(metrics: pl.DataFrame) -> dict[str, list[Residual]]:
         ]
         for scenario, engines in worst.items()
     }
-
-
-def _size(value: float | None) -> float:
-    """A residual that is no finite number is the worst of all."""
-    return math.inf if value is None else value

@@ -55,8 +55,7 @@ def payload(
     channel each, are ``[fraction, bound, fraction, bound, ...]``.
     """
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
-    times: dict[bytes, int] = {}
-    clocks: list[list[float | None]] = []
+    clocks: dict[bytes, int] = {}
     values: list[Array] = []
     used = 0
     scenarios: dict[str, Any] = {}
@@ -64,15 +63,12 @@ def payload(
         rank, entries = rank_of(chart), []
         own = limits.get(name, Limits())
         for deviation in chart.deviations:
-            key = deviation.time.tobytes()
-            if key not in times:
-                times[key] = len(clocks)
-                clocks.append([rounded(t, 6) for t in deviation.time])
+            clock = clocks.setdefault(deviation.time.tobytes(), len(clocks))
             line = places[deviation.engine, deviation.setup, deviation.integrator]
             count = len(deviation.time)
             knobs = rank[deviation.timestep, deviation.accuracy]
             bounds, source = _bounds_drawn(own, deviation, chart), sources.number(vars(deviation))
-            entries.append([line, knobs, times[key], used, count, bounds, source])
+            entries.append([line, knobs, clock, used, count, bounds, source])
             for channel in chart.units:
                 values.append(_drawn(deviation, channel))
                 used += count
@@ -86,7 +82,7 @@ def payload(
         "floor": FLOOR_DECADE,
         "ceiling": CEILING_DECADE,
         "lines": [{**vars(n), "name": n.name} for n in lines],
-        "times": clocks,
+        "times": [[rounded(t, 6) for t in np.frombuffer(clock).tolist()] for clock in clocks],
         "scenarios": scenarios,
     }
     return description, codes_of(np.concatenate([np.empty(0), *values]))

@@ -8,55 +8,25 @@ from dataclasses import dataclass
 from typing import Any
 
 from omegadot.reports.charts.palette import colours, dashes
+from omegadot.reports.charts.plot import Frame, LogAxis, Plot, PlotLine
 
-WIDTH, HEIGHT = 720.0, 340.0
-LEFT, RIGHT, TOP, BOTTOM = 62.0, 12.0, 12.0, 44.0
-
-
-@dataclass(frozen=True)
-class Line:
-    """One candidate's runs. points: for an SVG polyline; marks: the same, with what they are."""
-
-    label: str
-    light: str
-    dark: str
-    dash: str
-    points: str
-    marks: list[tuple[float, float, str]]
+_FRAME = Frame(width=720, height=340, left=62, right=12, top=12, bottom=44)
 
 
 @dataclass(frozen=True)
-class Drawing:
-    """x_ticks, y_ticks: places with labels.  limit: the height of an error equal to its limit."""
+class Drawing(Plot):
+    """limit: the height of an error equal to its limit."""
 
-    lines: list[Line]
-    x_ticks: list[tuple[float, str]]
-    y_ticks: list[tuple[float, str]]
     limit: float
 
 
-@dataclass(frozen=True)
-class _Axis:
-    """log10 of the values at the two ends, and where they are drawn."""
-
-    low: float
-    high: float
-    start: float
-    end: float
-
-    def at(self, value: float) -> float:
-        share = (math.log10(value) - self.low) / (self.high - self.low)
-        return round(self.start + share * (self.end - self.start), 1)
-
-    def ticks(self) -> list[tuple[float, str]]:
-        every = max(1, math.ceil((self.high - self.low) / 8))
-        decades = range(math.ceil(self.low), math.floor(self.high) + 1, every)
-        return [(self.at(10.0**n), f"1e{n}") for n in decades]
-
-
-def _axis(values: list[float], start: float, end: float) -> _Axis:
+def _axis(values: list[float], start: float, end: float) -> LogAxis:
     low, high = math.log10(min(values)), math.log10(max(values))
-    return _Axis(math.floor(low - 0.05), math.ceil(high + 0.05), start, end)
+    return LogAxis(math.floor(low - 0.05), math.ceil(high + 0.05), start, end)
+
+
+def _ticks(axis: LogAxis) -> list[tuple[float, str]]:
+    return axis.ticks(math.ceil((axis.high - axis.low) / 8))
 
 
 def _runs(row: Mapping[str, Any], duration: float) -> list[tuple[float, float, float]]:
@@ -81,17 +51,18 @@ def drawing(case: Mapping[str, Any], engines: list[dict[str, Any]]) -> Drawing |
     if not runs:
         return None
     every = [run for found in runs.values() for run in found]
-    x = _axis([cost for cost, _, _ in every], LEFT, WIDTH - RIGHT)
-    y = _axis([ratio for _, ratio, _ in every] + [1.0], HEIGHT - BOTTOM, TOP)
+    x = _axis([cost for cost, _, _ in every], _FRAME.left, _FRAME.width - _FRAME.right)
+    floor = _FRAME.height - _FRAME.bottom
+    y = _axis([ratio for _, ratio, _ in every] + [1.0], floor, _FRAME.top)
     ink, dash = colours(e["name"] for e in engines), dashes(engines)
     lines = []
     for (engine, integrator), found in runs.items():
+        name = f"{engine} {integrator}"
         marks = [
-            (x.at(cost), y.at(ratio), f"{engine} {integrator}, step {step:.4g} s: {ratio:.3g}")
+            (x.at(cost), y.at(ratio), f"{name}, step {step:.4g} s: {ratio:.3g}")
             for cost, ratio, step in found
         ]
-        points = " ".join(f"{a},{b}" for a, b, _ in marks)
-        light, dark = ink[engine]
-        stroke = dash.get((engine, integrator), "")
-        lines.append(Line(f"{engine} {integrator}", light, dark, stroke, points, marks))
-    return Drawing(lines, x.ticks(), y.ticks(), y.at(1.0))
+        path = "M" + " L".join(f"{a} {b}" for a, b, _ in marks)
+        lines.append(PlotLine(name, ink[engine], dash.get((engine, integrator), ""), path, marks))
+    title = f"{case['name']}: error over limit against cost, every run tried"
+    return Drawing(title, _FRAME, lines, _ticks(x), _ticks(y), y.at(1.0))

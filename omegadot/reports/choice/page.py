@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from omegadot.reports.choice import sentences, tables
-from omegadot.reports.choice.chart import HEIGHT, WIDTH, drawing
+from omegadot.reports.choice.chart import drawing
 from omegadot.reports.page.templating import asset, environment
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.record.schema import RecordError
@@ -41,8 +41,6 @@ def section_of(choice: Mapping[str, Any]) -> Section:
             for case in choice["scenarios"]
         ],
         "notes": list(sentences.notes(choice)),
-        "width": WIDTH,
-        "height": HEIGHT,
     }
 
 
@@ -58,7 +56,7 @@ def draw_choice(choice: Mapping[str, Any]) -> str:
             choice=choice,
             headline=sentences.verdict_everywhere(choice) if several else first["headline"],
             chosen=section,
-            css=asset("report.css") + asset("choice.css"),
+            css=asset("report.css") + asset("plot.css"),
         )
     )
 

@@ -28,7 +28,7 @@ def ranking(choice: Row, case: Row) -> Grid:
             str(row["found"]["steps"]),
             *(_error(row["found"], requirement) for requirement in wanted),
             _factor(row),
-            _memory(row),
+            f"{row['memory'] / MEGABYTE:.0f}" if row["memory"] else "–",
             "yes" if row["on_front"] else "",
             _larger(case, row),
         )
@@ -57,10 +57,6 @@ def _factor(row: Row) -> str:
 
 def _rank(row: Row) -> str:
     return f"{row['rank']}=" if row["tied"] else str(row["rank"])
-
-
-def _memory(row: Row) -> str:
-    return "–" if not row["memory"] else f"{row['memory'] / MEGABYTE:.0f}"
 
 
 def _larger(case: Row, row: Row) -> str:

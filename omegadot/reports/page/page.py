@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import groupby
 from typing import Any
 
 import polars as pl
@@ -10,7 +11,7 @@ import polars as pl
 from omegadot.reports.charts.chart_library import packed_library
 from omegadot.reports.charts.deviations import POINTS, chart_deviations
 from omegadot.reports.charts.packing import FLOOR_DECADE, pack_codes, pack_json
-from omegadot.reports.charts.palette import lines_of
+from omegadot.reports.charts.palette import Line, lines_of
 from omegadot.reports.charts.payload import step_choices
 from omegadot.reports.choice.page import Section
 from omegadot.reports.page.glance import glances
@@ -77,14 +78,14 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         clusters=[(sentence(c), extent(c)) for c in clusters_over_scenarios(record.run)],
         sections=sections,
         lines=lines,
-        line_groups=_line_groups(lines),
+        line_groups=[(engine, list(own)) for engine, own in groupby(enumerate(lines), _engine_of)],
         choices=step_choices(charts.values()),
         chart_titles=CHART_TITLES,
         floor_decade=FLOOR_DECADE,
         points=POINTS,
         glossary=TERMS,
         glossary_introduction=INTRODUCTION,
-        css=asset("report.css") + asset("view.css") + (asset("choice.css") if choice else ""),
+        css=asset("report.css") + asset("view.css") + (asset("plot.css") if choice else ""),
         view=view_section(record, charts, lines, anchors),
         js=script(),
         plotly=library.result() if charts else "",
@@ -121,9 +122,5 @@ def _anchors(names: tuple[str, ...]) -> dict[str, str]:
     return anchors
 
 
-def _line_groups(lines: list[Any]) -> list[tuple[str, list[tuple[int, Any]]]]:
-    """The lines of each engine with their numbers, for the page's own legend."""
-    groups: dict[str, list[tuple[int, Any]]] = {}
-    for number, line in enumerate(lines):
-        groups.setdefault(line.engine, []).append((number, line))
-    return list(groups.items())
+def _engine_of(numbered: tuple[int, Line]) -> str:
+    return numbered[1].engine

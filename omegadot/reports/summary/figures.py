@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import polars as pl
+
+from omegadot.reports.text.numbers import magnitude
 
 _SUMMARISED = (
     ((pl.col("gate") == "equation") & (pl.col("channel") == "omega_dot"))
@@ -43,7 +44,7 @@ class Range:
 
 def size(figure: Figure) -> float:
     """Its magnitude, for ordering: what is not a number is larger than any number."""
-    return abs(figure.value) if not math.isnan(figure.value) else float("inf")
+    return magnitude(figure.value)
 
 
 def range_of(figures: list[Figure]) -> Range | None:

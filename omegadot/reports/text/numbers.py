@@ -18,6 +18,11 @@ def short(value: float | None, digits: int = 2) -> str:
     return mantissa if int(exponent) == 0 else f"{mantissa}e{int(exponent)}"
 
 
+def magnitude(value: float | None) -> float:
+    """For ordering: what is not a number is larger than any number."""
+    return math.inf if value is None or math.isnan(value) else abs(value)
+
+
 def plain(value: float | None) -> str:
     """A setting as its author would write it: 0.005, not 5e-3; – where there is none."""
     return "–" if value is None else f"{value:.6g}"

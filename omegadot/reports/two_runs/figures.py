@@ -7,14 +7,13 @@ of the two bounds.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import polars as pl
 
-from omegadot.reports.text.numbers import engine_name
+from omegadot.reports.text.numbers import engine_name, magnitude
 from omegadot.reports.two_runs.change import Change, Measure
 from omegadot.reports.two_runs.sides import RunKey, Side
 
@@ -90,7 +89,7 @@ def changed_figures(pairs: pl.DataFrame, same_seed: bool, redefined: set[str]) -
 def _change(row: dict[str, Any]) -> Change:
     measure = Measure(row["value"], row["value_now"], row["band"], row["unit"])
     was, now = row["verdict"], row["verdict_now"]
-    grew = _size(measure.now) >= _size(measure.was)
+    grew = magnitude(measure.now) >= magnitude(measure.was)
     # A verdict outranks a size: an error that passes now is no worse for being larger.
     worse = grew if was == now else VERDICT_RANK[now] < VERDICT_RANK[was]
     return Change(
@@ -105,11 +104,6 @@ def _change(row: dict[str, Any]) -> Change:
         row["moved"],
         row["note_now"] or "",
     )
-
-
-def _size(value: float) -> float:
-    """How far off; what is not a number is farther off than any number."""
-    return math.inf if math.isnan(value) else abs(value)
 
 
 @dataclass(frozen=True)

@@ -164,6 +164,5 @@ def _history(record: Record, known: Sequence[Record]) -> list[str]:
 
 
 def _values(known: Sequence[Record], metric: str) -> str:
-    figures = [(v["version"], v["figures"].get(metric)) for v in known]
-    texts = [(version, figure["text"] if figure else "none") for version, figure in figures]
+    texts = [(v["version"], v["figures"].get(metric, {"text": "none"})["text"]) for v in known]
     return "; ".join(f"{versions}: {text}" for versions, text in runs_of(texts))

@@ -6,7 +6,7 @@ import os
 import re
 import secrets
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -69,21 +69,14 @@ def file_stems(names: Iterable[str]) -> dict[str, str]:
     return stems
 
 
-def _figures(charts: Charts) -> Iterator[tuple[str, Figure]]:
+def _figures(charts: Charts) -> list[tuple[str, Figure]]:
     from omegadot.reports.charts.static import deviations as all_series
     from omegadot.reports.charts.static import sweeps
 
-    for channel in charts.chart.units:
-        figure = all_series.draw(charts, channel)
-        if figure is not None:
-            yield channel.replace("_", "-"), figure
-    for kind, draw in (
-        ("convergence", sweeps.draw_convergence),
-        ("work-precision", sweeps.draw_work_precision),
-    ):
-        figure = draw(charts)
-        if figure is not None:
-            yield kind, figure
+    drawn = {c.replace("_", "-"): all_series.draw(charts, c) for c in charts.chart.units}
+    drawn["convergence"] = sweeps.draw_convergence(charts)
+    drawn["work-precision"] = sweeps.draw_work_precision(charts)
+    return [(kind, figure) for kind, figure in drawn.items() if figure is not None]
 
 
 def _save(figure: Figure, folder: Path, stem: str) -> list[Path]:

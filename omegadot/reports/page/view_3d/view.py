@@ -128,20 +128,18 @@ def _runs(
 ) -> dict[str, Any]:
     ranks = rank_of(chart)
     clocks: dict[bytes, int] = {}
-    frames: list[list[int]] = []
     runs = []
     for run in own.runs:
         line = places.get((run.engine, run.setup, run.integrator))
         rank = ranks.get((run.timestep, run.accuracy))
         if line is None or rank is None:
             continue
-        if (clock := run.frames.tobytes()) not in clocks:
-            clocks[clock] = len(frames)
-            frames.append(run.frames.tolist())
+        clock = clocks.setdefault(run.frames.tobytes(), len(clocks))
         texts = knob(run.timestep, run.accuracy)
         # When it diverges, s, its largest error, degrees, and when its samples end, s.
         reported = run.diverges, rounded(np.rad2deg(run.largest), 3), run.end
-        runs.append([line, rank, texts, clocks[clock], codes.used, len(run.frames), *reported])
+        runs.append([line, rank, texts, clock, codes.used, len(run.frames), *reported])
         codes.add(run.error, np.pi)
         codes.add(run.spin, _SPINS * fastest)
+    frames = [np.frombuffer(clock, int).tolist() for clock in clocks]
     return {"frames": frames, "runs": sorted(runs, key=lambda entry: entry[:2])}
