@@ -138,7 +138,7 @@ def choose(
     """
     from omegadot.commands.choose.choose import choose as choose_engine
     from omegadot.commands.choose.choose import exit_code
-    from omegadot.reports.choice.text import print_choice
+    from omegadot.reports.choice.tables import print_choice
     from omegadot.reports.record.run_json import dump_json
     from omegadot.reports.text.numbers import listed
 

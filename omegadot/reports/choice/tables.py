@@ -1,13 +1,28 @@
-"""A choice in tables, the same for the terminal and the page."""
+"""A choice in tables, the same for the terminal and the page; and all of it in the terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from omegadot.reports.choice.sentences import LONGEST, NAMES, figure, missed_text, step_text
+from rich.console import Console
+from rich.text import Text
+
+from omegadot.reports.choice.sentences import (
+    GUARANTEE,
+    LONGEST,
+    NAMES,
+    figure,
+    headline,
+    missed_text,
+    notes,
+    requested,
+    step_text,
+    variant_lines,
+    verdict_everywhere,
+)
 from omegadot.reports.text.numbers import quantity, short
-from omegadot.reports.text.text_grid import Grid
+from omegadot.reports.text.text_grid import Grid, plain_console, text_grid
 
 Row = Mapping[str, Any]
 MEGABYTE = 1e6
@@ -113,3 +128,29 @@ def everywhere(choice: Row) -> Grid | None:
             ", ".join(step_text(step, case["duration"]) for step, case in steps),
         ))  # fmt: skip
     return Grid("What qualifies in every scenario, the cheapest first", heads, rows)
+
+
+def print_choice(choice: Mapping[str, Any], console: Console | None = None) -> None:
+    """Print, case by case, what qualifies, what does not and what would change it."""
+    console = console or plain_console(240)
+    console.print(Text(f"Required: {requested(choice)}."))
+    for case in choice["scenarios"]:
+        console.print()
+        for grid in (ranking(choice, case), refusals(case)):
+            if grid.rows:
+                console.print(text_grid(*grid))
+                console.print()
+        for line in variant_lines(case):
+            console.print(Text(line))
+    overall = everywhere(choice)
+    if overall is not None and overall.rows:
+        console.print()
+        console.print(text_grid(*overall))
+    console.print()
+    for line in notes(choice):
+        console.print(Text(line, style="yellow"))
+    console.print(Text(GUARANTEE, style="dim"))
+    for case in choice["scenarios"]:
+        console.print(Text(headline(case), style="bold"))
+    if overall is not None:
+        console.print(Text(verdict_everywhere(choice), style="bold"))
