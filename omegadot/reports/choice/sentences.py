@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from omegadot.reports.record.run_json import impossible_bodies
-from omegadot.reports.text.numbers import listed, plain, quantity, short, times
+from omegadot.reports.text.numbers import grouped, listed, plain, quantity, times
 
 Row = Mapping[str, Any]
 NAMES = {
@@ -29,13 +29,6 @@ def step_text(timestep: float, duration: float) -> str:
     while duration / (scaled / 10.0**digits) < round(duration / timestep):
         scaled -= 1
     return f"{scaled / 10.0**digits:.{max(digits, 0)}f}".rstrip("0").rstrip(".")
-
-
-def figure(value: float) -> str:
-    """A plain factor to three digits: 1.06, 33, 2,465; with an exponent where it is extreme."""
-    if not math.isfinite(value) or not 1e-3 <= abs(value) < 1e7:
-        return short(value, 3)
-    return f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
 
 
 def requested(choice: Row) -> str:
@@ -100,7 +93,7 @@ def missed_text(missed: Row) -> str:
     limit = quantity(missed["limit"], missed["unit"])
     found = quantity(missed["found"], missed["unit"])
     wanted = "at least" if missed["requirement"] == "real-time-factor" else "at most"
-    return f"{name} {found}, required {wanted} {limit} (off by {figure(missed['factor'])}x)"
+    return f"{name} {found}, required {wanted} {limit} (off by {grouped(missed['factor'])}x)"
 
 
 def variant_lines(case: Row) -> Iterator[str]:

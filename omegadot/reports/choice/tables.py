@@ -8,20 +8,9 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from omegadot.reports.choice.sentences import (
-    GUARANTEE,
-    LONGEST,
-    NAMES,
-    figure,
-    headline,
-    missed_text,
-    notes,
-    requested,
-    step_text,
-    variant_lines,
-    verdict_everywhere,
-)
-from omegadot.reports.text.numbers import quantity, short
+from omegadot.reports.choice import sentences
+from omegadot.reports.choice.sentences import LONGEST, NAMES, missed_text, step_text
+from omegadot.reports.text.numbers import grouped, quantity, short
 from omegadot.reports.text.text_grid import Grid, plain_console, text_grid
 
 Row = Mapping[str, Any]
@@ -59,7 +48,7 @@ def _error(found: Row, requirement: Row) -> str:
         return "–"
     text = quantity(error["value"], requirement["unit"])
     margin = error["margin"]
-    return text if margin is None else f"{text} (margin {figure(margin)}x)"
+    return text if margin is None else f"{text} (margin {grouped(margin)}x)"
 
 
 def _factor(row: Row) -> str:
@@ -67,7 +56,7 @@ def _factor(row: Row) -> str:
     if factor is None:
         return "–"
     low, high = factor["quartiles"]
-    return f"{figure(factor['median'])} ({figure(low)} to {figure(high)})"
+    return f"{grouped(factor['median'])} ({grouped(low)} to {grouped(high)})"
 
 
 def _rank(row: Row) -> str:
@@ -79,7 +68,7 @@ def _larger(case: Row, row: Row) -> str:
     if larger is None:
         return "none: every step tried passes"
     message = (
-        f"{step_text(larger['timestep'], case['duration'])} fails ({figure(larger['ratio'])}x)"
+        f"{step_text(larger['timestep'], case['duration'])} fails ({grouped(larger['ratio'])}x)"
     )
     if row["passes_again"]:
         again = step_text(row["passes_again"]["timestep"], case["duration"])
@@ -110,7 +99,7 @@ def _guess(row: Row) -> str:
         return "" if row["found"] else "no order observed at these steps"
     if guess["seconds"] > LONGEST:
         return "out of reach: a run would take more than an hour"
-    step, seconds = short(guess["timestep"]), figure(guess["seconds"])
+    step, seconds = short(guess["timestep"]), grouped(guess["seconds"])
     return f"a step of {step} s may suffice, {seconds} s a run (not verified)"
 
 
@@ -133,24 +122,24 @@ def everywhere(choice: Row) -> Grid | None:
 def print_choice(choice: Mapping[str, Any], console: Console | None = None) -> None:
     """Print, case by case, what qualifies, what does not and what would change it."""
     console = console or plain_console(240)
-    console.print(Text(f"Required: {requested(choice)}."))
+    console.print(Text(f"Required: {sentences.requested(choice)}."))
     for case in choice["scenarios"]:
         console.print()
         for grid in (ranking(choice, case), refusals(case)):
             if grid.rows:
                 console.print(text_grid(*grid))
                 console.print()
-        for line in variant_lines(case):
+        for line in sentences.variant_lines(case):
             console.print(Text(line))
     overall = everywhere(choice)
     if overall is not None and overall.rows:
         console.print()
         console.print(text_grid(*overall))
     console.print()
-    for line in notes(choice):
+    for line in sentences.notes(choice):
         console.print(Text(line, style="yellow"))
-    console.print(Text(GUARANTEE, style="dim"))
+    console.print(Text(sentences.GUARANTEE, style="dim"))
     for case in choice["scenarios"]:
-        console.print(Text(headline(case), style="bold"))
+        console.print(Text(sentences.headline(case), style="bold"))
     if overall is not None:
-        console.print(Text(verdict_everywhere(choice), style="bold"))
+        console.print(Text(sentences.verdict_everywhere(choice), style="bold"))

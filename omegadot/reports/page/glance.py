@@ -3,69 +3,52 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable
 from statistics import median
+from typing import Any
 
 import polars as pl
 
 from omegadot.reports.record.schema import GATES
-from omegadot.reports.summary.figures import Figure, Range, size
+from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.matrix import MARKS, origin_of
 from omegadot.reports.summary.provenance import Sources
-from omegadot.reports.summary.summary import STATUSES, YARDSTICKS, Cell, Column, Summary
-from omegadot.reports.text.numbers import knob, short, times
+from omegadot.reports.summary.summary import YARDSTICKS, Cell, Column, Summary, worst
+from omegadot.reports.text.numbers import grouped, knob, short, times
 
 # A cell: the value, and in smaller letters its details.
 Detailed = tuple[str, str]
 
 
-@dataclass(frozen=True)
-class Glance:
-    """One engine over all scenarios. best and worst: of its integrators, at their finest step.
+def glances(summary: Summary, metrics: pl.DataFrame, sources: Sources) -> list[dict[str, Any]]:
+    """One row an engine over all scenarios; the yardsticks are left out where anything else ran.
 
-    error_source: whether its errors are those of the declared schemes.
+    best and worst: of its integrators, at their finest step.  error_source: whether its errors are
+    those of the declared schemes.
     """
-
-    engine: str
-    status: str
-    mark: str
-    runs: str
-    residual: Detailed
-    best: Detailed
-    worst: Detailed
-    error_source: Detailed
-    cost: Detailed
-    source: int
-
-
-def glances(summary: Summary, metrics: pl.DataFrame, sources: Sources) -> list[Glance]:
-    """One row an engine; the yardsticks are left out where anything else ran."""
     engines = [c for c in summary.columns if c.engine not in YARDSTICKS] or list(summary.columns)
     return [_glance(column, summary, metrics, sources) for column in engines]
 
 
-def _glance(column: Column, summary: Summary, metrics: pl.DataFrame, sources: Sources) -> Glance:
+def _glance(
+    column: Column, summary: Summary, metrics: pl.DataFrame, sources: Sources
+) -> dict[str, Any]:
     cells = [summary.cells[name, column] for name in summary.scenarios]
-    own = metrics.filter(
-        (pl.col("engine") == column.engine)
-        & (pl.col("engine_version") == column.version)
-        & (pl.col("setup") == column.setup)
-    )
-    status = min((cell.status for cell in cells), key=STATUSES.index, default="absent")
+    own = metrics.filter(engine=column.engine, engine_version=column.version, setup=column.setup)
+    status = worst(cell.status for cell in cells)
     ranges = [cell.attitude for cell in cells if cell.attitude]
-    return Glance(
-        column.name,
-        status.replace("-", " "),
-        MARKS.get(status, "–"),
-        _runs(cells),
-        _residual(cells),
-        _spread(ranges, lambda found: found.best),
-        _spread(ranges, lambda found: found.worst),
-        _error_source(own),
-        _cost(own),
-        sources.number(origin_of(column)),
-    )
+    return {
+        "engine": column.name,
+        "status": status.replace("-", " "),
+        "mark": MARKS.get(status, "–"),
+        "runs": _runs(cells),
+        "residual": _residual(cells),
+        "best": _spread([found.best for found in ranges]),
+        "worst": _spread([found.worst for found in ranges]),
+        "error_source": _error_source(own),
+        "cost": _cost(own),
+        "source": sources.number(origin_of(column)),
+    }
 
 
 def _runs(cells: Iterable[Cell]) -> str:
@@ -74,16 +57,15 @@ def _runs(cells: Iterable[Cell]) -> str:
 
 
 def _residual(cells: Iterable[Cell]) -> Detailed:
-    worst = max((cell.residual for cell in cells if cell.residual), key=size, default=None)
-    if worst is None:
+    largest = max((cell.residual for cell in cells if cell.residual), key=size, default=None)
+    if largest is None:
         return "–", ""
-    bound = "" if worst.bound is None else f"; bound {short(worst.bound)}"
-    return short(worst.value), f"on {worst.scenario}{bound}"
+    bound = "" if largest.bound is None else f"; bound {short(largest.bound)}"
+    return short(largest.value), f"on {largest.scenario}{bound}"
 
 
-def _spread(ranges: list[Range], end: Callable[[Range], Figure]) -> Detailed:
+def _spread(figures: list[Figure]) -> Detailed:
     """The median over the scenarios, and the largest with the run that gave it."""
-    figures = [end(found) for found in ranges]
     if not figures:
         return "–", ""
     largest = max(figures, key=size)
@@ -119,10 +101,5 @@ def _cost(own: pl.DataFrame) -> Detailed:
     found = steps.group_by("integrator").agg(pl.col("value").median()).sort("value", "integrator")
     (cheapest, low), (slowest, high) = found.row(0), found.row(-1)
     if cheapest == slowest:
-        return f"{_micro(low)} µs", str(cheapest)
-    return f"{_micro(low)} … {_micro(high)} µs", f"{cheapest} … {slowest}"
-
-
-def _micro(seconds: float) -> str:
-    micro = 1e6 * seconds
-    return f"{micro:.3g}" if micro < 999.5 else f"{micro:,.0f}"
+        return f"{grouped(1e6 * low)} µs", str(cheapest)
+    return f"{grouped(1e6 * low)} … {grouped(1e6 * high)} µs", f"{cheapest} … {slowest}"

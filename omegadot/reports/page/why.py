@@ -104,11 +104,9 @@ def _named(declared: Counter[str]) -> str:
 
 
 def _by_key(metrics: pl.DataFrame) -> dict[Key, list[dict[str, Any]]]:
-    found: dict[Key, list[dict[str, Any]]] = {}
-    names = ("engine", "setup", "integrator", "channel", "value", "bound", "verdict")
-    for row in metrics.select(names).iter_rows(named=True):
-        found.setdefault(_key(row), []).append(row)
-    return found
+    names = ("engine", "setup", "integrator")
+    parts = metrics.partition_by(names, as_dict=True, maintain_order=True)
+    return {key: part.to_dicts() for key, part in parts.items()}
 
 
 def _equal_cells(matches: list[dict[str, Any]]) -> tuple[Value, Value]:

@@ -35,20 +35,6 @@ class Shown:
     rank: int = 0
 
 
-@dataclass(frozen=True)
-class Line:
-    """One engine on one scenario, spelt out.
-
-    numbers: (value, the run behind it) of the worst residual, then best and worst of the drift and
-    best and worst of the attitude error.  source: the number of the source.
-    """
-
-    engine: str
-    shown: Shown
-    numbers: list[tuple[str, str]]
-    source: int
-
-
 def origin_of(column: Column, figure: Figure | None = None) -> dict[str, Any]:
     """The source of a number of this column: the run of the figure, or the engine as a whole."""
     engine = {"engine": column.engine, "engine_version": column.version, "setup": column.setup}
@@ -83,15 +69,21 @@ def matrix(summary: Summary) -> list[tuple[str, list[Shown]]]:
     ]
 
 
-def lines(summary: Summary, scenario: str, sources: Sources) -> list[Line]:
-    """A scenario's row of the matrix, spelt out: one line an engine."""
+def lines(summary: Summary, scenario: str, sources: Sources) -> list[dict[str, Any]]:
+    """A scenario's row of the matrix, spelt out: one line an engine.
+
+    numbers: (value, the run behind it) of the worst residual, then best and worst of the drift and
+    best and worst of the attitude error.
+    """
     found = []
     for column in summary.columns:
         cell = summary.cells[scenario, column]
         ends = [(s.best, s.worst) if s else (None, None) for s in (cell.drift, cell.attitude)]
         figures = [cell.residual, *(figure for pair in ends for figure in pair)]
         numbers = [named(figure) for figure in figures]
-        found.append(Line(column.name, shown(cell), numbers, sources.number(origin_of(column))))
+        source = sources.number(origin_of(column))
+        line = {"engine": column.name, "shown": shown(cell), "numbers": numbers, "source": source}
+        found.append(line)
     return found
 
 

@@ -28,6 +28,13 @@ def plain(value: float | None) -> str:
     return "–" if value is None else f"{value:.6g}"
 
 
+def grouped(value: float) -> str:
+    """A plain factor to three digits: 1.06, 33, 2,465; with an exponent where it is extreme."""
+    if not math.isfinite(value) or not 1e-3 <= abs(value) < 1e7:
+        return short(value, 3)
+    return f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+
+
 def times(count: int, noun: str) -> str:
     """A count with its noun: 1 scenario, 3 scenarios."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

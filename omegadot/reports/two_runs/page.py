@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from operator import attrgetter
+from typing import Any
 
 from omegadot.reports.page.templating import asset, environment
 from omegadot.reports.summary import matrix
@@ -31,19 +32,6 @@ class Pair:
     label: str
     versions: str
     columns: tuple[Column | None, Column | None]
-
-
-@dataclass(frozen=True)
-class PairCell:
-    """A cell of the matrix: what either record shows, and what changed.
-
-    mood: "worse", "better", "mixed", "same", "appeared" or "vanished".  change: as text.
-    """
-
-    was: matrix.Shown
-    now: matrix.Shown
-    mood: str
-    change: str
 
 
 def draw_two_runs(comparison: Comparison) -> str:
@@ -103,13 +91,13 @@ def _columns(summaries: Iterable[Summary], versioned: set[str]) -> list[Pair]:
 
 def _matrix(
     comparison: Comparison, summaries: list[Summary], columns: list[Pair]
-) -> list[tuple[str, list[PairCell]]]:
+) -> list[tuple[str, list[dict[str, Any]]]]:
     changes: dict[tuple[str, Key], list[Change]] = {}
     for change in (*comparison.worse, *comparison.better):
         run = change.key
         changes.setdefault((run.scenario, (run.engine, run.setup, run.version)), []).append(change)
 
-    def cell(name: str, pair: Pair) -> PairCell:
+    def cell(name: str, pair: Pair) -> dict[str, Any]:
         was, now = (
             summary.cells.get((name, column)) if column is not None else None
             for summary, column in zip(summaries, pair.columns, strict=True)
@@ -120,15 +108,20 @@ def _matrix(
     return [(name, [cell(name, pair) for pair in columns]) for name in names]
 
 
-def _cell(was: Cell | None, now: Cell | None, changes: Iterable[Change]) -> PairCell:
+def _cell(was: Cell | None, now: Cell | None, changes: Iterable[Change]) -> dict[str, Any]:
+    """A cell of the matrix: what either record shows, and what changed.
+
+    mood: "worse", "better", "mixed", "same", "appeared" or "vanished".  change: as text.
+    """
     one, other = (
         _ABSENT if cell is None or not cell.runs else matrix.shown(cell) for cell in (was, now)
     )
     if one is _ABSENT or other is _ABSENT:
         mood = "" if one is other else "appeared" if one is _ABSENT else "vanished"
-        return PairCell(one, other, mood, mood)
+        return {"was": one, "now": other, "mood": mood, "change": mood}
     worse = sum(change.worse for change in changes)
     better = sum(not change.worse for change in changes)
     message = [f"{count} {term}" for count, term in ((worse, "worse"), (better, "better")) if count]
     mood = "mixed" if worse and better else "worse" if worse else "better" if better else "same"
-    return PairCell(one, other, mood, ", ".join(message) or "no change")
+    change = ", ".join(message) or "no change"
+    return {"was": one, "now": other, "mood": mood, "change": change}

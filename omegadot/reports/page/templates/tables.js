@@ -19,7 +19,6 @@ function columnsOf(table) {
   return grid.at(-1).map((cell, x) => ({ cell, heads: [...new Set(grid.map((row) => row[x]))].map(textOf) }));
 }
 
-
 // The number that is read in a cell: of the matrix that which is shown.
 function sizeOf(cell) {
   const shown = [...cell.querySelectorAll(".n")].find((n) => n.offsetWidth > 0);

@@ -24,21 +24,15 @@ function undifference(bytes) {
   return codes;
 }
 
-let loading = null;
-function load() {
-  loading ??= (async () => {
-    const [script, description, codes] = await Promise.all([
-      unpack("plotly-data").then((r) => r.text()),
-      unpack("charts-data").then((r) => r.json()),
-      unpack("codes-data").then((r) => r.arrayBuffer()),
-    ]);
-    const tag = document.createElement("script");
-    tag.textContent = script;
-    document.head.append(tag);
-    return { data: description, codes: undifference(new Uint8Array(codes)) };
-  })();
-  return loading;
+// A library, which becomes part of the page, and what it draws.
+async function arrive(...ids) {
+  const [library, description, codes] = await Promise.all(ids.map(unpack));
+  document.head.append(made("script", { textContent: await library.text() }));
+  return { data: await description.json(), codes: undifference(new Uint8Array(await codes.arrayBuffer())) };
 }
+
+let loading = null;
+const load = () => (loading ??= arrive("plotly-data", "charts-data", "codes-data"));
 
 let origins = null;
 const loadOrigins = () => (origins ??= unpack("origins-data").then((r) => r.json()));

@@ -79,15 +79,10 @@ function settle() {
 }
 
 async function begin() {
-  const [library, data, codes] = await Promise.all([
-    unpack("three-data").then((r) => r.text()),
-    unpack("view-data").then((r) => r.json()),
-    unpack("view-codes").then((r) => r.arrayBuffer()),
-  ]);
-  document.head.append(made("script", { textContent: library }));
+  const { data, codes } = await arrive("three-data", "view-data", "view-codes");
   startWebgl();
   noteWebgl();
-  loaded = { data, codes: new Int16Array(undifference(new Uint8Array(codes)).buffer) };
+  loaded = { data, codes: new Int16Array(codes.buffer) };
   choose();
   measure();
   connect();
