@@ -102,14 +102,8 @@ def lines_of(charts: Iterable[Chart], engines: list[Mapping[str, Any]]) -> list[
     names = sorted({engine for engine, _, _ in runs}, key=lambda n: (order.get(n, len(order)), n))
     colour, dash = colours(names), dashes(engines)
     width = {name: min(4.0, 1.4 + 0.7 * k) for k, name in enumerate(reversed(names))}
-    return [
-        Line(
-            engine,
-            name,
-            setup,
-            colour[engine],
-            dash.get((engine, name), ""),
-            width[engine] * (1.0 if setup == "physics" else 0.5),
-        )
-        for engine, setup, name in sorted(runs, key=lambda run: names.index(run[0]))
-    ]
+    lines = []
+    for engine, setup, name in sorted(runs, key=lambda run: names.index(run[0])):
+        broad = width[engine] * (1.0 if setup == "physics" else 0.5)
+        lines.append(Line(engine, name, setup, colour[engine], dash.get((engine, name), ""), broad))
+    return lines

@@ -81,13 +81,8 @@ def sweeps_of(metrics: pl.DataFrame) -> dict[str, list[Sweep]]:
 
 
 def _point(step: float, found: Mapping[str, float | None]) -> Point:
-    cost = _finite(found.get("cost"))
-    return Point(
-        step,
-        _finite(found.get("error")),
-        _finite(found.get("bound")),
-        None if cost is None else cost / step,
-    )
+    error, bound, cost = (_finite(found.get(name)) for name in ("error", "bound", "cost"))
+    return Point(step, error, bound, None if cost is None else cost / step)
 
 
 def guides(sweeps: Iterable[Sweep]) -> list[list[float]]:

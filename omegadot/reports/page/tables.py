@@ -96,18 +96,12 @@ def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]], sources
 
 def deviation_table(chart: Chart, sources: Sources) -> Table:
     """The numbers behind a scenario's charts: each run's largest error, and its last."""
-    rows = [
-        Row(
-            run_heads((c.engine, "", c.setup, c.integrator, c.timestep, c.accuracy)),
-            tuple(
-                Value(short(value))
-                for channel in chart.units
-                for value in (c.largest[channel], c.end[channel])
-            ),
-            sources.number(vars(c)),
-        )
-        for c in chart.deviations
-    ]
+    rows = []
+    for run in chart.deviations:
+        heads = run_heads((run.engine, "", run.setup, run.integrator, run.timestep, run.accuracy))
+        numbers = (number for c in chart.units for number in (run.largest[c], run.end[c]))
+        values = tuple(Value(short(number)) for number in numbers)
+        rows.append(Row(heads, values, sources.number(vars(run))))
     groups = tuple(
         (f"{channel_name(channel)}, {unit_text(unit)}", 2) for channel, unit in chart.units.items()
     )

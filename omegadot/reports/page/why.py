@@ -41,17 +41,11 @@ def scheme_table(record: Record, sources: Sources) -> Table:
     matches = _by_key(metrics.filter(pl.col("metric") == "match"))
     deviations = _by_key(metrics.filter(pl.col("metric") == "unexplained_max"))
     declared = _declared(record)
-    rows = [
-        Row(
-            (*_heads(key), _named(declared.get(key, Counter()))),
-            (
-                *_equal_cells(found),
-                *(_largest(deviations.get(key, []), channel) for channel in ("omega", "attitude")),
-            ),
-            _source(key, sources),
-        )
-        for key, found in matches.items()
-    ]
+    rows = []
+    for key, found in matches.items():
+        heads = (*_heads(key), _named(declared.get(key, Counter())))
+        largest = (_largest(deviations.get(key, []), channel) for channel in ("omega", "attitude"))
+        rows.append(Row(heads, (*_equal_cells(found), *largest), _source(key, sources)))
     return Table(
         ("engine", "integrator", "scheme"),
         (("implemented in", 1), ("max. deviation from the scheme", 3)),
@@ -65,11 +59,7 @@ def order_table(record: Record, sources: Sources) -> Table:
     metrics = _of_runs(record)
     orders = _by_key(metrics.filter(pl.col("metric") == "observed_order"))
     rows = [
-        Row(
-            _heads(key),
-            tuple(_order_cell(found, channel) for channel in _CHANNELS),
-            _source(key, sources),
-        )
+        Row(_heads(key), tuple(_order_cell(found, c) for c in _CHANNELS), _source(key, sources))
         for key, found in orders.items()
     ]
     return Table(

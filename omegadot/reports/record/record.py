@@ -16,12 +16,8 @@ from omegadot.reports.record import schema
 from omegadot.reports.record.run_json import check_run, dump_json, read_run
 from omegadot.reports.record.schema import Field, RecordError
 
-RUN, METRICS, TRAJECTORIES, PAGE = (
-    "run.json",
-    "metrics.parquet",
-    "trajectories.parquet",
-    "report.html",
-)
+RUN, PAGE = "run.json", "report.html"
+METRICS, TRAJECTORIES = "metrics.parquet", "trajectories.parquet"
 _REPEATING = ("timestep", "accuracy", "time")
 FILES = (RUN, METRICS, TRAJECTORIES, PAGE)
 

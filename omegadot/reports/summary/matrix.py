@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import count, product
 from typing import Any
 
 from omegadot.reports.summary.figures import Figure, Range
@@ -56,16 +57,10 @@ def shown(cell: Cell, card: int = 0) -> Shown:
 
 def matrix(summary: Summary) -> list[tuple[str, list[Shown]]]:
     """Rows of the matrix: the scenario's name and its cells in the order of the columns."""
-    width = len(summary.columns)
+    card = count()  # row by row, as `cards` lists them
     return [
-        (
-            name,
-            [
-                shown(summary.cells[name, column], row * width + place)
-                for place, column in enumerate(summary.columns)
-            ],
-        )
-        for row, name in enumerate(summary.scenarios)
+        (name, [shown(summary.cells[name, column], next(card)) for column in summary.columns])
+        for name in summary.scenarios
     ]
 
 
@@ -115,20 +110,16 @@ def cards(summary: Summary, sources: Sources, anchors: Mapping[str, str]) -> lis
 
     In the order of the matrix, row by row.
     """
-    return [
-        [
-            anchors[name],
-            text(summary.cells[name, column].status),
-            shown(summary.cells[name, column]).part,
-            [
-                [what, named(figure)[0], sources.number(origin_of(column, figure))]
-                for what, figure in _figures(summary.cells[name, column])
-            ],
-            sources.number(origin_of(column)),
+    found: list[list[Any]] = []
+    for name, column in product(summary.scenarios, summary.columns):
+        cell = summary.cells[name, column]
+        numbers = [
+            [what, named(figure)[0], sources.number(origin_of(column, figure))]
+            for what, figure in _figures(cell)
         ]
-        for name in summary.scenarios
-        for column in summary.columns
-    ]
+        whole = sources.number(origin_of(column))
+        found.append([anchors[name], text(cell.status), shown(cell).part, numbers, whole])
+    return found
 
 
 def _figures(cell: Cell) -> list[tuple[str, Figure]]:

@@ -92,18 +92,9 @@ def _change(row: dict[str, Any]) -> Change:
     grew = magnitude(measure.now) >= magnitude(measure.was)
     # A verdict outranks a size: an error that passes now is no worse for being larger.
     worse = grew if was == now else VERDICT_RANK[now] < VERDICT_RANK[was]
-    return Change(
-        RunKey(*(row[name] for name in _KEY)),
-        worse,
-        row["gate"],
-        row["channel"],
-        row["metric"],
-        was,
-        now,
-        measure,
-        row["moved"],
-        row["note_now"] or "",
-    )
+    key = RunKey(*(row[name] for name in _KEY))
+    what = (row[name] for name in ("gate", "channel", "metric"))
+    return Change(key, worse, *what, was, now, measure, row["moved"], row["note_now"] or "")
 
 
 @dataclass(frozen=True)

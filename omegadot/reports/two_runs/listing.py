@@ -54,16 +54,10 @@ def _change_rows(changes: Iterable[Change]) -> Rows:
 def _change_row(changes: list[Change]) -> tuple[str, ...]:
     worst, count = changes[0], len(changes)
     key, scenarios = worst.key, len({change.key.scenario for change in changes})
+    where = ", ".join(filter(None, (key.scenario, knob(key.timestep, key.accuracy))))
     in_all = f"{times(count, 'value' if worst.metric else 'run')} on {times(scenarios, 'scenario')}"
-    return (
-        name_of(key),
-        key.integrator,
-        worst.what,
-        ", ".join(filter(None, (key.scenario, knob(key.timestep, key.accuracy)))),
-        from_to(worst),
-        in_all if count > 1 else "",
-        worst.why,
-    )
+    total = in_all if count > 1 else ""
+    return name_of(key), key.integrator, worst.what, where, from_to(worst), total, worst.why
 
 
 def _presences(tasks: Iterable[Task]) -> Rows:

@@ -75,16 +75,11 @@ def tasks_of(side: Side, versioned: set[str]) -> dict[RunKey, Task]:
     found: dict[RunKey, Task] = {}
     for entry in side.run["tasks"]:
         engine, version, setup = column_of(entry)
-        key = RunKey(
-            entry["scenario"],
-            engine,
-            version if engine in versioned else "",
-            setup,
-            # The exact solution is one engine, however it is computed.
-            "" if engine == "exact" else entry.get("integrator") or "",
-            entry.get("timestep"),
-            entry.get("accuracy"),
-        )
+        own = version if engine in versioned else ""
+        # The exact solution is one engine, however it is computed.
+        integrator = "" if engine == "exact" else entry.get("integrator") or ""
+        knobs = entry.get("timestep"), entry.get("accuracy")
+        key = RunKey(entry["scenario"], engine, own, setup, integrator, *knobs)
         why = entry.get("reason") or entry.get("why") or ""
         task = Task(key, task_status(entry), entry["outcome"], entry.get("gates") or {}, why)
         if key not in found or worst((task.status, found[key].status)) == task.status:

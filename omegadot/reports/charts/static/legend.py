@@ -126,11 +126,5 @@ def _add_legend(
         )
         level += block.height
         if block.heading:
-            figure.text(
-                _LEFT,
-                (level - _GAP - 0.75 * LEGEND_ROW) / whole,
-                block.heading,
-                color=block.colour,
-                fontsize=6.0,
-                fontweight="bold",
-            )
+            at = _LEFT, (level - _GAP - 0.75 * LEGEND_ROW) / whole
+            figure.text(*at, block.heading, color=block.colour, fontsize=6.0, fontweight="bold")
