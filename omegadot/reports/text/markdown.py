@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.headline import headline, remarks, truth
@@ -101,15 +99,11 @@ def _missing(summary: Summary, room: int) -> list[str]:
 
 
 def _versions(record: Record, room: int) -> list[str]:
-    def facts() -> Iterator[tuple[str, object]]:
-        run = record.run
-        yield "omegadot", run.get("omegadot") or ""
-        for engine in run["engines"]:
-            yield engine["name"], engine.get("version") or engine.get("reason") or "not installed"
-        for group in ("machine", "versions"):
-            yield from (run.get(group) or {}).items()
-        for key in ("created", "seconds", "seed"):
-            if run.get(key) is not None:
-                yield key, run[key]
-
-    return table(("", ""), facts(), room)
+    run = record.run
+    rows = [("omegadot", run.get("omegadot") or "")]
+    for engine in run["engines"]:
+        version = engine.get("version") or engine.get("reason") or "not installed"
+        rows.append((engine["name"], version))
+    rows += [fact for group in ("machine", "versions") for fact in (run.get(group) or {}).items()]
+    rows += [(key, run[key]) for key in ("created", "seconds", "seed") if run.get(key) is not None]
+    return table(("", ""), rows, room)

@@ -86,24 +86,24 @@ def compare_records(was: Record, now: Record, labels: tuple[str, str] = ("A", "B
     """
     one, other = Side(labels[0], was), Side(labels[1], now)
     versioned = several_versions((one, other))
-    runs = pair_runs(tasks_of(one, versioned), tasks_of(other, versioned))
+    runs, vanished, appeared = pair_runs(*(tasks_of(side, versioned) for side in (one, other)))
     others = redefined(one, other)
     pairs = paired(one, other, versioned)
     same_seed = was.run.get("seed") == now.run.get("seed")
     figures = pairs.filter(pl.col("gate") != "cost")
     found = changed_figures(figures, same_seed, others)
-    changes = without_repetition(changed_runs(runs.pairs), found)
+    changes = without_repetition(changed_runs(runs), found)
     changes.sort(key=lambda change: change.weight, reverse=True)
     return Comparison(
         one,
         other,
         tuple(change for change in changes if change.worse),
         tuple(change for change in changes if not change.worse),
-        runs.appeared,
-        runs.vanished,
+        tuple(appeared),
+        tuple(vanished),
         tuple(differences(one, other)),
         tuple(costs(pairs)),
-        len(runs.pairs),
+        len(runs),
         len(figures.drop_nulls(["bound", "bound_now"])),
         frozenset(others),
     )

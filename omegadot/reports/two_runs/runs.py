@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from omegadot.reports.summary.summary import STATUSES
 from omegadot.reports.two_runs.change import Change
@@ -14,13 +13,7 @@ from omegadot.reports.two_runs.sides import RunKey, Task
 _UNKNOWN_BEFORE = ("not-installed", "interrupted")
 
 
-@dataclass(frozen=True)
-class Runs:
-    """pairs: runs of both records.  vanished, appeared: runs that one of them alone has."""
-
-    pairs: tuple[tuple[Task, Task], ...]
-    vanished: tuple[Task, ...]
-    appeared: tuple[Task, ...]
+Pair = tuple[Task, Task]
 
 
 def _stand_ins(tasks: Iterable[Task]) -> dict[tuple[str, str, str], list[Task]]:
@@ -41,8 +34,13 @@ def _stand_in(key: RunKey, tasks: Mapping[tuple[str, str, str], list[Task]]) -> 
     return None
 
 
-def pair_runs(was: Mapping[RunKey, Task], now: Mapping[RunKey, Task]) -> Runs:
-    """Each run with the same one of the other record; an engine that did not start stands in."""
+def pair_runs(
+    was: Mapping[RunKey, Task], now: Mapping[RunKey, Task]
+) -> tuple[list[Pair], list[Task], list[Task]]:
+    """Each run with the same one of the other record; those that have vanished, and appeared.
+
+    An engine that did not start stands in for its runs.
+    """
     absent_now, absent_then = _stand_ins(now.values()), _stand_ins(was.values())
     pairs = [
         (task, other)
@@ -56,13 +54,10 @@ def pair_runs(was: Mapping[RunKey, Task], now: Mapping[RunKey, Task]) -> Runs:
         if key not in seen and (other := _stand_in(key, absent_then))
     ]
     first, second = ({pair[place].key for pair in pairs} for place in (0, 1))
+    vanished = [task for key, task in was.items() if key not in first]
     appeared = [task for key, task in now.items() if key not in second]
-    appeared += [task for pair in pairs if _unknown_before(*pair) for task in pair[1:]]
-    return Runs(
-        tuple(pair for pair in pairs if not _unknown_before(*pair)),
-        tuple(task for key, task in was.items() if key not in first),
-        tuple(appeared),
-    )
+    appeared += [other for task, other in pairs if _unknown_before(task, other)]
+    return [pair for pair in pairs if not _unknown_before(*pair)], vanished, appeared
 
 
 def _unknown_before(was: Task, now: Task) -> bool:
@@ -74,7 +69,7 @@ def _outcome_rank(outcome: str) -> int:
     return len(STATUSES) if outcome == "ok" else STATUSES.index(outcome)
 
 
-def changed_runs(pairs: Iterable[tuple[Task, Task]]) -> Iterator[Change]:
+def changed_runs(pairs: Iterable[Pair]) -> Iterator[Change]:
     """The runs with another outcome; where it is the same, the gates with another verdict."""
     for was, now in pairs:
         key = now.key if was.stands_for_all else was.key
