@@ -58,19 +58,15 @@ def dashes(engines: Iterable[Mapping[str, Any]]) -> dict[tuple[str, str], str]:
     for engine in engines:
         if engine["name"] == "exact":  # the yardstick itself is never drawn
             continue
-        used: set[int] = set()
-        waiting = []
+        places = {}
         for integrator in engine.get("integrators") or ():
             scheme = integrator.get("scheme") or f"{engine['name']} {integrator['name']}"
-            place = schemes.setdefault(scheme, len(schemes)) % len(DASHES)
-            if place in used:
-                waiting.append(integrator["name"])
-                continue
-            used.add(place)
-            given[engine["name"], integrator["name"]] = DASHES[place]
-        free = [place for place in range(len(DASHES)) if place not in used] or [0]
-        for k, name in enumerate(waiting):
-            given[engine["name"], name] = DASHES[free[k % len(free)]]
+            places[integrator["name"]] = schemes.setdefault(scheme, len(schemes)) % len(DASHES)
+        first = {place: name for name, place in reversed(places.items())}
+        free = [place for place in range(len(DASHES)) if place not in first] or [0]
+        others = [name for name, place in places.items() if first[place] != name]
+        places |= {name: free[k % len(free)] for k, name in enumerate(others)}
+        given |= {(engine["name"], name): DASHES[place] for name, place in places.items()}
     return given
 
 

@@ -3,19 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections import namedtuple
 from dataclasses import dataclass
 
-
-@dataclass(frozen=True)
-class Frame:
-    """px: the whole picture, and what is kept free on each side of the axes."""
-
-    width: int
-    height: int
-    left: int
-    right: int
-    top: int
-    bottom: int
+# px: the whole picture, and what is kept free on each side of the axes.
+Frame = namedtuple("Frame", "width height left right top bottom")
 
 
 @dataclass(frozen=True)

@@ -49,29 +49,23 @@ def _finite(value: float | None) -> float | None:
 
 def sweeps_of(metrics: pl.DataFrame) -> dict[str, list[Sweep]]:
     """Every scenario's sweeps, by name, from the measured attitude errors and times per step."""
-    wanted = {
-        ("attitude", "error_max"): "error",
-        ("attitude", "observed_order"): "order",
-        ("time", "time_per_step"): "cost",
-    }
     names = ("scenario", "engine", "setup", "integrator", "timestep", "channel", "metric")
     rows = metrics.filter(
         pl.col("timestep").is_not_null()
         & pl.col("integrator").is_not_null()
         & pl.col("metric").is_in(["error_max", "observed_order", "time_per_step"])
     )
-    runs: dict[tuple[str, str, str, str], dict[float, dict[str, float | None]]] = {}
-    for *key, step, channel, metric, value, bound in rows.select(
+    runs: dict[tuple[str, ...], dict[float, dict[str, float | None]]] = {}
+    for *lane, step, channel, metric, value, bound in rows.select(
         *names, "value", "bound"
     ).iter_rows():
-        kind = wanted.get((channel, metric))
-        if kind is None:
-            continue
-        scenario, engine, setup, integrator = key
-        found = runs.setdefault((scenario, engine, setup, integrator), {}).setdefault(step, {})
-        found[kind] = bound if kind == "order" else value
-        if kind == "error":
-            found["bound"] = bound
+        found = {
+            ("attitude", "error_max"): {"error": value, "bound": bound},
+            ("attitude", "observed_order"): {"order": bound},
+            ("time", "time_per_step"): {"cost": value},
+        }.get((channel, metric))
+        if found is not None:
+            runs.setdefault(tuple(lane), {}).setdefault(step, {}).update(found)
     sweeps: dict[str, list[Sweep]] = {}
     for (scenario, engine, setup, integrator), by_step in runs.items():
         points = tuple(_point(step, by_step[step]) for step in sorted(by_step))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any
@@ -55,6 +55,10 @@ def unbroken(text: str) -> str:
     return re.sub(r"(?<=\de)-(?=\d)", "-\u2060", text)
 
 
+def _knob_of(row: Mapping[str, Any]) -> str:
+    return knob(row["timestep"], row["accuracy"])
+
+
 @cache
 def environment() -> Environment:
     """The page's templates: everything escaped, no address active."""
@@ -65,12 +69,8 @@ def environment() -> Environment:
         lstrip_blocks=True,
         finalize=without_scheme,
     )
-    found.filters["short"] = short
-    found.filters["knob"] = lambda row: knob(row["timestep"], row["accuracy"])
-    found.filters["unit"] = unit_text
-    found.filters["unbroken"] = unbroken
-    found.filters["body"] = table_body
-    found.filters["linked"] = linked
+    found.filters |= {"short": short, "unit": unit_text, "unbroken": unbroken}
+    found.filters |= {"body": table_body, "linked": linked, "knob": _knob_of}
     return found
 
 

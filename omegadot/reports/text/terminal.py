@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table
@@ -15,10 +13,11 @@ from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.summary import Cell, Missing, Summary, summarise
 from omegadot.reports.text.numbers import first, short, times
+from omegadot.reports.text.text_grid import plain_console
 
 _STYLES = {"pass": "green", "fail": "bold red", "declared": "yellow", "absent": "dim"}
 _NOT_RUN = "magenta"
-# Piped output has no width of its own; nothing is cut off there.
+# Nothing is cut off there.
 _WIDTH_WHEN_PIPED = 240
 _SIGNS = {"pass": "every gate holds", "fail": "a gate fails", "declared": "declared exception"}
 _WITH_NUMBERS = ("pass", "fail", "declared", "not-judged")
@@ -37,12 +36,12 @@ def print_summary(record: Record, console: Console | None = None) -> None:
     finest step the angular-momentum drift and the attitude error. Numbers give way from the right
     where the terminal is too narrow for them.
     """
-    console = console or Console(width=None if sys.stdout.isatty() else _WIDTH_WHEN_PIPED)
+    console = console or plain_console(_WIDTH_WHEN_PIPED)
     summary = summarise(record)
     shown, table = _fitting_table(summary, console)
     if summary.columns:
         console.print(table)
-        console.print(_legend(summary, shown, console), style="dim", highlight=False)
+        console.print(_legend(summary, shown, console), style="dim")
     for line in _extremes(summary):
         console.print(Text(line))
     for cluster in clusters_over_scenarios(record.run)[:1]:  # the largest; the page names all

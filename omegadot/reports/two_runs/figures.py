@@ -93,8 +93,9 @@ def _change(row: dict[str, Any]) -> Change:
     # A verdict outranks a size: an error that passes now is no worse for being larger.
     worse = grew if was == now else VERDICT_RANK[now] < VERDICT_RANK[was]
     key = RunKey(*(row[name] for name in _KEY))
-    what = (row[name] for name in ("gate", "channel", "metric"))
-    return Change(key, worse, *what, was, now, measure, row["moved"], row["note_now"] or "")
+    gate, channel, metric, _ = (row[name] for name in _NAME)
+    moved, why = row["moved"], row["note_now"] or ""
+    return Change(key, worse, gate, channel, metric, was, now, measure, moved, why)
 
 
 @dataclass(frozen=True)

@@ -23,19 +23,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-TITLES = {
-    "omega_dot": "Omega-dot divergence along the run",
-    "energy": "Energy error",
-    "angular_momentum": "Angular-momentum error",
-    "linear_momentum": "Linear-momentum error",
-    "attitude": "Attitude error",
-}
-SYMBOLS = {
-    "omega_dot": "|ω̇ − ω̇ exact|",
-    "energy": "|E − E exact|",
-    "angular_momentum": "|H − H exact|",
-    "linear_momentum": "|p − p exact|",
-    "attitude": "angle to the exact attitude",
+# The title, and what is drawn.
+CHANNELS = {
+    "omega_dot": ("Omega-dot divergence along the run", "|ω̇ − ω̇ exact|"),
+    "energy": ("Energy error", "|E − E exact|"),
+    "angular_momentum": ("Angular-momentum error", "|H − H exact|"),
+    "linear_momentum": ("Linear-momentum error", "|p − p exact|"),
+    "attitude": ("Attitude error", "angle to the exact attitude"),
 }
 # A run that blew up may hold anything; this far off nothing more can be read.
 _CEILING = 1e6
@@ -71,8 +65,9 @@ def draw(charts: Charts, channel: str) -> Figure | None:
     figure, axes = picture(parts, log="y")
     axes.set_xlim(0.0, duration)
     axes.set_xlabel("time, s")
-    axes.set_ylabel(f"{SYMBOLS[channel]}, {unit_text(unit)}")
-    title(axes, charts.title, TITLES[channel] + _step(charts.finest))
+    what, symbol = CHANNELS[channel]
+    axes.set_ylabel(f"{symbol}, {unit_text(unit)}")
+    title(axes, charts.title, what + _step(charts.finest))
     return figure
 
 
