@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
 
 
 class Format(StrEnum):
@@ -26,6 +31,51 @@ class Setup(StrEnum):
 
     physics = "physics"
     as_shipped = "as-shipped"
+
+
+def option(metavar: str, text: str, *names: str, **more: Any) -> Any:
+    """An option: name of its value, help, and its own name where the argument has another."""
+    return typer.Option(*names, metavar=metavar, help=text, **more)
+
+
+Text = str | None
+Texts = list[str] | None
+# Options of several commands. An argument has the name that the function behind it has.
+Output = Annotated[Format, typer.Option("--format", help="Output format.")]
+PageOutput = Annotated[PageFormat, typer.Option("--format", help="Output format.")]
+Adapters = Annotated[
+    Texts, option("FILE.py:CLASS", "An engine of your own; repeatable.", "--adapter")
+]
+Integrators = Annotated[
+    Texts, option("NAME", "An integrator; repeatable. Default: all.", "--integrator")
+]
+Exceptions = Annotated[
+    list[Path] | None, option("FILE", "Known failures, declared in TOML; repeatable.")
+]
+Timeout = Annotated[float, option("S", "Time limit in s for one request to an engine.", min=0.1)]
+Jobs = Annotated[
+    int | None,
+    option("N", "Number of engines that run at the same time. Default: all cores.", min=1),
+]
+
+
+def given(arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """A command's ``locals()`` for the function behind it, which has the same arguments.
+
+    What was not typed is left out, so that the function's own default holds; so is the format.
+    """
+    return {
+        name: value.value if isinstance(value, StrEnum) else value
+        for name, value in arguments.items()
+        if value is not None and name != "output"
+    }
+
+
+def exit_code(passed: bool, answered: bool) -> int:
+    """0 everything holds, 1 something does not, 3 an engine failed to answer or to start."""
+    if not answered:
+        return 3
+    return 0 if passed else 1
 
 
 def command_line() -> list[str]:

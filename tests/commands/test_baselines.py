@@ -19,9 +19,8 @@ from omegadot.commands.check.baseline_file import (
     to_text,
     write_baseline,
 )
-from omegadot.commands.check.compare import compare
+from omegadot.commands.check.compare import compare, meaning
 from omegadot.commands.check.generate import Subject
-from omegadot.commands.check.meaning import meaning
 from omegadot.commands.check.result import Check
 from omegadot.harness.usage import UsageError
 

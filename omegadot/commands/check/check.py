@@ -10,10 +10,9 @@ from pathlib import Path
 from omegadot.adapters.registry import registered
 from omegadot.commands.check.compare import store
 from omegadot.commands.check.generate import Subject
-from omegadot.commands.check.result import Check, Result
+from omegadot.commands.check.result import Check, Result, Tally
 from omegadot.commands.check.select import Arguments, Selection, select
 from omegadot.commands.check.suite import Suite
-from omegadot.commands.check.tally import Tally
 from omegadot.commands.progress import Count, Reporting, reporting
 from omegadot.harness.arguments import adapters_named, several
 from omegadot.harness.engine_target import EngineLike, target_of

@@ -13,8 +13,9 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.commands.check.check import CheckResult
+from omegadot.commands.check.generate import coverage
 from omegadot.commands.check.result import Check, Result, Verdict
-from omegadot.commands.check.tally import coverage
+from omegadot.commands.options import exit_code
 from omegadot.reports.text.numbers import times
 
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
@@ -62,13 +63,6 @@ def _counts(results: Mapping[Check, Result]) -> str:
     return f"{times(len(results), 'check')}: {parts}." if parts else "There is nothing to check."
 
 
-def exit_code(found: CheckResult) -> int:
-    """0 every check holds, 1 one fails or all were skipped, 3 the engine did not answer."""
-    if not found.answered:
-        return 3
-    return 0 if found.passed else 1
-
-
 def print_json(found: CheckResult) -> None:
     """Every check and its result, for machines."""
     counts = dict.fromkeys(("pass", "fail", "declared", "skip", "error"), 0)
@@ -76,7 +70,7 @@ def print_json(found: CheckResult) -> None:
         counts[result.verdict] += 1
     printed = {
         "schema": 1,
-        "exit_code": exit_code(found),
+        "exit_code": exit_code(found.passed, found.answered),
         "engines": [vars(subject) for subject in found.subjects],
         "verdicts": counts,
         "only_skipped": found.only_skipped,

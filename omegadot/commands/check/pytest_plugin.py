@@ -9,13 +9,36 @@ keeps it.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
-from omegadot.commands.check.pytest_options import OPTIONS, PREFIX, dest_of
 
+def _repeatable(metavar: str, text: str) -> dict[str, Any]:
+    return {"action": "append", "metavar": metavar, "help": text}
+
+
+PREFIX = "--omegadot-"
+OPTIONS: dict[str, dict[str, Any]] = {
+    "engine": _repeatable("NAME[:INTEGRATOR]", "check this engine; repeatable"),
+    "adapter": _repeatable("FILE|module:Class", "check an engine of your own; repeatable"),
+    "require-engine": _repeatable(
+        "NAME", "check this engine, and fail where it is missing; repeatable"
+    ),
+    "scenario": _repeatable(
+        "NAME|FILE", "check on this scenario; repeatable; default: every built-in"
+    ),
+    "baseline": {"metavar": "DIR", "help": "compare with the values stored in DIR"},
+    "update-baseline": {"action": "store_true", "help": "store the measured values in DIR instead"},
+    "exceptions": _repeatable("FILE", "known failures, declared in TOML; repeatable"),
+}
 TIMEOUT = {"type": float, "metavar": "S", "default": 60.0}
 HELP = ("-h", "--help")
+
+
+def dest_of(name: str) -> str:
+    """The name under which an option's value is kept."""
+    return "omegadot_" + name.replace("-", "_")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -39,6 +62,13 @@ def _is_free(option: str, parser: pytest.Parser) -> bool:
         return False
 
 
+def _is_typed(config: pytest.Config) -> bool:
+    """Whether an option of ours was typed, and does not come from a configuration file."""
+    options = tuple(f"{start}{name}" for name in OPTIONS for start in ("--", PREFIX))
+    typed = [str(arg).partition("=")[0] for arg in config.invocation_params.args]
+    return any(argument in options for argument in typed)
+
+
 @pytest.hookimpl(hookwrapper=True)
 def pytest_load_initial_conftests(
     early_config: pytest.Config, parser: pytest.Parser, args: list[str]
@@ -56,7 +86,8 @@ def pytest_load_initial_conftests(
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
     """Start only where an option of ours is given."""
-    if any(config.getoption(dest_of(name), None) for name in OPTIONS):
+    given = {name: config.getoption(dest_of(name), None) for name in (*OPTIONS, "timeout")}
+    if any(given[name] for name in OPTIONS):
         from omegadot.commands.check.pytest_session import start_session
 
-        start_session(config)
+        start_session(config, given, _is_typed(config))

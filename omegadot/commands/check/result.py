@@ -1,9 +1,13 @@
-"""A check and what comes of it."""
+"""A check and what comes of it, and how the checks of each engine ended."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from typing import Literal
+
+from omegadot.reports.text.numbers import times
 
 Verdict = Literal["pass", "fail", "declared", "skip", "error"]
 
@@ -54,3 +58,27 @@ def skipped(reason: str) -> Result:
 def error(outcome: str, reason: str) -> Result:
     """An engine that did not answer."""
     return Result("error", f"{outcome}: {reason}", outcome)
+
+
+@dataclass
+class Tally:
+    """Verdicts by engine, and the first reason for a skip."""
+
+    verdicts: dict[str, Counter[str]] = field(default_factory=dict)
+    reasons: dict[str, str] = field(default_factory=dict)
+
+    def add(self, engine: str, verdict: str, message: str = "") -> None:
+        """Count one check."""
+        self.verdicts.setdefault(engine, Counter())[verdict] += 1
+        if verdict == "skip":
+            self.reasons.setdefault(engine, message)
+
+    def only_skipped(self, named: Iterable[str]) -> list[str]:
+        """A sentence for each engine requested by name of which every check was skipped."""
+        return [
+            f"{engine}: all of its {times(sum(self.verdicts[engine].values()), 'check')} "
+            f"{'was' if sum(self.verdicts[engine].values()) == 1 else 'were'} skipped, and a skip "
+            f"is not a pass ({self.reasons[engine]})."
+            for engine in dict.fromkeys(named)
+            if set(self.verdicts.get(engine, ())) == {"skip"}
+        ]

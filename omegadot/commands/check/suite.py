@@ -5,16 +5,14 @@ from __future__ import annotations
 import warnings
 
 from omegadot.commands.check.baseline import answered, figures_of
-from omegadot.commands.check.baseline_file import Baseline, ScenarioFigures, read_baseline
+from omegadot.commands.check.baseline_file import ScenarioFigures, read_baseline
 from omegadot.commands.check.compare import GATE as BASELINE
 from omegadot.commands.check.compare import baseline_checks, compare
-from omegadot.commands.check.exceptions import matches_nothing, with_exceptions
-from omegadot.commands.check.generate import checks_of
+from omegadot.commands.check.exceptions import matches_nothing, unmatched, with_exceptions
+from omegadot.commands.check.generate import Registry, checks_of
 from omegadot.commands.check.judge import results_of
-from omegadot.commands.check.registry import Registry
 from omegadot.commands.check.result import Check, Result, error, skipped
 from omegadot.commands.check.select import Selection
-from omegadot.commands.check.unmatched import unmatched
 from omegadot.diagnosis.diagnose import causes_of
 from omegadot.gates.case import Case
 from omegadot.harness.outcome import JudgedCase, RunRequest
@@ -35,22 +33,21 @@ class Suite:
         self.selection = selection
         self._runner: Runner | None = None
         self.registry = registry or self._start()
-        self._stored: dict[str, Baseline | None] = {}
-        if selection.baseline is not None:
-            for subject in self.registry.subjects:
-                self._stored[subject.name] = read_baseline(selection.baseline, subject.name)
-        self._unmatched = self._unmatched_exceptions()
+        subjects, folder, cases = self.registry.subjects, selection.baseline, selection.cases
+        self._stored = {s.name: read_baseline(folder, s.name) if folder else None for s in subjects}
+        self._unmatched = {
+            s.name: unmatched(selection.exceptions, s, cases, self._stored[s.name])
+            for s in subjects
+        }
         self.checks: list[Check] = self._generate()
         self._results: dict[Check, Result] = {}
         self.figures: dict[str, dict[str, ScenarioFigures]] = {}
 
     def _start(self) -> Registry:
         chosen = self.selection
-        runner = Runner(
-            RunRequest(
-                chosen.cases, chosen.choices, seed=SEED, timeout=chosen.timeout, jobs=chosen.jobs
-            )
-        )
+        timeout, jobs = chosen.timeout, chosen.jobs
+        request = RunRequest(chosen.cases, chosen.choices, seed=SEED, timeout=timeout, jobs=jobs)
+        runner = Runner(request)
         try:
             runner.engines.start()
         except BaseException:
@@ -70,7 +67,7 @@ class Suite:
         names = [choice.name for choice in self.selection.choices]
         absent = [n for n in (*names, *self.selection.unknown) if n in self._absences()]
         found = [Check(name, "", START) for name in absent]
-        found += [Check(name, "", EXCEPTIONS) for name in self._unmatched]
+        found += [Check(name, "", EXCEPTIONS) for name, left in self._unmatched.items() if left]
         comparing = self.selection.baseline is not None and not self.selection.update
         for case in self.selection.cases:
             found += checks_of(self.registry.subjects, [case])
@@ -84,22 +81,12 @@ class Suite:
         unknown = dict.fromkeys(self.selection.unknown, ("not-installed", text))
         return {**self.registry.missing, **unknown}
 
-    def _unmatched_exceptions(self) -> dict[str, list[str]]:
-        """What is reported of exceptions that match no check, by engine."""
-        found = {}
-        for subject in self.registry.subjects:
-            stored = self._stored.get(subject.name)
-            left = unmatched(self.selection.exceptions, subject, self.selection.cases, stored)
-            if left:
-                found[subject.name] = [matches_nothing(exception) for exception in left]
-        return found
-
     def result_of(self, check: Check) -> Result:
         """The result of one of the checks, from the one run of its scenario."""
         if check.gate == START:
             return self._of_start(check)
         if check.gate == EXCEPTIONS:
-            return Result("fail", " ".join(self._unmatched[check.engine]))
+            return Result("fail", " ".join(map(matches_nothing, self._unmatched[check.engine])))
         if check not in self._results:
             self._run(next(c for c in self.selection.cases if c.name == check.scenario))
         own = [e for e in self.selection.exceptions if e.engine == check.engine]
@@ -129,7 +116,7 @@ class Suite:
             warnings.simplefilter("ignore", RuntimeWarning)
             judged = self._judge(case)
             for found in judged.engines:
-                self._results |= results_of(judged, found, causes_of(judged, found, SEED))
+                self._results |= dict(results_of(judged, found, causes_of(judged, found, SEED)))
                 if judged.truth is not None and answered(found):
                     self.figures.setdefault(found.engine.name, {})[case.name] = figures_of(found)
         lost = error("raised", judged.reason or "the engine gave no answer")

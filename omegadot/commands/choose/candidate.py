@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.commands.choose.ruler import Ruler
-from omegadot.commands.choose.search import (
-    Edge,
-    Range,
-    Seeking,
-    Trials,
-    confirmed,
-    edge_of,
-    largest_step,
-)
+from omegadot.commands.choose.ruler import CHANNELS, Ruler
+from omegadot.commands.choose.search import Edge, Search, Trials, edge_of
 from omegadot.commands.choose.trial import Trial
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine
@@ -59,10 +51,13 @@ class Candidate:
     def declared_order(self, limits: Mapping[str, float]) -> float:
         """The lowest order that is declared in the channels requested."""
         orders = self.integrator.orders
-        named = {"attitude": "attitude", "energy-drift": "energy"}
-        named |= {"momentum-drift": "angular_momentum", "linear-momentum-drift": "linear_momentum"}
-        found = [orders[c] for key in limits if (c := named.get(key, "omega")) in orders]
+        found = [orders[c] for key in limits if (c := CHANNELS.get(key, "omega")) in orders]
         return float(min(found, default=UNDECLARED))
+
+    def nearest(self, limits: Mapping[str, float]) -> Trial | None:
+        """The run that came nearest to meeting every limit; the larger step where two are equal."""
+        trials = self.trials.values()
+        return min(trials, key=lambda t: (t.ratio(limits), t.steps), default=None)
 
 
 class Prober:
@@ -72,16 +67,14 @@ class Prober:
         self._driver, self._ruler, self._budget = driver, ruler, budget
         self._candidate = candidate
         rate = ruler.yardstick.rate
-        half_turns = math.ceil(rate * ruler.duration / LARGEST_TURN)
-        self._range = Range(max(FEWEST_STEPS, half_turns), self._most_steps)
+        self._fewest = max(FEWEST_STEPS, math.ceil(rate * ruler.duration / LARGEST_TURN))
 
     def _most_steps(self) -> int:
         """As many as the budget has time for, at the best pace seen: a busy machine is not slow."""
         known = [t.seconds_per_step for t in self._candidate.trials.values() if t.seconds_per_step]
         if not known:
-            return self._range.fewest
-        most = int(self._budget / min(known))
-        return max(most, self._range.fewest, *self._candidate.trials)
+            return self._fewest
+        return max(int(self._budget / min(known)), self._fewest, *self._candidate.trials)
 
     def evaluate(self, steps: int, dense: bool = False) -> Trial:
         """Run the whole horizon in so many steps and measure it. Raises BrokenError."""
@@ -102,24 +95,27 @@ class Prober:
         """The middle of the scenario's own steps, in steps a horizon."""
         steps = sorted(sweep.timestep for sweep in self._ruler.case.sweeps)
         wanted = math.ceil(self._ruler.duration / steps[len(steps) // 2])
-        return max(wanted, self._range.fewest)
+        return max(wanted, self._fewest)
 
     def seek(self, limits: Mapping[str, float]) -> Edge:
         """The largest step, tried at its neighbours and at every one of its samples."""
         trials = self._candidate.trials
         if not trials:
             trials[self._start()] = self.evaluate(self._start())
-        return self._looked_at_closely(confirmed, limits)
+        return self._looked_at_closely(Search.confirmed, limits)
 
     def vary(self, limits: Mapping[str, float]) -> Edge:
         """The largest step for other limits, beginning with the runs that were made already."""
-        return self._looked_at_closely(largest_step, limits)
+        return self._looked_at_closely(Search.largest_step, limits)
 
-    def _looked_at_closely(self, seeking: Seeking, limits: Mapping[str, float]) -> Edge:
+    def _looked_at_closely(
+        self, seek: Callable[[Search], Edge], limits: Mapping[str, float]
+    ) -> Edge:
         """What is found, until it passes at every one of its samples too."""
         trials, declared = self._candidate.trials, self._candidate.declared_order(limits)
+        search = Search(trials, self.evaluate, limits, self._fewest, self._most_steps, declared)
         for _ in range(MOST_RECHECKS):
-            found = seeking(trials, self.evaluate, limits, self._range, declared).passing
+            found = seek(search).passing
             if found is None or found.samples >= len(self._ruler.sweep(found.steps, True).times):
                 break
             trials[found.steps] = self.evaluate(found.steps, dense=True)

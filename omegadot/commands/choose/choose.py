@@ -11,13 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from omegadot import __version__
-from omegadot.commands.choose.chooser import Choice, Chooser, choices_to_make
+from omegadot.commands.choose.chooser import Choice, Chooser
 from omegadot.commands.choose.document import document
 from omegadot.commands.choose.motion import Motion, cases_of
-from omegadot.commands.choose.requirements import Requirements, merged
-from omegadot.commands.choose.requirements_file import read_requirements
+from omegadot.commands.choose.requirements import Requirements, merged, read_requirements
 from omegadot.commands.choose.result import ChooseResult
-from omegadot.commands.progress import Count, Progress, Reporter, Reporting, reporting
+from omegadot.commands.progress import Reporting, reporting
 from omegadot.harness.arguments import engine_choices, several
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import RunRequest
@@ -108,7 +107,7 @@ def choose(
     if out is not None:
         check_choice_folder(Path(out))
     with reporting(progress) as report:
-        choice = _execute(Chooser(request, wanted, budget), report)
+        choice = Chooser(request, wanted, budget, report).execute()
     seconds = round(time.perf_counter() - started, 3)
     made = {"command": list(command), "budget": budget, "seconds": seconds}
     result = _result_of(choice, wanted, request.choices, made)
@@ -116,22 +115,11 @@ def choose(
 
 
 def _choices(engines: Sequence[EngineLike], adapters: Sequence[EngineLike]) -> list[EngineChoice]:
+    """The engines to choose among: not the truth itself, nor the reference unless it is named."""
     choices = engine_choices(engines, adapters)
     if any(choice.name == "exact" and choice.required for choice in choices):
         raise UsageError("--engine exact: it is what the others are measured by; name another.")
-    return choices_to_make(choices)
-
-
-def _execute(chooser: Chooser, report: Reporter) -> Choice:
-    report(Progress("starting the engines"))
-
-    def planned(total: int) -> None:
-        count = Count(report, "seeking the largest steps", total)
-        chooser.on_advance = count.advance
-        chooser.on_timing = lambda: count.advance(0, "timing, engine by engine")
-
-    chooser.on_start = planned
-    return chooser.execute()
+    return [c for c in choices if c.name != "exact" and (c.required or c.name != "reference")]
 
 
 def _result_of(

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from functools import partial
 
 from omegadot.commands.choose.candidate import BrokenError, Candidate, Prober
 from omegadot.commands.choose.eligible import unmet
+from omegadot.commands.choose.ranking import Spread
 from omegadot.commands.choose.requirements import Requirements
 from omegadot.commands.choose.ruler import NoTruthError, Ruler
-from omegadot.commands.choose.spread import Spread
-from omegadot.commands.choose.timing import Timed, time_all
+from omegadot.commands.choose.timing import Key, Timed, time_all
+from omegadot.commands.progress import Count, Progress, Reporter
 from omegadot.gates.case import Case
 from omegadot.harness.engines import Engines
 from omegadot.harness.outcome import RunRequest
@@ -24,7 +24,6 @@ from omegadot.workers.harness_end.pool import outcome_of
 from omegadot.workers.harness_end.process import Answer
 
 FACTORS = (0.5, 2.0)
-TimedKey = tuple[str, str]
 
 
 @dataclass
@@ -53,28 +52,24 @@ class Choice:
     engines: list[Engine] = field(default_factory=list)
     missing: list[tuple[EngineChoice, Answer]] = field(default_factory=list)
     refused: dict[str, list[str]] = field(default_factory=dict)
-    costs: dict[TimedKey, Spread] = field(default_factory=dict)
+    costs: dict[Key, Spread] = field(default_factory=dict)
     memory: dict[str, int | None] = field(default_factory=dict)
     deaths: list[tuple[str, str]] = field(default_factory=list)
 
 
 @dataclass
 class Chooser:
-    """One choice. budget: s that one run of the search may take.
-
-    on_start and on_advance report to a progress bar what is planned and done.
-    """
+    """One choice. budget: s that one run of the search may take.  report: how far it is."""
 
     request: RunRequest
     requirements: Requirements
     budget: float
-    on_start: Callable[[int], object] = lambda total: None
-    on_advance: Callable[[], object] = lambda: None
-    on_timing: Callable[[], object] = lambda: None
+    report: Reporter
     _one_at_a_time: threading.Lock = field(default_factory=threading.Lock)
 
     def execute(self) -> Choice:
         """Seek, then time. Ctrl-C ends the workers at once and is passed on."""
+        self.report(Progress("starting the engines"))
         self.engines = Engines(self.request)
         choice = Choice([CaseChoice(case) for case in self.request.cases])
         try:
@@ -94,8 +89,9 @@ class Chooser:
         for engine in choice.engines:
             choice.refused[engine.name] = unmet(engine.description, self.requirements)
         fit = [e for e in choice.engines if not choice.refused[e.name]]
-        self.on_start(sum(len(e.integrators) for e in fit) * len(choice.cases))
-        rulers = [self._exactly(partial(self._ruler, found)) for found in choice.cases]
+        total = sum(len(e.integrators) for e in fit) * len(choice.cases)
+        self._count = Count(self.report, "seeking the largest steps", total)
+        rulers = [self.engines.submit("exact", partial(self._ruler, c)) for c in choice.cases]
         for ruler in rulers:
             outcome_of(ruler)
         seeking: list[tuple[CaseChoice, Future[list[Candidate]]]] = []
@@ -107,10 +103,7 @@ class Chooser:
                 seeking.append((found, self.engines.submit(engine.name, call)))
         for found, future in seeking:
             candidates = outcome_of(future)
-            found.candidates.extend(candidates)
-
-    def _exactly(self, call: Callable[[], None]) -> Future[None]:
-        return self.engines.submit("exact", call)
+            found.candidates += candidates
 
     def _ruler(self, found: CaseChoice) -> None:
         """Have the case's ruler made, on the exact solution's own thread."""
@@ -144,9 +137,8 @@ class Chooser:
             if not loaded.ok:
                 candidate.outcome, candidate.reason = loaded.outcome, loaded.reason
             else:
-                prober = Prober(driver, ruler, candidate, self.budget)
-                self._seek(candidate, prober)
-            self.on_advance()
+                self._seek(candidate, Prober(driver, ruler, candidate, self.budget))
+            self._count.advance()
         return found
 
     def _seek(self, candidate: Candidate, prober: Prober) -> None:
@@ -163,22 +155,16 @@ class Chooser:
 
     def _time(self, choice: Choice) -> None:
         """Time every candidate that qualifies, or would if one limit were another."""
-        wanted: dict[TimedKey, Timed] = {}
+        wanted: dict[Key, Timed] = {}
         for found in choice.cases:
             for candidate in found.candidates:
                 edges = [candidate.edge, *candidate.variants.values()]
                 trial = next((e.passing for e in edges if e.passing is not None), None)
                 if trial is not None and candidate.outcome == "ok":
-                    wanted[found.case.name, candidate.name] = Timed(
-                        found.case, candidate, trial.timestep, trial.steps, trial.seconds_per_step
-                    )
-        self.on_timing()
+                    timed = Timed(found.case, candidate, trial)
+                    wanted[found.case.name, candidate.name] = timed
+        self._count.advance(0, "timing, engine by engine")
         choice.costs = time_all(wanted, self.engines.drivers)
         for name in {candidate.engine.name for f in choice.cases for candidate in f.candidates}:
             with contextlib.suppress(KeyError):
                 choice.memory[name] = self.engines.drivers[name].worker.peak_memory()
-
-
-def choices_to_make(choices: Sequence[EngineChoice]) -> list[EngineChoice]:
-    """The engines to choose among: not the truth itself, nor the reference unless it is named."""
-    return [c for c in choices if c.name != "exact" and (c.required or c.name != "reference")]

@@ -5,9 +5,8 @@ from __future__ import annotations
 from omegadot.commands.choose.case_document import CaseDocument
 from omegadot.commands.choose.chooser import Choice
 from omegadot.commands.choose.eligible import python_note
-from omegadot.commands.choose.ranking import ranked
+from omegadot.commands.choose.ranking import ranked, total
 from omegadot.commands.choose.requirements import ACCURACY, Requirements
-from omegadot.commands.choose.spread import total
 from omegadot.commands.choose.trial_rows import Row, spread_row
 
 SCHEMA = 1
@@ -71,8 +70,7 @@ def _everywhere(cases: list[CaseDocument]) -> list[Row]:
     names = [name for name in costs[0] if all(name in own for own in costs)]
     totals = {name: total([own[name] for own in costs]) for name in names}
     return [
-        {"candidate": place.key, "rank": place.rank, "tied": place.tied}
-        | {"seconds": spread_row(totals[place.key])}
-        | {"timesteps": [case.timestep(place.key) for case in cases]}
+        {**vars(place), "seconds": spread_row(totals[place.candidate])}
+        | {"timesteps": [case.timestep(place.candidate) for case in cases]}
         for place in ranked(totals)
     ]

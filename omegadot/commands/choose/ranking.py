@@ -1,22 +1,57 @@
-"""Candidates by cost: ranks, ties within the spread of the timing, and the Pareto front."""
+"""Costs measured round after round: ranks, ties within their spread, and the Pareto front."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+
+import numpy as np
 
 from omegadot.commands.choose.search import EDGE
-from omegadot.commands.choose.spread import Spread
-
-Key = TypeVar("Key", bound=Hashable)
 
 
 @dataclass(frozen=True)
-class Place(Generic[Key]):
+class Spread:
+    """rounds: the values, one a round; in each round everything was measured in turn."""
+
+    rounds: tuple[float, ...]
+
+    @property
+    def median(self) -> float:
+        """The middle value."""
+        return self._quantile(0.5)
+
+    @property
+    def quartiles(self) -> tuple[float, float]:
+        """A quarter of the values lies below the first, a quarter above the second."""
+        return self._quantile(0.25), self._quantile(0.75)
+
+    def _quantile(self, share: float) -> float:
+        return float(np.quantile(np.asarray(self.rounds), share))
+
+    def scaled(self, factor: float) -> Spread:
+        """Every value multiplied."""
+        return Spread(tuple(value * factor for value in self.rounds))
+
+    def under(self, numerator: float) -> Spread:
+        """The numerator over every value."""
+        return Spread(tuple(numerator / value for value in self.rounds))
+
+    def over(self, other: Spread) -> Spread:
+        """Round by round, this over the other: what slowed a whole round cancels."""
+        return Spread(tuple(a / b for a, b in zip(self.rounds, other.rounds, strict=True)))
+
+
+def total(spreads: Sequence[Spread]) -> Spread:
+    """The sum, round by round."""
+    return Spread(tuple(map(sum, zip(*(spread.rounds for spread in spreads), strict=True))))
+
+
+@dataclass(frozen=True)
+class Place:
     """rank: 1 for the cheapest; those that cannot be distinguished from a rank's first share it."""
 
-    key: Key
+    candidate: str
     rank: int
     tied: bool
 
@@ -30,14 +65,14 @@ def dearer(one: Spread, other: Spread) -> bool:
     return one.over(other).quartiles[0] > EDGE
 
 
-def ranked(costs: Mapping[Key, Spread]) -> list[Place[Key]]:
+def ranked(costs: Mapping[str, Spread]) -> list[Place]:
     """Places by median cost. Two of which neither is dearer are a tie, not a win and a loss.
 
     A place's ties are with its first: of three where each ties with its neighbour alone, the third
     is not dragged up to the first.
     """
     order = sorted(costs, key=lambda key: costs[key].median)
-    groups: list[list[Key]] = []
+    groups: list[list[str]] = []
     for key in order:
         if groups and not dearer(costs[key], costs[groups[-1][0]]):
             groups[-1].append(key)
@@ -51,18 +86,18 @@ def ranked(costs: Mapping[Key, Spread]) -> list[Place[Key]]:
 
 
 @dataclass(frozen=True)
-class Point(Generic[Key]):
+class Point:
     """A run that meets the limits. figures: cost, error, memory and so on: less is better."""
 
-    key: Key
+    key: str
     figures: tuple[float, ...]
 
 
-def _beats(one: Point[Key], other: Point[Key]) -> bool:
+def _beats(one: Point, other: Point) -> bool:
     pairs = list(zip(one.figures, other.figures, strict=True))
     return all(a <= b for a, b in pairs) and any(a < b for a, b in pairs)
 
 
-def front(points: Sequence[Point[Key]]) -> list[Point[Key]]:
+def front(points: Sequence[Point]) -> list[Point]:
     """The points that no other one equals or betters in everything: the Pareto front."""
     return [p for p in points if not any(_beats(other, p) for other in points)]

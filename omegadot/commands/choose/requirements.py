@@ -6,10 +6,13 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 from typing import Any, Literal
 
 from omegadot.commands.units import quantity
 from omegadot.harness.usage import UsageError, nearest
+from omegadot.scenarios.errors import ScenarioError
+from omegadot.scenarios.toml_file import read_toml
 
 Precision = Literal["double", "single"]
 # Requirement: the kind of its quantity, and the unit in which it is kept and shown.
@@ -141,3 +144,18 @@ def merged(file: Mapping[str, Any], line: Mapping[str, Any], path: str) -> Requi
 
 def _is_empty(value: object) -> bool:
     return value is None or (isinstance(value, Sequence) and not value)
+
+
+def read_requirements(path: Path) -> dict[str, Any]:
+    """Keys and values of the file, values as written. Raises UsageError, one sentence."""
+    try:
+        data = read_toml(path, str(path))
+    except ScenarioError as error:
+        raise UsageError(str(error)) from None
+    found: dict[str, Any] = {}
+    for name, value in data.items():
+        key = known_key(name, str(path))
+        if key in found:
+            raise UsageError(f"{path}: {key} is given twice; give it once.")
+        found[key] = value
+    return found

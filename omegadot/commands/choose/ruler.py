@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -55,7 +55,8 @@ class Ruler:
 
     def __init__(self, case: Case, duration: float, keys: list[str], solve: Solve) -> None:
         self.case, self.duration, self.keys = case, duration, keys
-        self._solve, self._known = solve, OrderedDict[tuple[int, int], Exact]()
+        self._solve = solve
+        self._along = lru_cache(KEPT)(lambda sweep: self._exact(sweep.times))
         speed = float(np.linalg.norm(case.initial.angular_velocity))
         self.samples = self._samples_for(speed)
         times = np.linspace(0.0, duration, 8 * self.samples + 1)
@@ -92,14 +93,6 @@ class Ruler:
         state = state_from(found["state"])
         return Exact(found["source"], state, found["omega_dot"], found["floor"])
 
-    def _at(self, sweep: Sweep) -> Exact:
-        key = (sweep.steps, sweep.every)
-        if key not in self._known:
-            self._known[key] = self._exact(sweep.times)
-            while len(self._known) > KEPT:
-                self._known.popitem(last=False)
-        return self._known[key]
-
     def sweep(self, steps: int, dense: bool = False) -> Sweep:
         """The horizon in so many steps, and which of them are looked at: all where `dense`."""
         samples = DENSEST[self.source] if dense else self.samples
@@ -115,7 +108,7 @@ class Ruler:
 
     def errors(self, sweep: Sweep, state: State) -> dict[str, Measured]:
         """The greatest errors of a run's samples. omega: rad/s; drifts: relative."""
-        exact = self._at(sweep)
+        exact = self._along(sweep)
         found = {}
         for key in self.keys:
             if key == "flip-time":

@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 from omegadot.commands.choose.candidate import Candidate
+from omegadot.commands.choose.ranking import Spread
 from omegadot.commands.choose.requirements import ACCURACY
 from omegadot.commands.choose.search import order_between
-from omegadot.commands.choose.spread import Spread
 from omegadot.commands.choose.trial import Trial
 
 Row = dict[str, Any]
@@ -20,9 +20,7 @@ def trial_row(trial: Trial | None, limits: dict[str, float]) -> Row | None:
     if trial is None:
         return None
     errors = {
-        key: {"value": found.value, "open": found.open, "margin": limits[key] / found.most}
-        if found.most > 0.0
-        else {"value": found.value, "open": found.open, "margin": None}
+        key: {**vars(found), "margin": limits[key] / found.most if found.most > 0.0 else None}
         for key, found in trial.errors.items()
     }
     return {
@@ -36,23 +34,15 @@ def trial_row(trial: Trial | None, limits: dict[str, float]) -> Row | None:
     }
 
 
-def spread_row(spread: Spread) -> Row:
+def spread_row(spread: Spread | None) -> Row | None:
     """Median, quartiles, and every round."""
-    return {
-        "median": spread.median,
-        "quartiles": list(spread.quartiles),
-        "rounds": list(spread.rounds),
-    }
-
-
-def nearest_trial(candidate: Candidate, limits: dict[str, float]) -> Trial | None:
-    """The run that came nearest to meeting every limit; the larger step where two are equal."""
-    trials = list(candidate.trials.values())
-    return min(trials, key=lambda t: (t.ratio(limits), t.steps), default=None)
+    if spread is None:
+        return None
+    return {"median": spread.median, "quartiles": [*spread.quartiles], "rounds": [*spread.rounds]}
 
 
 def missed_rows(trial: Trial | None, limits: dict[str, float]) -> list[Row]:
-    """The requirements that a run misses, the worst first, and by what factor."""
+    """The limits that a run misses, the worst first, and by what factor."""
     if trial is None:
         return []
     return [
@@ -71,12 +61,11 @@ def predicted_row(candidate: Candidate, limits: dict[str, float]) -> Row | None:
     one such run would take. It lies beyond the search's budget.
     """
     trials = sorted(candidate.trials.values(), key=lambda t: t.steps)
-    order: float | None = None
+    order, declared = None, candidate.declared_order(limits)
     if len(trials) > 1:
         order = order_between(trials[-2], trials[-1], limits)
     elif trials and math.isfinite(trials[0].ratio(limits)):
-        order = candidate.declared_order(limits)
-    declared = candidate.declared_order(limits)
+        order = declared
     if order is None or not LIKE[0] * declared <= order <= LIKE[1] * declared:
         return None  # the errors do not shrink at their order yet: the rest cannot be predicted
     finest = trials[-1]

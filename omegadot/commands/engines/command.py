@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-import typer
-
-from omegadot.commands.options import Format
+from omegadot.commands.options import Adapters, Format, Output
 
 
 def engines(
-    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
-    adapter: Annotated[
-        list[str] | None,
-        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
-    ] = None,
+    output: Output = Format.text,
+    adapters: Adapters = None,
 ) -> None:
     """List the engines: installed or not, versions, integrators, conventions, what is off."""
     from omegadot.commands.engines.engines import engines as installed_engines
     from omegadot.commands.engines.print_engines import print_json, print_text
 
-    entries = installed_engines(adapter or [])
+    entries = installed_engines(adapters or ())
     if output is Format.json:
         print_json(entries)
     else:

@@ -7,6 +7,7 @@ from typing import Any
 
 import typer
 
+from omegadot.commands import options
 from omegadot.commands.run.result import RunResult
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
@@ -23,9 +24,7 @@ def exit_code(result: RunResult) -> int:
     """
     if not result.complete:
         return INTERRUPTED
-    if not result.answered:
-        return 3
-    return 0 if result.passed else 1
+    return options.exit_code(result.passed, result.answered)
 
 
 def print_text(result: RunResult) -> None:

@@ -38,23 +38,17 @@ def record_of(
         "clusters": [vars(cluster) for cluster in clusters_of_run(outcome.cases)],
         "tasks": tasks_of_run(outcome, list(request.cases), request.setup, request.seed, causes_of),
     }
-    return Record(
-        run,
-        metrics_of_run(outcome, request.setup),
-        trajectories_of_run(outcome, request.setup),
-    )
+    setup = request.setup
+    return Record(run, metrics_of_run(outcome, setup), trajectories_of_run(outcome, setup))
 
 
 def _engines(outcome: Outcome) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
     for engine in outcome.engines:
-        fields = vars(engine.description)
-        integrators = [vars(integrator) for integrator in engine.description.integrators]
-        features = sorted(engine.description.features)
-        found.append(
-            {**fields, "installed": True, "reason": "", "integrators": integrators}
-            | {"features": features}
-        )
+        own = engine.description
+        integrators = [vars(integrator) for integrator in own.integrators]
+        parts = {"integrators": integrators, "features": sorted(own.features)}
+        found.append({**vars(own), "installed": True, "reason": "", **parts})
     for choice, answer in outcome.missing:
         found.append({"name": choice.name, "installed": False, "reason": answer.reason})
     return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from omegadot.commands.schemes.cells import (
@@ -34,47 +33,21 @@ class Table:
 
 def tables_of(record: Record) -> list[Table]:
     """Three tables, a row an integrator."""
+    who = ("engine", "integrator")
     angle = f"{record['defect_angle']:g}"
-    found = list(_integrators(record))
-    return [
-        Table(
-            "Schemes",
-            ("engine", "integrator", "scheme", "stepped in", "match", "declared"),
-            [(*label, *_scheme(record, integrator)) for label, integrator in found],
-        ),
-        Table(
-            "Orders: declared (observed)",
-            ("engine", "integrator", *HEADS),
-            [
-                (*label, *(orders_cell(integrator, c) for c in CHANNELS))
-                for label, integrator in found
-            ],
-        ),
-        Table(
-            f"One-step defect at a step of {angle} rad, and its order",
-            ("engine", "integrator", *HEADS),
-            [
-                (*label, *(defects_cell(integrator, c) for c in CHANNELS))
-                for label, integrator in found
-            ],
-        ),
-    ]
-
-
-def _integrators(record: Record) -> Iterator[tuple[tuple[str, str], Record]]:
+    schemes = Table("Schemes", (*who, "scheme", "stepped in", "match", "declared"), [])
+    orders = Table("Orders: declared (observed)", (*who, *HEADS), [])
+    title = f"One-step defect at a step of {angle} rad, and its order"
+    defects = Table(title, (*who, *HEADS), [])
     for engine in record["engines"]:
         for integrator in engine["integrators"]:
-            yield (f"{engine['name']} {engine['version']}", integrator["name"]), integrator
-
-
-def _scheme(record: Record, integrator: Record) -> tuple[str, str, str, str]:
-    namings = integrator["schemes"]
-    return (
-        labelled([(list(naming["kinds"]), _named(naming)) for naming in namings]),
-        _point(integrator),
-        _match(record, integrator),
-        _declared(integrator),
-    )
+            label = (f"{engine['name']} {engine['version']}", integrator["name"])
+            namings = [(list(n["kinds"]), _named(n)) for n in integrator["schemes"]]
+            found = (_point(integrator), _match(record, integrator), _declared(integrator))
+            schemes.rows.append((*label, labelled(namings), *found))
+            orders.rows.append((*label, *(orders_cell(integrator, c) for c in CHANNELS)))
+            defects.rows.append((*label, *(defects_cell(integrator, c) for c in CHANNELS)))
+    return [schemes, orders, defects]
 
 
 def _named(naming: Record) -> str:

@@ -14,7 +14,7 @@ from omegadot.gates.measured_run import CHANNELS
 from omegadot.harness.arguments import case_of
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reports.text.numbers import plain
-from omegadot.scenarios import Scenario, ScenarioLike, builtin_names, load_scenario, scenario
+from omegadot.scenarios import ScenarioLike, load_scenario, scenario
 
 # On a free body, one with an offset, with damping, on a pivot and under a torque that turns with
 # it, integrators may step different schemes; a flip multiplies what they differ by.
@@ -37,17 +37,13 @@ class Aims:
         return [name for name in names if not self.integrators or name in self.integrators]
 
 
-def scenario_given(argument: ScenarioLike) -> Scenario:
-    """A scenario, or the box that is kept here. Raises ScenarioError."""
-    return load_scenario(BOX_FILE) if argument == BOX else scenario(argument)
-
-
 def case_for(argument: ScenarioLike, timestep: float | None) -> Case:
     """A scenario at one step, its own middle one where none is given, with samples enough.
 
     Raises ScenarioError and UsageError.
     """
-    case = case_of(scenario_given(argument), () if timestep is None else (timestep,))
+    chosen = load_scenario(BOX_FILE) if argument == BOX else scenario(argument)
+    case = case_of(chosen, () if timestep is None else (timestep,))
     sweep = case.sweeps[len(case.sweeps) // 2]
     thinned = Sweep(sweep.timestep, sweep.steps, max(1, sweep.steps // SAMPLES))
     return Case(case.scenario, case.system, case.initial, (thinned,))
@@ -79,14 +75,9 @@ def conserves_kinetic_energy(case: Case) -> bool:
     return not (load.gravity.any() or float(load.damping) or torques or load.pivot is not None)
 
 
-def step_name(case: Case) -> str:
-    """The step of a case as it stands in names."""
-    return plain(case.sweeps[0].timestep)
-
-
 def drift_names(case: Case, integrator: str) -> list[Name]:
     """One for each channel, and E/E0 at the end where that states something."""
-    start = ("drift", case.name, integrator, step_name(case))
+    start = ("drift", case.name, integrator, plain(case.sweeps[0].timestep))
     ratio: list[Name] = [(*start, RATIO)] if conserves_kinetic_energy(case) else []
     return ratio + [(*start, channel) for channel in CHANNELS]
 
@@ -97,14 +88,10 @@ def equation_names(case: Case) -> list[Name]:
     return [("equation", case.name, channel) for channel in channels]
 
 
-def scheme_name(integrator: str, kind: str) -> Name:
-    """Which scheme an integrator steps on a probe."""
-    return ("scheme", integrator, kind)
-
-
-def order_names(integrator: str, kind: str) -> list[Name]:
-    """The observed orders of an integrator on a probe."""
-    return [("order", integrator, kind, channel) for channel in CHANNELS]
+def probe_names(integrator: str, kind: str) -> list[Name]:
+    """Which scheme an integrator steps on a probe, and its observed orders there."""
+    orders: list[Name] = [("order", integrator, kind, channel) for channel in CHANNELS]
+    return [("scheme", integrator, kind), *orders]
 
 
 def names_of(aims: Aims, description: Description) -> Iterator[Name]:
@@ -113,12 +100,6 @@ def names_of(aims: Aims, description: Description) -> Iterator[Name]:
         yield from equation_names(case)
     for integrator in aims.chosen(description):
         for probe in PROBES:
-            yield scheme_name(integrator, probe.kind)
-            yield from order_names(integrator, probe.kind)
+            yield from probe_names(integrator, probe.kind)
         for case in aims.cases:
             yield from drift_names(case, integrator)
-
-
-def scenarios_known() -> list[str]:
-    """The names that a scenario may have on the command line, besides paths."""
-    return [BOX, *builtin_names()]

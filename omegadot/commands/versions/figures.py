@@ -11,8 +11,7 @@ from omegadot.commands.versions.aims import (
     conserves_kinetic_energy,
     drift_names,
     equation_names,
-    order_names,
-    scheme_name,
+    probe_names,
 )
 from omegadot.commands.versions.metric import RATIO, Figure, Name
 from omegadot.commands.versions.truths import Exact
@@ -85,15 +84,16 @@ def scheme_figures(
     Raises NoAnswerError.
     """
     found: Figures = {}
-    name, matches, orders = integrator.name, None, {}
+    matches, orders = None, {}
+    scheme, *order_names = probe_names(integrator.name, probe.kind)
     declared, key = orders_for(integrator, probe.system), scheme_key(integrator, probe.system)
-    if wanted(scheme_name(name, probe.kind)):
+    if wanted(scheme):
         matches = tuple(fingerprint(probe, step))
         schemes = dict.fromkeys(match.scheme for match in matches)
-        found[scheme_name(name, probe.kind)] = Figure(" or ".join(schemes) or "unknown")
-    if any(map(wanted, order_names(name, probe.kind))):
+        found[scheme] = Figure(" or ".join(schemes) or "unknown")
+    if any(map(wanted, order_names)):
         errors = global_errors(probe, step)
-        for channel, metric in zip(CHANNELS, order_names(name, probe.kind), strict=True):
+        for channel, metric in zip(CHANNELS, order_names, strict=True):
             seen = observe(errors[channel])
             orders[channel] = Order(declared.get(channel), seen)
             found[metric] = _order_figure(seen)

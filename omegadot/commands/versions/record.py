@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 from omegadot import __version__
 from omegadot.commands.versions.aims import Aims, conserves_kinetic_energy
-from omegadot.commands.versions.bisection import Bisection, Step
+from omegadot.commands.versions.bisection import Bisection
 from omegadot.commands.versions.changes import (
     Change,
-    all_changes,
+    changes_between,
     integrator_of,
-    neighbours,
     pace_changes,
+    pace_of,
 )
 from omegadot.commands.versions.measure import Portrait
 from omegadot.commands.versions.metric import Figure, Name, shown, title
 from omegadot.commands.versions.product import Product
-from omegadot.commands.versions.speed import pace_of
 from omegadot.workers.machine import describe_machine
 
 SCHEMA = 1
@@ -31,10 +31,9 @@ def record_of(
     aims: Aims,
     setup: str,
     portraits: Sequence[Portrait],
-    bisection: Record | None,
+    bisection: Bisection | None,
 ) -> Record:
     """Versions, rising, with what changed from each to the next that could be measured."""
-    steps = [] if bisection else _steps(portraits)
     return {
         "schema": SCHEMA,
         "omegadot": __version__,
@@ -53,22 +52,24 @@ def record_of(
             for case in aims.cases
         ],
         "versions": [_version(portrait) for portrait in portraits],
-        "steps": steps,
-        "bisect": bisection,
+        "steps": [] if bisection else _steps(portraits),
+        "bisect": bisection and _bisection(bisection),
     }
 
 
 def _steps(portraits: Sequence[Portrait]) -> list[Record]:
-    paces = [pace_changes(one, other) for one, other in neighbours(portraits)]
     return [
         {
-            "from": one.version,
-            "to": other.version,
-            "changes": [change_record(change) for change in changes],
-            "paces": {name: vars(ratio) for name, ratio in pace.items()},
+            **_step(one, other, changes_between(one, other)),
+            "paces": {name: vars(ratio) for name, ratio in pace_changes(one, other).items()},
         }
-        for (one, other, changes), pace in zip(all_changes(portraits), paces, strict=True)
+        for one, other in pairwise(portrait for portrait in portraits if portrait.ok)
     ]
+
+
+def _step(before: Portrait, after: Portrait, changes: Sequence[Change]) -> Record:
+    changed = [_change(change) for change in changes]
+    return {"from": before.version, "to": after.version, "changes": changed}
 
 
 def _version(portrait: Portrait) -> Record:
@@ -99,7 +100,7 @@ def _figure(name: Name, figure: Figure | None) -> Record | None:
     }
 
 
-def change_record(change: Change) -> Record:
+def _change(change: Change) -> Record:
     """A change, with the parts of its name that identify it."""
     return {
         "metric": title(change.name),
@@ -112,22 +113,16 @@ def change_record(change: Change) -> Record:
     }
 
 
-def bisection_record(query: str, matched: Sequence[Name], found: Bisection) -> Record:
+def _bisection(found: Bisection) -> Record:
     """The releases found, and what was looked at on the way."""
     return {
-        "query": query,
-        "metrics": [title(name) for name in matched],
+        "query": found.query,
+        "metrics": [title(name) for name in found.metrics],
         "low": found.low.version if found.low else None,
         "high": found.high.version if found.high else None,
         "looked_at": [portrait.version for portrait in found.looked_at],
-        "found": [_found(step) for step in found.steps],
-    }
-
-
-def _found(step: Step) -> Record:
-    return {
-        "from": step.before.version,
-        "to": step.after.version,
-        "skipped": step.skipped,
-        "changes": [change_record(change) for change in step.changes],
+        "found": [
+            {**_step(step.before, step.after, step.changes), "skipped": step.skipped}
+            for step in found.steps
+        ],
     }

@@ -9,15 +9,15 @@ from typing import Literal
 
 from omegadot.adapters.protocol import Setup
 from omegadot.commands.progress import Count, Progress, Reporter, Reporting, reporting
-from omegadot.commands.versions.aims import Aims, aims_of, check_integrators
-from omegadot.commands.versions.arguments import RequestedReleases, requested_releases
-from omegadot.commands.versions.bisected import bisect_metric
+from omegadot.commands.versions.aims import aims_of, check_integrators
+from omegadot.commands.versions.bisection import bisect_metric
 from omegadot.commands.versions.environments import Environments, default_cache
 from omegadot.commands.versions.gallery import Gallery
 from omegadot.commands.versions.installer import Installer, InstallError, installer_named
 from omegadot.commands.versions.measure import Portrait
-from omegadot.commands.versions.product import Product, product_of
+from omegadot.commands.versions.product import product_of
 from omegadot.commands.versions.record import record_of
+from omegadot.commands.versions.release import requested_releases
 from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import several
 from omegadot.harness.engine_target import EngineLike, target_of
@@ -72,13 +72,15 @@ def versions(
     requested = requested_releases(several(releases), environments.releases)
     gallery = Gallery(product, aims, environments.place, requested.pythons, setup, timeout)
     with reporting(progress) as report:
+        seen = _seen(report, len(requested.versions) if bisect is None else None)
         if bisect is not None:
-            seen = _seen(report, None)
-            portraits, found = bisect_metric(bisect, product, gallery, requested.versions, seen)
+            found = bisect_metric(bisect, gallery, requested.versions, seen)
+            portraits = found.portraits
         else:
-            cores = (os.cpu_count() or 1) if jobs is None else jobs
-            portraits = _measured(gallery, requested, aims, product, cores, report)
-            found = None
+            found, cores = None, (os.cpu_count() or 1) if jobs is None else jobs
+            portraits = gallery.measure_all(requested.versions, cores, seen)
+            there = dict.fromkeys(name for portrait in portraits for name in portrait.has)
+            check_integrators(aims, list(there), product.engine)
             if speed:
                 report(Progress("timing, release by release"))
                 gallery.time_all(portraits)
@@ -93,22 +95,6 @@ def _installer(name: str) -> Installer:
         return installer_named(name)
     except InstallError as error:
         raise UsageError(f"--installer {name}: {error}.") from error
-
-
-def _measured(
-    gallery: Gallery,
-    requested: RequestedReleases,
-    aims: Aims,
-    product: Product,
-    jobs: int,
-    report: Reporter,
-) -> list[Portrait]:
-    """Every release. Raises UsageError where none has an integrator that was named."""
-    seen = _seen(report, len(requested.versions))
-    portraits = gallery.measure_all(requested.versions, jobs, seen)
-    there = dict.fromkeys(name for portrait in portraits for name in portrait.has)
-    check_integrators(aims, list(there), product.engine)
-    return portraits
 
 
 def _seen(report: Reporter, total: int | None) -> Callable[[Portrait], object]:
