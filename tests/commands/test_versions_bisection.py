@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from omegadot.commands.versions.bisection import Bisection, _no_such, bisect
-from omegadot.commands.versions.changes import changes_between, pace_of, ratio_of
-from omegadot.commands.versions.measure import Portrait
+from omegadot.commands.versions.changes import Portrait, changes_between, pace_of, ratio_of
 from omegadot.commands.versions.metric import Figure
 
 NAME = ("order", "RK4", "free", "attitude")

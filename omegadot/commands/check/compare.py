@@ -1,19 +1,16 @@
-"""The checks that a baseline adds, one for each run and each scenario, and its update."""
+"""The checks that a baseline adds, one for each run and each scenario, and what a change means."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 
-from omegadot.commands.check.baseline import Change, changes, updated
+from omegadot.commands.check.baseline import Change, changes
 from omegadot.commands.check.baseline_file import (
     Baseline,
     Figures,
     RunKey,
     ScenarioFigures,
-    read_baseline,
-    write_baseline,
 )
 from omegadot.commands.check.generate import Subject
 from omegadot.commands.check.result import PASSED, Check, Result
@@ -80,28 +77,20 @@ MOST_LISTED = 3
 UPDATE = "look at it, then accept it with --update-baseline"
 
 
-def _keys_now(subject: Subject, case: Case) -> list[RunKey]:
-    finest = min(sweep.timestep for sweep in case.sweeps)
-    stepped = subject.name != "exact"
-    return [RunKey(), *(RunKey(name, finest) for name in subject.integrators if stepped)]
-
-
-def _is_chosen(subject: Subject, key: RunKey) -> bool:
-    """Whether a stored run belongs to what is checked: an integrator that is gone does."""
-    left_out = set(subject.declared) - set(subject.integrators)
-    narrowed = bool(left_out)
-    return not key.integrator or key.integrator in subject.integrators or not narrowed
-
-
 def baseline_checks(
     subject: Subject, cases: Sequence[Case], stored: Baseline | None
 ) -> Iterator[Check]:
     """A check for every run there is and for every one that the baseline remembers."""
+    stepped = subject.integrators if subject.name != "exact" else ()
+    whole = set(subject.declared) <= set(subject.integrators)
     for case in cases:
-        keys = dict.fromkeys(_keys_now(subject, case))
+        finest = min(sweep.timestep for sweep in case.sweeps)
+        keys = [RunKey(), *(RunKey(name, finest) for name in stepped)]
         if stored is not None and case.name in stored:
-            keys |= dict.fromkeys(k for k in stored[case.name].runs if _is_chosen(subject, k))
-        for key in keys:
+            # An integrator that is gone belongs to what is checked, unless some are left out.
+            known = stored[case.name].runs
+            keys += [k for k in known if whole or k.integrator in ("", *subject.integrators)]
+        for key in dict.fromkeys(keys):
             yield Check(subject.name, case.name, GATE, key.integrator or None, key.timestep)
 
 
@@ -128,14 +117,3 @@ def compare(
     more = f"; and {len(found) - MOST_LISTED} more" if len(found) > MOST_LISTED else ""
     why = meaning(known, own, found, was.version == version)
     return Result("fail", f"{versions}: {listed}{more}. Probably {why}. {UPDATE.capitalize()}.")
-
-
-def store(folder: Path, subjects: Iterable[Subject], figures: dict[str, Baseline]) -> list[Path]:
-    """Update the baseline of every engine that gave figures; the files that were written."""
-    written = []
-    for subject in subjects:
-        if subject.name in figures:
-            stored = read_baseline(folder, subject.name)
-            whole = updated(stored, figures[subject.name], subject)
-            written.append(write_baseline(folder, subject.name, whole))
-    return written

@@ -50,10 +50,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption(PREFIX + "timeout", dest=dest_of("timeout"), help=text, **TIMEOUT)
 
 
-def _is_among(option: str, args: list[str]) -> bool:
-    return any(arg == option or arg.startswith(f"{option}=") for arg in args)
-
-
 def _is_free(option: str, parser: pytest.Parser) -> bool:
     """Whether no one has taken an option: it is then unknown to the parser."""
     try:
@@ -78,8 +74,8 @@ def pytest_load_initial_conftests(
     group = parser.getgroup("omegadot")
     help_requested = any(argument in args for argument in HELP)
     for name, how in OPTIONS.items():
-        wanted = help_requested or _is_among(f"--{name}", args)
-        if wanted and _is_free(f"--{name}", parser):
+        used = any(argument.partition("=")[0] == f"--{name}" for argument in args)
+        if (help_requested or used) and _is_free(f"--{name}", parser):
             group.addoption(f"--{name}", dest=dest_of(name), **how)
 
 

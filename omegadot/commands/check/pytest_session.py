@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 from omegadot.adapters.registry import AdapterError
-from omegadot.commands.check.baseline_file import Baseline, from_text, to_text
-from omegadot.commands.check.compare import store
+from omegadot.commands.check.baseline_file import from_text, to_text
 from omegadot.commands.check.generate import REGISTRY, coverage
 from omegadot.commands.check.pytest_items import ENGINE, MESSAGE, ROOT, VERDICT, collect
 from omegadot.commands.check.result import Tally
@@ -80,7 +79,6 @@ class PytestSession:
     ) -> None:
         self.config, self.selection, self.suite, self.named = config, selection, suite, named
         self.tally = Tally()
-        self.figures: dict[str, Baseline] = suite.figures
         self.remarks: list[str] = []
 
     def pytest_report_header(self) -> list[str]:
@@ -94,8 +92,9 @@ class PytestSession:
         self, session: pytest.Session, items: list[pytest.Item]
     ) -> None:
         """Add the checks, before the options that select among items look at them."""
+        below = tuple(f"{name}::" for name in self.named)
         for item in collect(self.suite, session):
-            if not self.named or any(_stands_below(item.nodeid, name) for name in self.named):
+            if not self.named or f"{item.nodeid}::".startswith(below):
                 items.append(item)
 
     @pytest.hookimpl(optionalhook=True)
@@ -107,7 +106,7 @@ class PytestSession:
     def pytest_testnodedown(self, node: Any) -> None:
         """Take the figures that a worker of xdist has measured."""
         for engine, text in getattr(node, "workeroutput", {}).get(SHARED, {}).items():
-            self.figures.setdefault(engine, {}).update(from_text(text))
+            self.suite.figures.setdefault(engine, {}).update(from_text(text))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Count a check by its engine."""
@@ -121,13 +120,10 @@ class PytestSession:
         """End the engines, store the figures, and fail where an engine was skipped throughout."""
         self.suite.finish()
         if hasattr(self.config, "workeroutput"):
-            texts = {name: to_text(name, found) for name, found in self.figures.items()}
+            texts = {name: to_text(name, found) for name, found in self.suite.figures.items()}
             self.config.workeroutput[SHARED] = texts
             return
-        folder = self.selection.baseline
-        if self.selection.update and folder is not None:
-            written = store(folder, self.suite.registry.subjects, self.figures)
-            self.remarks += [f"baseline written: {path}" for path in written]
+        self.remarks += [f"baseline written: {path}" for path in self.suite.store()]
         named = [choice.name for choice in self.selection.choices if choice.required]
         idle = self.tally.only_skipped(named)
         self.remarks += idle
@@ -144,7 +140,3 @@ class PytestSession:
     def pytest_unconfigure(self) -> None:
         """End the engines, however the session ended."""
         self.suite.finish()
-
-
-def _stands_below(nodeid: str, name: str) -> bool:
-    return nodeid == name or nodeid.startswith(f"{name}::")

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 
-from omegadot.commands.check.baseline import answered, figures_of
-from omegadot.commands.check.baseline_file import ScenarioFigures, read_baseline
+from omegadot.commands.check.baseline import answered, figures_of, updated
+from omegadot.commands.check.baseline_file import ScenarioFigures, read_baseline, write_baseline
 from omegadot.commands.check.compare import GATE as BASELINE
 from omegadot.commands.check.compare import baseline_checks, compare
 from omegadot.commands.check.exceptions import matches_nothing, unmatched, with_exceptions
@@ -34,6 +35,7 @@ class Suite:
         self._runner: Runner | None = None
         self.registry = registry or self._start()
         subjects, folder, cases = self.registry.subjects, selection.baseline, selection.cases
+        self._versions = {s.name: s.version for s in subjects}
         self._stored = {s.name: read_baseline(folder, s.name) if folder else None for s in subjects}
         self._unmatched = {
             s.name: unmatched(selection.exceptions, s, cases, self._stored[s.name])
@@ -45,7 +47,7 @@ class Suite:
 
     def _start(self) -> Registry:
         chosen = self.selection
-        timeout, jobs = chosen.timeout, chosen.jobs
+        timeout, jobs = chosen.arguments.timeout, chosen.jobs
         request = RunRequest(chosen.cases, chosen.choices, seed=SEED, timeout=timeout, jobs=jobs)
         runner = Runner(request)
         try:
@@ -56,6 +58,18 @@ class Suite:
             raise
         self._runner = runner
         return Registry.of(runner.engines)
+
+    def store(self) -> list[Path]:
+        """The files written, where baselines are to be updated: of every engine with figures."""
+        folder, written = self.selection.baseline, list[Path]()
+        if folder is None or not self.selection.arguments.update:
+            return written
+        for subject in self.registry.subjects:
+            if subject.name in self.figures:
+                stored = read_baseline(folder, subject.name)
+                whole = updated(stored, self.figures[subject.name], subject)
+                written.append(write_baseline(folder, subject.name, whole))
+        return written
 
     def finish(self) -> None:
         """End the workers; they are started again if another result is requested."""
@@ -68,7 +82,7 @@ class Suite:
         absent = [n for n in (*names, *self.selection.unknown) if n in self._absences()]
         found = [Check(name, "", START) for name in absent]
         found += [Check(name, "", EXCEPTIONS) for name, left in self._unmatched.items() if left]
-        comparing = self.selection.baseline is not None and not self.selection.update
+        comparing = self.selection.baseline and not self.selection.arguments.update
         for case in self.selection.cases:
             found += checks_of(self.registry.subjects, [case])
             for subject in self.registry.subjects if comparing else ():
@@ -89,12 +103,11 @@ class Suite:
             return Result("fail", " ".join(map(matches_nothing, self._unmatched[check.engine])))
         if check not in self._results:
             self._run(next(c for c in self.selection.cases if c.name == check.scenario))
-        own = [e for e in self.selection.exceptions if e.engine == check.engine]
-        return with_exceptions(check, self._results[check], own)
+        return with_exceptions(check, self._results[check], self.selection.exceptions)
 
     def _of_start(self, check: Check) -> Result:
         outcome, reason = self._absences()[check.engine]
-        required = check.engine in self.selection.required
+        required = check.engine in self.selection.arguments.required
         if outcome in ("not-installed", "unsupported") and not required:
             return skipped(f"{outcome}: {reason}")
         return error(outcome, reason)
@@ -122,11 +135,8 @@ class Suite:
         lost = error("raised", judged.reason or "the engine gave no answer")
         for check in self.checks:
             if check.scenario == case.name and check.gate == BASELINE:
-                self._results[check] = self._compared(check)
+                now = self.figures.get(check.engine, {}).get(check.scenario)
+                stored, version = self._stored[check.engine], self._versions[check.engine]
+                self._results[check] = compare(check, stored, now, version)
             elif check.scenario == case.name:
                 self._results.setdefault(check, lost)
-
-    def _compared(self, check: Check) -> Result:
-        version = next(s.version for s in self.registry.subjects if s.name == check.engine)
-        now = self.figures.get(check.engine, {}).get(check.scenario)
-        return compare(check, self._stored[check.engine], now, version)

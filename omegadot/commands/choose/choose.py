@@ -14,7 +14,7 @@ from omegadot import __version__
 from omegadot.commands.choose.chooser import Choice, Chooser
 from omegadot.commands.choose.document import document
 from omegadot.commands.choose.motion import Motion, cases_of
-from omegadot.commands.choose.requirements import Requirements, merged, read_requirements
+from omegadot.commands.choose.requirements import merged, read_requirements
 from omegadot.commands.choose.result import ChooseResult
 from omegadot.commands.progress import Reporting, reporting
 from omegadot.harness.arguments import engine_choices, several
@@ -108,9 +108,19 @@ def choose(
         check_choice_folder(Path(out))
     with reporting(progress) as report:
         choice = Chooser(request, wanted, budget, report).execute()
-    seconds = round(time.perf_counter() - started, 3)
-    made = {"command": list(command), "budget": budget, "seconds": seconds}
-    result = _result_of(choice, wanted, request.choices, made)
+    now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
+    found = {
+        **document(choice, wanted),
+        "omegadot": __version__,
+        "created": now.isoformat(),
+        "command": list(command),
+        "budget": budget,
+        "seconds": round(time.perf_counter() - started, 3),
+        "machine": describe_machine(),
+        "versions": package_versions(),
+    }
+    result = ChooseResult(found, _answered(found, choice, request.choices))
+    found["exit_code"] = exit_code(result)
     return result if out is None else replace(result, written=result.save(out))
 
 
@@ -120,26 +130,6 @@ def _choices(engines: Sequence[EngineLike], adapters: Sequence[EngineLike]) -> l
     if any(choice.name == "exact" and choice.required for choice in choices):
         raise UsageError("--engine exact: it is what the others are measured by; name another.")
     return [c for c in choices if c.name != "exact" and (c.required or c.name != "reference")]
-
-
-def _result_of(
-    choice: Choice,
-    wanted: Requirements,
-    choices: Sequence[EngineChoice],
-    made: Mapping[str, Any],
-) -> ChooseResult:
-    now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
-    found = {
-        **document(choice, wanted),
-        "omegadot": __version__,
-        "created": now.isoformat(),
-        **made,
-        "machine": describe_machine(),
-        "versions": package_versions(),
-    }
-    result = ChooseResult(found, _answered(found, choice, choices))
-    found["exit_code"] = exit_code(result)
-    return result
 
 
 def exit_code(result: ChooseResult) -> int:

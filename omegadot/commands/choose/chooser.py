@@ -8,12 +8,12 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from functools import partial
 
-from omegadot.commands.choose.candidate import BrokenError, Candidate, Prober
+from omegadot.commands.choose.candidate import Candidate
 from omegadot.commands.choose.eligible import unmet
-from omegadot.commands.choose.ranking import Spread
+from omegadot.commands.choose.ranking import Key, Spread, time_all
 from omegadot.commands.choose.requirements import Requirements
 from omegadot.commands.choose.ruler import NoTruthError, Ruler
-from omegadot.commands.choose.timing import Key, Timed, time_all
+from omegadot.commands.choose.trial import Trial
 from omegadot.commands.progress import Count, Progress, Reporter
 from omegadot.gates.case import Case
 from omegadot.harness.engines import Engines
@@ -108,10 +108,7 @@ class Chooser:
     def _ruler(self, found: CaseChoice) -> None:
         """Have the case's ruler made, on the exact solution's own thread."""
         case, limits = found.case, self.requirements.limits
-        driver = self.engines.drivers.get("exact")
-        if driver is None:
-            found.reason = "the exact solution could not be started"
-            return
+        driver = self.engines.drivers["exact"]
 
         def solve(times: Array) -> Answer:
             fields = {"system": case.system, "initial": case.initial, "times": times}
@@ -132,39 +129,27 @@ class Chooser:
         declared = {i.name: i for i in driver.integrators()}
         found = []
         for integrator in engine.integrators:
-            candidate = Candidate(engine, declared.get(integrator.name, integrator))
+            own = declared.get(integrator.name, integrator)
+            candidate = Candidate(engine, own, driver, ruler, self.budget)
             found.append(candidate)
-            if not loaded.ok:
-                candidate.outcome, candidate.reason = loaded.outcome, loaded.reason
+            if loaded.ok:
+                candidate.seek(self.requirements.limits, FACTORS)
             else:
-                self._seek(candidate, Prober(driver, ruler, candidate, self.budget))
+                candidate.outcome, candidate.reason = loaded.outcome, loaded.reason
             self._count.advance()
         return found
 
-    def _seek(self, candidate: Candidate, prober: Prober) -> None:
-        limits = self.requirements.limits
-        try:
-            candidate.edge = prober.seek(limits)
-            for key in limits:
-                for factor in FACTORS:
-                    changed = self.requirements.scaled(key, factor).limits
-                    candidate.variants[key, factor] = prober.vary(changed)
-        except (BrokenError, NoTruthError) as error:
-            candidate.outcome = getattr(error, "outcome", "raised")
-            candidate.reason = str(error)
-
     def _time(self, choice: Choice) -> None:
         """Time every candidate that qualifies, or would if one limit were another."""
-        wanted: dict[Key, Timed] = {}
+        wanted: dict[Key, tuple[Candidate, Trial]] = {}
         for found in choice.cases:
             for candidate in found.candidates:
                 edges = [candidate.edge, *candidate.variants.values()]
                 trial = next((e.passing for e in edges if e.passing is not None), None)
                 if trial is not None and candidate.outcome == "ok":
-                    timed = Timed(found.case, candidate, trial)
-                    wanted[found.case.name, candidate.name] = timed
+                    wanted[found.case.name, candidate.name] = (candidate, trial)
         self._count.advance(0, "timing, engine by engine")
-        choice.costs = time_all(wanted, self.engines.drivers)
+        choice.costs = time_all(wanted)
         for name in {candidate.engine.name for f in choice.cases for candidate in f.candidates}:
             with contextlib.suppress(KeyError):
                 choice.memory[name] = self.engines.drivers[name].worker.peak_memory()

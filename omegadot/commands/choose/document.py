@@ -15,12 +15,8 @@ SCHEMA = 1
 def requirements_row(wanted: Requirements) -> Row:
     """What was requested, limits in SI next to their text as given."""
     limits = [
-        {
-            "requirement": key,
-            "limit": limit,
-            "unit": ACCURACY[key][1],
-            "requested": wanted.requested[key],
-        }
+        {"requirement": key, "limit": limit, "unit": ACCURACY[key][1]}
+        | {"requested": wanted.requested[key]}
         for key, limit in wanted.limits.items()
     ]
     rest = {k: v for k, v in vars(wanted).items() if k not in ("limits", "requested")}

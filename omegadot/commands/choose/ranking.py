@@ -1,4 +1,4 @@
-"""Costs measured round after round: ranks, ties within their spread, and the Pareto front."""
+"""What a step costs, measured in rounds; ranks, ties within the spread, and the Pareto front."""
 
 from __future__ import annotations
 
@@ -7,7 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from omegadot.commands.choose.candidate import Candidate
 from omegadot.commands.choose.search import EDGE
+from omegadot.commands.choose.trial import Trial
+from omegadot.gates.case import Sweep
+
+FEWEST_ROUNDS, MOST_ROUNDS = 7, 15
+SECONDS_A_RUN = 0.15  # so short that a round sees every engine in the same weather
+SECONDS_IN_ALL = 8.0
+Key = tuple[str, str]  # names of case and candidate
 
 
 @dataclass(frozen=True)
@@ -42,6 +50,29 @@ class Spread:
         return Spread(tuple(a / b for a, b in zip(self.rounds, other.rounds, strict=True)))
 
 
+def _moment(trial: Trial) -> Sweep:
+    """The horizon, or as much of it as takes a moment; the ends alone are kept."""
+    steps = min(trial.steps, max(1, round(SECONDS_A_RUN / max(trial.seconds_per_step, 1e-9))))
+    return Sweep(trial.timestep, steps, steps)
+
+
+def time_all(wanted: Mapping[Key, tuple[Candidate, Trial]]) -> dict[Key, Spread]:
+    """Seconds per step of each, from interleaved repeats after a round that is not counted.
+
+    wanted: candidates, each at the step of one of its runs.  One that fails to answer in any round
+    is left out.
+    """
+    found: dict[Key, list[float]] = {key: [] for key in wanted}
+    one = sum(_moment(trial).steps * trial.seconds_per_step for _, trial in wanted.values())
+    rounds = int(min(max(SECONDS_IN_ALL / max(one, 1e-9), FEWEST_ROUNDS), MOST_ROUNDS))
+    for number in range(rounds + 1):
+        for key, (own, trial) in wanted.items():
+            answer = own.driver.run(own.ruler.case, own.integrator.name, _moment(trial))
+            if answer.ok and number:
+                found[key].append(float(answer.result["seconds_per_step"]))
+    return {key: Spread(tuple(found[key])) for key in found if len(found[key]) == rounds}
+
+
 def total(spreads: Sequence[Spread]) -> Spread:
     """The sum, round by round."""
     return Spread(tuple(map(sum, zip(*(spread.rounds for spread in spreads), strict=True))))
@@ -56,25 +87,18 @@ class Place:
     tied: bool
 
 
-def dearer(one: Spread, other: Spread) -> bool:
-    """Whether `one` costs more than `other`, beyond the resolution of the measurement.
-
-    In three quarters of the rounds at least it took longer by more than EDGE: a step is known no
-    better than that, so neither is its cost.
-    """
-    return one.over(other).quartiles[0] > EDGE
-
-
 def ranked(costs: Mapping[str, Spread]) -> list[Place]:
     """Places by median cost. Two of which neither is dearer are a tie, not a win and a loss.
 
+    One is dearer that took longer by more than EDGE in three quarters of the rounds at least: a
+    step is known no better than that, so neither is its cost.
     A place's ties are with its first: of three where each ties with its neighbour alone, the third
     is not dragged up to the first.
     """
     order = sorted(costs, key=lambda key: costs[key].median)
     groups: list[list[str]] = []
     for key in order:
-        if groups and not dearer(costs[key], costs[groups[-1][0]]):
+        if groups and costs[key].over(costs[groups[-1][0]]).quartiles[0] <= EDGE:
             groups[-1].append(key)
         else:
             groups.append([key])

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal
@@ -50,10 +50,6 @@ class Requirements:
     licences: tuple[str, ...] = ()
     python: str | None = None
     duration: float | None = None
-
-    def scaled(self, key: str, factor: float) -> Requirements:
-        """The same with one limit multiplied."""
-        return replace(self, limits={**self.limits, key: self.limits[key] * factor})
 
 
 def _texts(value: object, where: str) -> list[str]:
@@ -137,13 +133,9 @@ def known_key(name: str, where: str) -> str:
 
 def merged(file: Mapping[str, Any], line: Mapping[str, Any], path: str) -> Requirements:
     """The file's requirements with those of the command line over them. Raises UsageError."""
-    given = {key: value for key, value in line.items() if not _is_empty(value)}
+    given = {key: value for key, value in line.items() if value not in (None, "", [])}
     places = {key: f"{path}: {key}" for key in file} | {key: f"--{key}" for key in given}
     return requirements_of({**file, **given}, places)
-
-
-def _is_empty(value: object) -> bool:
-    return value is None or (isinstance(value, Sequence) and not value)
 
 
 def read_requirements(path: Path) -> dict[str, Any]:

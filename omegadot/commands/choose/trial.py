@@ -24,8 +24,8 @@ class Measured:
 class Trial:
     """A run over the whole horizon in `steps` steps of `timestep` s.
 
-    errors: by requirement; none where the run failed, for a `reason`.  samples: how many states
-    were held against the truth.
+    errors: by requirement; none where the run failed.  samples: how many states were held against
+    the truth.
     """
 
     steps: int
@@ -33,8 +33,6 @@ class Trial:
     errors: Mapping[str, Measured]
     seconds_per_step: float
     samples: int
-    outcome: str = "ok"
-    reason: str = ""
 
     def ratio(self, limits: Mapping[str, float]) -> float:
         """The greatest error over its limit; 1 or less meets them all."""

@@ -1,18 +1,26 @@
-"""What is measured of every version: the metrics, by name, before any is measured."""
+"""What is measured of every version: metrics by name, and the exact solution of each case."""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+
+import numpy as np
 
 from omegadot.adapters.protocol import Description
 from omegadot.commands.versions.metric import RATIO, Name
 from omegadot.diagnosis.scheme_study.probes import PROBES
 from omegadot.gates.case import Case, Sweep
+from omegadot.gates.equation import random_acceleration, random_states
 from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.measures import Yardstick
 from omegadot.harness.arguments import case_of
 from omegadot.harness.usage import UsageError, nearest
+from omegadot.reference_impl.exact_solution import exact_states
+from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.system import Acceleration, Array, State
 from omegadot.reports.text.numbers import plain
 from omegadot.scenarios import ScenarioLike, load_scenario, scenario
 
@@ -22,14 +30,39 @@ DEFAULT = ("box", "t-handle", "offset-com", "damped-tumble", "heavy-top", "drive
 BOX = "box"
 BOX_FILE = Path(__file__).with_name("box.toml")
 SAMPLES = 50
+STATES = 32  # random states that the equations are evaluated at
+SEED = (0, 1)
 
 
 @dataclass(frozen=True)
+class Exact:
+    """A case's exact states at its samples, and the measure of distances from them.
+
+    random, acceleration: where the equations are evaluated.
+    """
+
+    state: State
+    growth: Array
+    yardstick: Yardstick
+    random: State
+    acceleration: Acceleration
+
+
+@dataclass
 class Aims:
     """The cases that are run, each with a single step, and the integrators (all where none is)."""
 
     cases: tuple[Case, ...]
     integrators: tuple[str, ...] = ()
+    _known: dict[str, Exact] = field(default_factory=dict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def truth(self, case: Case) -> Exact:
+        """The truth of a case; versions that are measured side by side share it."""
+        with self._lock:
+            if case.name not in self._known:
+                self._known[case.name] = _exact(case)
+            return self._known[case.name]
 
     def chosen(self, description: Description) -> list[str]:
         """The integrators of a version that are looked at."""
@@ -103,3 +136,13 @@ def names_of(aims: Aims, description: Description) -> Iterator[Name]:
             yield from probe_names(integrator, probe.kind)
         for case in aims.cases:
             yield from drift_names(case, integrator)
+
+
+def _exact(case: Case) -> Exact:
+    times = case.sweeps[0].times
+    _, state = exact_states(case.system, case.initial, times)
+    yardstick = Yardstick(case.system, times, state)
+    growth = growth_along(case.system, times, state, yardstick.rate)
+    random = random_states(case, STATES, SEED)
+    acceleration = random_acceleration(case.system, random, SEED)
+    return Exact(state, np.asarray(growth), yardstick, random, acceleration)

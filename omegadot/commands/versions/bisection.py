@@ -8,10 +8,9 @@ from functools import cache
 
 from packaging.version import Version
 
-from omegadot.commands.versions.changes import Change, changes_between
+from omegadot.commands.versions.changes import Change, Portrait, changes_between
 from omegadot.commands.versions.figures import Wanted
 from omegadot.commands.versions.gallery import Gallery
-from omegadot.commands.versions.measure import Portrait
 from omegadot.commands.versions.metric import (
     KINDS,
     Name,

@@ -1,17 +1,45 @@
-"""What changed between versions: metric by metric, and pace by pace."""
+"""What is found of a version, and what changed between two: metric by metric, and paces."""
 
 from __future__ import annotations
 
 import math
 import statistics
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from omegadot.commands.versions.measure import Portrait
 from omegadot.commands.versions.metric import KINDS, Figure, Name, differ
 
 # The place of the integrator in a metric's name, by the name's first term.
 _INTEGRATOR_AT = {"scheme": 1, "order": 1, "drift": 2}
+
+
+@dataclass
+class Portrait:
+    """One version. outcome: "ok", or why there is nothing of it, with the reason.
+
+    version: as requested.  reported_version: of the engine itself.  faults: where it is not as
+    its adapter declares, or wrong.  has: its integrators, those not looked at included.
+    troubles: requests that it failed to answer.  unreported: kinds of metric that it should report
+    and did not.
+    """
+
+    version: str
+    outcome: str = "ok"
+    reason: str = ""
+    origin: str = ""
+    reported_version: str = ""
+    integrators: list[str] = field(default_factory=list)
+    has: list[str] = field(default_factory=list)
+    figures: dict[Name, Figure] = field(default_factory=dict)
+    faults: list[str] = field(default_factory=list)
+    troubles: list[str] = field(default_factory=list)
+    unreported: frozenset[str] = frozenset()
+    speeds: dict[str, list[float]] = field(default_factory=dict)
+
+    @property
+    def ok(self) -> bool:
+        """Whether the version could be measured."""
+        return self.outcome == "ok"
 
 
 @dataclass(frozen=True)

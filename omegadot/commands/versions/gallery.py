@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 
 from omegadot.commands.other_python import worker_command
 from omegadot.commands.versions.aims import Aims
+from omegadot.commands.versions.changes import Portrait
 from omegadot.commands.versions.environments import Absent, Place
 from omegadot.commands.versions.figures import Wanted
-from omegadot.commands.versions.measure import Portrait, Sitting
+from omegadot.commands.versions.measure import Sitting
 from omegadot.commands.versions.metric import Name
 from omegadot.commands.versions.product import Product
 from omegadot.commands.versions.release import version_of
-from omegadot.commands.versions.truths import Truths
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load
 from omegadot.gates.case import Case
 from omegadot.workers.harness_end.pool import outcome_of
@@ -44,15 +44,9 @@ class Gallery:
     pythons: Mapping[str, str]
     setup: str
     timeout: float
-    _truths: Truths = field(default_factory=Truths)
     _places: dict[str, Place] = field(default_factory=dict)
     _workers: list[WorkerProcess] = field(default_factory=list)
     _stopping: threading.Event = field(default_factory=threading.Event)
-
-    def _placed(self, version: str) -> Place | Absent:
-        if version in self.pythons:
-            return Place(worker_command(self.pythons[version]), OWN)
-        return self.place(version)
 
     def _worker(self, place: Place) -> WorkerProcess:
         worker = WorkerProcess(self.product.target, self.setup, self.timeout, place.command)
@@ -62,7 +56,13 @@ class Gallery:
     def look(self, version: str, choose: Callable[[list[Name]], Wanted] | None = None) -> Portrait:
         """One version. choose: from the names of its metrics, which are wanted; all without it."""
         portrait = Portrait(version)
-        place = Absent("interrupted") if self._stopping.is_set() else self._placed(version)
+        place: Place | Absent
+        if self._stopping.is_set():
+            place = Absent("interrupted")
+        elif version in self.pythons:
+            place = Place(worker_command(self.pythons[version]), OWN)
+        else:
+            place = self.place(version)
         if isinstance(place, Absent):
             portrait.outcome, portrait.reason = "not-installed", place.reason
             return portrait
@@ -74,7 +74,7 @@ class Gallery:
             self._check_start(portrait, place)
             if portrait.ok:
                 self._places[version] = place
-                sitting.request(choose(names) if choose else everything, self._truths)
+                sitting.request(choose(names) if choose else everything)
         finally:
             worker.finish()
         return portrait

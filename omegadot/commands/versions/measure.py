@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from functools import partial
 
 from omegadot.adapters.protocol import Description, Integrator
@@ -14,23 +13,21 @@ from omegadot.commands.versions.aims import (
     names_of,
     probe_names,
 )
+from omegadot.commands.versions.changes import Portrait
 from omegadot.commands.versions.figures import (
     Figures,
     Wanted,
     drift_figures,
     equation_figures,
-    figures_of_rows,
-    model_rows,
     reported_figures,
     scheme_figures,
 )
 from omegadot.commands.versions.metric import Figure, Name
-from omegadot.commands.versions.truths import Truths
 from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
 from omegadot.diagnosis.scheme_study.study import IntegratorStudy, ProbeStudy
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load, stepper_of
 from omegadot.gates.case import Case
-from omegadot.reference_impl.system import State, System
+from omegadot.reference_impl.system import System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
 
@@ -38,35 +35,6 @@ MOST_TIMEOUTS = 3
 REQUESTED_OF_ENGINE = frozenset({"convention", "default"})
 Declared = dict[str, Integrator]
 Measuring = Callable[[Declared], Figures]  # of the integrators as declared for a loaded system
-
-
-@dataclass
-class Portrait:
-    """One version. outcome: "ok", or why there is nothing of it, with the reason.
-
-    version: as requested.  reported_version: of the engine itself.  faults: where it is not as
-    its adapter declares, or wrong.  has: its integrators, those not looked at included.
-    troubles: requests that it failed to answer.  unreported: kinds of metric that it should report
-    and did not.
-    """
-
-    version: str
-    outcome: str = "ok"
-    reason: str = ""
-    origin: str = ""
-    reported_version: str = ""
-    integrators: list[str] = field(default_factory=list)
-    has: list[str] = field(default_factory=list)
-    figures: Figures = field(default_factory=dict)
-    faults: list[str] = field(default_factory=list)
-    troubles: list[str] = field(default_factory=list)
-    unreported: frozenset[str] = frozenset()
-    speeds: dict[str, list[float]] = field(default_factory=dict)
-
-    @property
-    def ok(self) -> bool:
-        """Whether the version could be measured."""
-        return self.outcome == "ok"
 
 
 class Sitting:
@@ -105,16 +73,16 @@ class Sitting:
         portrait.figures |= reported_figures(self._description, native)
         return [*portrait.figures, *names_of(self._aims, self._description)]
 
-    def request(self, wanted: Wanted, truths: Truths) -> None:
+    def request(self, wanted: Wanted) -> None:
         """Measure the metrics that are wanted."""
         if self._description is None:
             return
         integrators = self.portrait.integrators
         for case in self._aims.cases:
-            equations = partial(self._equations, case, truths)
+            equations = partial(self._equations, case)
             self._measure(wanted, equation_names(case), case.name, case.system, equations)
             for name in integrators:
-                drifts, what = partial(self._drifts, case, name, truths), f"{name} on {case.name}"
+                drifts, what = partial(self._drifts, case, name), f"{name} on {case.name}"
                 self._measure(wanted, drift_names(case, name), what, case.system, drifts)
         studies: dict[str, dict[str, ProbeStudy]] = {name: {} for name in integrators}
         for probe in PROBES:
@@ -152,8 +120,8 @@ class Sitting:
             raise NoAnswerError(Answer("timeout", f"not tried after {MOST_TIMEOUTS} time-outs"))
         return load(self._worker, system)
 
-    def _drifts(self, case: Case, name: str, truths: Truths, _: Declared) -> Figures:
-        return drift_figures(case, name, truths.of(case), stepper_of(self._worker, name))
+    def _drifts(self, case: Case, name: str, _: Declared) -> Figures:
+        return drift_figures(case, name, self._aims.truth(case), stepper_of(self._worker, name))
 
     def _scheme(
         self,
@@ -167,20 +135,15 @@ class Sitting:
         figures, studies[probe.kind] = scheme_figures(probe, declared[name], step, wanted)
         return figures
 
-    def _equations(self, case: Case, truths: Truths, _: Declared) -> Figures:
-        exact, worker = truths.of(case), self._worker
-        first = State(*(values[0] for values in vars(exact.random).values()))
-        rows = model_rows(case, first, _answer_of(worker, "model", state=first))
-        forward = _answer_of(worker, "forward", states=exact.random)
-        acceleration = exact.acceleration
-        inverse = _answer_of(worker, "inverse", states=exact.random, acceleration=acceleration)
-        equations = equation_figures(case, exact, forward, inverse)
-        for row in rows + equations:
+    def _equations(self, case: Case, _: Declared) -> Figures:
+        request = partial(_answer_of, self._worker)
+        figures, rows = equation_figures(case, self._aims.truth(case), request)
+        for row in rows:
             if row.verdict == "fail":
                 off = f"{row.value:.1e} against a bound of {row.bound:.1e}"
                 what = row.channel.replace("_", " ")
                 self.portrait.faults.append(f"{case.name}, {row.gate}: {what} off by {off}")
-        return figures_of_rows(case, equations)
+        return figures
 
     def _note(self, what: str, answer: Answer) -> None:
         self._timeouts += answer.outcome == "timeout"

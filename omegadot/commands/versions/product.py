@@ -12,36 +12,24 @@ ALWAYS = ("numpy", "scipy")  # what a worker needs besides its engine
 
 
 @dataclass(frozen=True)
-class Extra:
-    """What must be installed with some releases, and why."""
-
-    requirements: tuple[str, ...]
-    reason: str
-
-
-@dataclass(frozen=True)
 class Product:
     """engine: its name here.  target: its adapter.  package: its name where it is installed from.
 
-    extras: by release.
+    extras: what must be installed with some releases.
     """
 
     engine: str
     target: str
     package: str
-    extras: Mapping[str, Extra] = field(default_factory=dict)
+    extras: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def requirements(self, version: str) -> list[str]:
         """What to install for a release."""
-        extra = self.extras.get(version)
-        more = extra.requirements if extra else ()
-        return [f"{self.package}=={version}", *ALWAYS, *more]
+        return [f"{self.package}=={version}", *ALWAYS, *self.extras.get(version, ())]
 
 
-_OLDER_LIBRARIES = Extra(
-    ("cmeel-urdfdom<5", "cmeel-tinyxml2<11"),
-    "it accepts any version of these libraries, and is linked against older ones",
-)
+# These releases accept any version of the two libraries, and are linked against older ones.
+_OLDER_LIBRARIES = ("cmeel-urdfdom<5", "cmeel-tinyxml2<11")
 _PINOCCHIO_EXTRAS = dict.fromkeys(("3.4.0", "3.7.0", "3.8.0", "3.9.0"), _OLDER_LIBRARIES)
 PRODUCTS = (
     Product("mujoco", BUILT_IN["mujoco"], "mujoco"),

@@ -12,12 +12,12 @@ from omegadot.commands.versions.aims import Aims, conserves_kinetic_energy
 from omegadot.commands.versions.bisection import Bisection
 from omegadot.commands.versions.changes import (
     Change,
+    Portrait,
     changes_between,
     integrator_of,
     pace_changes,
     pace_of,
 )
-from omegadot.commands.versions.measure import Portrait
 from omegadot.commands.versions.metric import Figure, Name, shown, title
 from omegadot.commands.versions.product import Product
 from omegadot.workers.machine import describe_machine
@@ -34,6 +34,10 @@ def record_of(
     bisection: Bisection | None,
 ) -> Record:
     """Versions, rising, with what changed from each to the next that could be measured."""
+    steps = []
+    for one, other in pairwise(p for p in portraits if p.ok and bisection is None):
+        paces = {name: vars(ratio) for name, ratio in pace_changes(one, other).items()}
+        steps.append({**_step(one, other, changes_between(one, other)), "paces": paces})
     return {
         "schema": SCHEMA,
         "omegadot": __version__,
@@ -52,19 +56,9 @@ def record_of(
             for case in aims.cases
         ],
         "versions": [_version(portrait) for portrait in portraits],
-        "steps": [] if bisection else _steps(portraits),
+        "steps": steps,
         "bisect": bisection and _bisection(bisection),
     }
-
-
-def _steps(portraits: Sequence[Portrait]) -> list[Record]:
-    return [
-        {
-            **_step(one, other, changes_between(one, other)),
-            "paces": {name: vars(ratio) for name, ratio in pace_changes(one, other).items()},
-        }
-        for one, other in pairwise(portrait for portrait in portraits if portrait.ok)
-    ]
 
 
 def _step(before: Portrait, after: Portrait, changes: Sequence[Change]) -> Record:

@@ -43,9 +43,6 @@ class Span:
             and (high is None or version <= high)
         ]
 
-    def __str__(self) -> str:
-        return f"{self.low}..{self.high}"
-
 
 FEWEST = 2
 

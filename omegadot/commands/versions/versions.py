@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
 from omegadot.adapters.protocol import Setup
-from omegadot.commands.progress import Count, Progress, Reporter, Reporting, reporting
+from omegadot.commands.progress import Count, Progress, Reporting, reporting
 from omegadot.commands.versions.aims import aims_of, check_integrators
 from omegadot.commands.versions.bisection import bisect_metric
+from omegadot.commands.versions.changes import Portrait
 from omegadot.commands.versions.environments import Environments, default_cache
 from omegadot.commands.versions.gallery import Gallery
-from omegadot.commands.versions.installer import Installer, InstallError, installer_named
-from omegadot.commands.versions.measure import Portrait
+from omegadot.commands.versions.installer import InstallError, installer_named
 from omegadot.commands.versions.product import product_of
 from omegadot.commands.versions.record import record_of
 from omegadot.commands.versions.release import requested_releases
@@ -67,12 +67,20 @@ def versions(
     aims = aims_of(several(scenarios), several(integrators), timestep)
     if out is not None:
         check_folder(Path(out))
-    fetching = None if offline else _installer(installer)
+    try:
+        fetching = None if offline else installer_named(installer)
+    except InstallError as error:
+        raise UsageError(f"--installer {installer}: {error}.") from error
     environments = Environments(Path(cache or default_cache()), product, fetching)
     requested = requested_releases(several(releases), environments.releases)
     gallery = Gallery(product, aims, environments.place, requested.pythons, setup, timeout)
     with reporting(progress) as report:
-        seen = _seen(report, len(requested.versions) if bisect is None else None)
+        total = len(requested.versions) if bisect is None else None
+        count = Count(report, "making environments and starting engines", total)
+
+        def seen(portrait: Portrait) -> None:
+            count.advance(1, f"{portrait.version} {portrait.outcome}")
+
         if bisect is not None:
             found = bisect_metric(bisect, gallery, requested.versions, seen)
             portraits = found.portraits
@@ -88,15 +96,3 @@ def versions(
     if out is not None:
         result.save(out)
     return result
-
-
-def _installer(name: str) -> Installer:
-    try:
-        return installer_named(name)
-    except InstallError as error:
-        raise UsageError(f"--installer {name}: {error}.") from error
-
-
-def _seen(report: Reporter, total: int | None) -> Callable[[Portrait], object]:
-    count = Count(report, "making environments and starting engines", total)
-    return lambda portrait: count.advance(1, f"{portrait.version} {portrait.outcome}")
