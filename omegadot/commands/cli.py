@@ -14,7 +14,7 @@ from omegadot.commands.choose.command import choose
 from omegadot.commands.compare.command import compare
 from omegadot.commands.engines.command import engines
 from omegadot.commands.faults.command import faults
-from omegadot.commands.plain_help import PlainHelp
+from omegadot.commands.options import PlainHelp
 from omegadot.commands.report.command import report
 from omegadot.commands.run.command import run
 from omegadot.commands.scenarios.command import scenarios
@@ -107,9 +107,5 @@ def _sentence(error: Exception) -> str | None:
     from omegadot.reports.record.schema import RecordError
     from omegadot.scenarios import ScenarioError
 
-    if _is_our_own(error):
-        return str(error)
     wrong_input = AdapterError | ExtendedTypeError | RecordError | ScenarioError | UsageError
-    if isinstance(error, wrong_input):
-        return str(error)
-    return None
+    return str(error) if _is_our_own(error) or isinstance(error, wrong_input) else None

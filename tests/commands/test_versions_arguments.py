@@ -73,11 +73,11 @@ def test_ranges_have_both_ends_and_no_trial_releases() -> None:
 
 def test_arguments_are_versions_ranges_and_interpreters() -> None:
     python = sys.executable
-    requested = requested_releases(
+    versions, pythons = requested_releases(
         ["7.0", "6.16.2..6.17.0", f"6.17.1={python}", "6.17.0"], releases
     )
-    assert requested.versions == ["6.16.2", "6.16.10", "6.17.0", "6.17.1", "7.0"]
-    assert requested.pythons == {"6.17.1": python}
+    assert versions == ["6.16.2", "6.16.10", "6.17.0", "6.17.1", "7.0"]
+    assert pythons == {"6.17.1": python}
 
 
 @pytest.mark.parametrize(

@@ -65,14 +65,12 @@ def _counts(results: Mapping[Check, Result]) -> str:
 
 def print_json(found: CheckResult) -> None:
     """Every check and its result, for machines."""
-    counts = dict.fromkeys(("pass", "fail", "declared", "skip", "error"), 0)
-    for result in found.by_check.values():
-        counts[result.verdict] += 1
+    counts = Counter(result.verdict for result in found.by_check.values())
     printed = {
         "schema": 1,
         "exit_code": exit_code(found.passed, found.answered),
         "engines": [vars(subject) for subject in found.subjects],
-        "verdicts": counts,
+        "verdicts": {v: counts[v] for v in ("pass", "fail", "declared", "skip", "error")},
         "only_skipped": found.only_skipped,
         "checks": [{"id": c.id, **vars(c), **vars(r)} for c, r in found.by_check.items()],
     }

@@ -13,7 +13,7 @@ from omegadot.commands.check.baseline_file import from_text, to_text
 from omegadot.commands.check.generate import REGISTRY, coverage
 from omegadot.commands.check.pytest_items import ENGINE, MESSAGE, ROOT, VERDICT, collect
 from omegadot.commands.check.result import Tally
-from omegadot.commands.check.select import Arguments, Selection, select
+from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.suite import Suite
 from omegadot.harness.usage import UsageError
 from omegadot.scenarios import ScenarioError
@@ -66,18 +66,14 @@ def start_session(config: pytest.Config, given: dict[str, Any], typed: bool) -> 
         suite = Suite(selection, registry)
     except (AdapterError, ScenarioError, UsageError) as problem:
         raise pytest.UsageError(f"omegadot: {problem}") from None
-    config.pluginmanager.register(
-        PytestSession(config, selection, suite, named), "omegadot-session"
-    )
+    config.pluginmanager.register(PytestSession(config, suite, named), "omegadot-session")
 
 
 class PytestSession:
     """One session. named: node ids, or the beginnings of some, that are to be run alone."""
 
-    def __init__(
-        self, config: pytest.Config, selection: Selection, suite: Suite, named: tuple[str, ...]
-    ) -> None:
-        self.config, self.selection, self.suite, self.named = config, selection, suite, named
+    def __init__(self, config: pytest.Config, suite: Suite, named: tuple[str, ...]) -> None:
+        self.config, self.suite, self.named = config, suite, named
         self.tally = Tally()
         self.remarks: list[str] = []
 
@@ -124,7 +120,7 @@ class PytestSession:
             self.config.workeroutput[SHARED] = texts
             return
         self.remarks += [f"baseline written: {path}" for path in self.suite.store()]
-        named = [choice.name for choice in self.selection.choices if choice.required]
+        named = [choice.name for choice in self.suite.selection.choices if choice.required]
         idle = self.tally.only_skipped(named)
         self.remarks += idle
         if idle and session.exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):

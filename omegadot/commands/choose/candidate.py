@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.commands.choose.ruler import CHANNELS, NoTruthError, Ruler
-from omegadot.commands.choose.search import Edge, Search, Trials, edge_of
-from omegadot.commands.choose.trial import Trial
+from omegadot.commands.choose.search import Edge, Search, Trials, edge_of, order_between
+from omegadot.commands.choose.trial import Row, Trial
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine
 from omegadot.workers.wire import state_from
@@ -18,6 +18,7 @@ LARGEST_TURN = math.pi  # rad a step; beyond half a turn attitudes cannot be dis
 FEWEST_STEPS = 2
 UNDECLARED = 2.0  # the order to begin with where none is declared
 MOST_RECHECKS = 8
+LIKE = (0.75, 1.35)  # an order within these of the declared one is trusted to go on
 Limits = Mapping[str, float]
 
 
@@ -63,6 +64,25 @@ class Candidate:
         """The run that came nearest to meeting every limit; the larger step where two are equal."""
         trials = self.trials.values()
         return min(trials, key=lambda t: (t.ratio(limits), t.steps), default=None)
+
+    def predicted(self, limits: Limits) -> Row | None:
+        """Where the order states the limits would be met: a guess, not a verdict.
+
+        order: that of the two finest runs, or the declared one where there is but one.  seconds:
+        what one such run would take. It lies beyond the search's budget.
+        """
+        trials = sorted(self.trials.values(), key=lambda t: t.steps)
+        order, declared = None, self.declared_order(limits)
+        if len(trials) > 1:
+            order = order_between(trials[-2], trials[-1], limits)
+        elif trials and math.isfinite(trials[0].ratio(limits)):
+            order = declared
+        if order is None or not LIKE[0] * declared <= order <= LIKE[1] * declared:
+            return None  # the errors do not shrink at their order yet: the rest cannot be predicted
+        finest = trials[-1]
+        steps = finest.steps * finest.ratio(limits) ** (1.0 / order)
+        timestep = finest.timestep * finest.steps / steps
+        return {"timestep": timestep, "order": order, "seconds": steps * finest.seconds_per_step}
 
     @property
     def fewest_steps(self) -> int:

@@ -9,14 +9,7 @@ from omegadot.commands.choose.chooser import CaseChoice, Choice
 from omegadot.commands.choose.ranking import Place, Point, Spread, front, ranked
 from omegadot.commands.choose.requirements import ACCURACY, Requirements
 from omegadot.commands.choose.search import Edge
-from omegadot.commands.choose.trial import Trial
-from omegadot.commands.choose.trial_rows import (
-    Row,
-    missed_rows,
-    predicted_row,
-    spread_row,
-    trial_row,
-)
+from omegadot.commands.choose.trial import Row, Trial
 
 _NOTHING: Row = {"median": 0.0}
 Costs = dict[str, Spread]
@@ -89,7 +82,7 @@ class CaseDocument:
         seconds = self._seconds(candidate, found)
         factor = seconds.under(self._duration) if seconds and not broken else None
         nearest = found or candidate.nearest(limits)
-        missed = [] if found else missed_rows(nearest, limits)
+        missed = nearest.missed_rows(limits) if nearest and not found else []
         least = self._wanted.real_time_factor
         if found and seconds and factor and least and self._too_slow(seconds):
             missed.append(
@@ -97,6 +90,11 @@ class CaseDocument:
                 | {"found": factor.median, "factor": least / factor.median}
                 | {"timestep": found.timestep, "steps": found.steps}
             )
+
+        def row(trial: Trial | None) -> Row | None:
+            return trial.row(limits) if trial else None
+
+        per_step = self._per_step(candidate)
         return {
             "engine": candidate.engine.name,
             "version": candidate.engine.description.version,
@@ -106,17 +104,17 @@ class CaseDocument:
             "reason": candidate.reason,
             "rank": place.rank if place else None,
             "tied": bool(place and place.tied),
-            "found": None if broken else trial_row(found, limits),
-            "larger": trial_row(edge.failing, limits),
-            "passes_again": trial_row(edge.again, limits),
-            "nearest": trial_row(nearest, limits),
+            "found": row(None if broken else found),
+            "larger": row(edge.failing),
+            "passes_again": row(edge.again),
+            "nearest": row(nearest),
             "missed": missed,
-            "real_time_factor": spread_row(factor),
-            "time_per_step": spread_row(self._per_step(candidate)),
+            "real_time_factor": factor and factor.row(),
+            "time_per_step": per_step and per_step.row(),
             "memory": self._choice.memory.get(candidate.engine.name),
             "on_front": candidate.name in on_front,
-            "predicted": None if found or broken else predicted_row(candidate, limits),
-            "tried": [trial_row(trial, limits) for _, trial in sorted(candidate.trials.items())],
+            "predicted": None if found or broken else candidate.predicted(limits),
+            "tried": [trial.row(limits) for _, trial in sorted(candidate.trials.items())],
         }
 
     def _front(self, costs: Costs) -> set[str]:

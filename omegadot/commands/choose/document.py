@@ -7,7 +7,7 @@ from omegadot.commands.choose.chooser import Choice
 from omegadot.commands.choose.eligible import python_note
 from omegadot.commands.choose.ranking import ranked, total
 from omegadot.commands.choose.requirements import ACCURACY, Requirements
-from omegadot.commands.choose.trial_rows import Row, spread_row
+from omegadot.commands.choose.trial import Row
 
 SCHEMA = 1
 
@@ -66,7 +66,7 @@ def _everywhere(cases: list[CaseDocument]) -> list[Row]:
     names = [name for name in costs[0] if all(name in own for own in costs)]
     totals = {name: total([own[name] for own in costs]) for name in names}
     return [
-        {**vars(place), "seconds": spread_row(totals[place.candidate])}
+        {**vars(place), "seconds": totals[place.candidate].row()}
         | {"timesteps": [case.timestep(place.candidate) for case in cases]}
         for place in ranked(totals)
     ]

@@ -9,7 +9,7 @@ import numpy as np
 
 from omegadot.commands.choose.candidate import Candidate
 from omegadot.commands.choose.search import EDGE
-from omegadot.commands.choose.trial import Trial
+from omegadot.commands.choose.trial import Row, Trial
 from omegadot.gates.case import Sweep
 
 FEWEST_ROUNDS, MOST_ROUNDS = 7, 15
@@ -36,6 +36,11 @@ class Spread:
 
     def _quantile(self, share: float) -> float:
         return float(np.quantile(np.asarray(self.rounds), share))
+
+    def row(self) -> Row:
+        """Median, quartiles, and every round."""
+        quartiles, rounds = [*self.quartiles], [*self.rounds]
+        return {"median": self.median, "quartiles": quartiles, "rounds": rounds}
 
     def scaled(self, factor: float) -> Spread:
         """Every value multiplied."""

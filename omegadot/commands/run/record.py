@@ -6,6 +6,8 @@ import datetime
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from omegadot import __version__
 from omegadot.diagnosis.clusters import clusters_of_run
 from omegadot.diagnosis.diagnose import causes_of
@@ -55,21 +57,13 @@ def _engines(outcome: Outcome) -> list[dict[str, Any]]:
 
 
 def _scenario(case: Case) -> dict[str, Any]:
-    scenario, body, load = case.scenario, case.system.body, case.system.load
+    scenario = case.scenario
+    system = {**vars(case.system.body), **vars(case.system.load)}
     return {
         "name": scenario.name,
         "title": scenario.title,
         "shows": scenario.shows,
         "source": scenario.source,
         "definition": scenario.to_dict(),
-        "system": {
-            "mass": float(body.mass),
-            "center_of_mass": body.center_of_mass.tolist(),
-            "inertia": body.inertia.tolist(),
-            "gravity": load.gravity.tolist(),
-            "pivot": None if load.pivot is None else load.pivot.tolist(),
-            "damping": float(load.damping),
-            "torque_body": load.torque_body.tolist(),
-            "torque_world": load.torque_world.tolist(),
-        },
+        "system": {k: None if v is None else np.asarray(v).tolist() for k, v in system.items()},
     }

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from omegadot import __version__
-from omegadot.commands.versions.aims import Aims, conserves_kinetic_energy
+from omegadot.commands.versions.aims import conserves_kinetic_energy
 from omegadot.commands.versions.bisection import Bisection
 from omegadot.commands.versions.changes import (
     Change,
@@ -18,8 +18,8 @@ from omegadot.commands.versions.changes import (
     pace_changes,
     pace_of,
 )
+from omegadot.commands.versions.gallery import Gallery
 from omegadot.commands.versions.metric import Figure, Name, shown, title
-from omegadot.commands.versions.product import Product
 from omegadot.workers.machine import describe_machine
 
 SCHEMA = 1
@@ -27,11 +27,7 @@ Record = dict[str, Any]
 
 
 def record_of(
-    product: Product,
-    aims: Aims,
-    setup: str,
-    portraits: Sequence[Portrait],
-    bisection: Bisection | None,
+    gallery: Gallery, portraits: Sequence[Portrait], bisection: Bisection | None
 ) -> Record:
     """Versions, rising, with what changed from each to the next that could be measured."""
     steps = []
@@ -41,9 +37,9 @@ def record_of(
     return {
         "schema": SCHEMA,
         "omegadot": __version__,
-        "engine": product.engine,
-        "package": product.package,
-        "setup": setup,
+        "engine": gallery.product.engine,
+        "package": gallery.product.package,
+        "setup": gallery.setup,
         "machine": describe_machine(),
         "cases": [
             {
@@ -53,7 +49,7 @@ def record_of(
                 "duration": case.sweeps[0].timestep * case.sweeps[0].steps,
                 "energy_ratio": conserves_kinetic_energy(case),
             }
-            for case in aims.cases
+            for case in gallery.aims.cases
         ],
         "versions": [_version(portrait) for portrait in portraits],
         "steps": steps,
@@ -68,15 +64,9 @@ def _step(before: Portrait, after: Portrait, changes: Sequence[Change]) -> Recor
 
 def _version(portrait: Portrait) -> Record:
     paces = {name: pace_of(times) for name, times in portrait.speeds.items()}
+    left_out = ("has", "unreported", "speeds")
     return {
-        "version": portrait.version,
-        "outcome": portrait.outcome,
-        "reason": portrait.reason,
-        "origin": portrait.origin,
-        "reported_version": portrait.reported_version,
-        "integrators": portrait.integrators,
-        "faults": portrait.faults,
-        "troubles": portrait.troubles,
+        **{name: value for name, value in vars(portrait).items() if name not in left_out},
         "figures": {title(name): _figure(name, f) for name, f in portrait.figures.items()},
         "seconds_per_step": {name: vars(pace) for name, pace in paces.items() if pace},
     }

@@ -47,19 +47,12 @@ class Span:
 FEWEST = 2
 
 
-@dataclass(frozen=True)
-class RequestedReleases:
-    """The releases to look at, rising, and the interpreters that some of them have already."""
-
-    versions: list[str]
-    pythons: dict[str, str]
-
-
 def requested_releases(
     arguments: Sequence[str], releases: Callable[[Span], Sequence[str]]
-) -> RequestedReleases:
-    """The releases of ``VERSION``, ``LOW..HIGH`` and ``VERSION=PYTHON`` arguments.
+) -> tuple[list[str], dict[str, str]]:
+    """The releases of ``VERSION``, ``LOW..HIGH`` and ``VERSION=PYTHON`` arguments, rising.
 
+    With them the interpreters that some of the releases have already.
     releases: the published ones, looked up where a range needs them. Raises UsageError.
     """
     versions: list[str] = []
@@ -73,7 +66,14 @@ def requested_releases(
                     f"{argument}: {number!r} is no version; write 1.2.3 or 1.2.0..1.4.0."
                 )
         if own:
-            versions.append(_with_python(argument, version, dots, path))
+            if dots:
+                raise UsageError(
+                    f"{argument}: a range has no single interpreter; give VERSION=PYTHON."
+                )
+            if shutil.which(path) is None:
+                named = path or "nothing"
+                raise UsageError(f"{argument}: {named} is no program; give a Python interpreter.")
+            versions.append(version)
             pythons[version] = path
         elif dots:
             versions += _within(argument, Span(low, high), releases)
@@ -88,17 +88,7 @@ def requested_releases(
             f"at least two versions are needed to see a change, and {named} is named; "
             "write two or more, or a range such as 1.2.0..1.4.0."
         )
-    return RequestedReleases(found, pythons)
-
-
-def _with_python(argument: str, version: str, dots: str, path: str) -> str:
-    if dots:
-        raise UsageError(f"{argument}: a range has no single interpreter; give VERSION=PYTHON.")
-    if shutil.which(path) is None:
-        raise UsageError(
-            f"{argument}: {path or 'nothing'} is no program; give a Python interpreter."
-        )
-    return version
+    return found, pythons
 
 
 def _within(argument: str, span: Span, releases: Callable[[Span], Sequence[str]]) -> list[str]:

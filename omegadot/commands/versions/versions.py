@@ -72,27 +72,27 @@ def versions(
     except InstallError as error:
         raise UsageError(f"--installer {installer}: {error}.") from error
     environments = Environments(Path(cache or default_cache()), product, fetching)
-    requested = requested_releases(several(releases), environments.releases)
-    gallery = Gallery(product, aims, environments.place, requested.pythons, setup, timeout)
+    wanted, pythons = requested_releases(several(releases), environments.releases)
+    gallery = Gallery(product, aims, environments.place, pythons, setup, timeout)
     with reporting(progress) as report:
-        total = len(requested.versions) if bisect is None else None
+        total = len(wanted) if bisect is None else None
         count = Count(report, "making environments and starting engines", total)
 
         def seen(portrait: Portrait) -> None:
             count.advance(1, f"{portrait.version} {portrait.outcome}")
 
         if bisect is not None:
-            found = bisect_metric(bisect, gallery, requested.versions, seen)
+            found = bisect_metric(bisect, gallery, wanted, seen)
             portraits = found.portraits
         else:
             found, cores = None, (os.cpu_count() or 1) if jobs is None else jobs
-            portraits = gallery.measure_all(requested.versions, cores, seen)
+            portraits = gallery.measure_all(wanted, cores, seen)
             there = dict.fromkeys(name for portrait in portraits for name in portrait.has)
             check_integrators(aims, list(there), product.engine)
             if speed:
                 report(Progress("timing, release by release"))
                 gallery.time_all(portraits)
-    result = VersionsResult(record_of(product, aims, setup, portraits, found))
+    result = VersionsResult(record_of(gallery, portraits, found))
     if out is not None:
         result.save(out)
     return result
