@@ -125,16 +125,9 @@ def _option(param: Any) -> str:
         return f"{names} / {', '.join(param.secondary_opts)}"
     if param.is_flag or param.count:
         return names
-    choices = _choices(param)
-    return f"{names} {'|'.join(choices) if choices else _metavar(param)}"
-
-
-def _choices(param: Any) -> list[str]:
-    """The values of an option that has a fixed set of them, which is an Enum's here."""
-    default = param.default
-    if param.metavar is None and isinstance(default, Enum):
-        return [str(member.value) for member in type(default)]
-    return []
+    if param.metavar is None and isinstance(param.default, Enum):
+        return f"{names} {'|'.join(str(member.value) for member in type(param.default))}"
+    return f"{names} {_metavar(param)}"
 
 
 def _help(param: Any) -> str:
@@ -143,8 +136,5 @@ def _help(param: Any) -> str:
         default = default.value
     if _is_argument(param) or param.is_flag or default in (None, "", (), []):
         return text
-    return (
-        f"{text} [default: {default:g}]"
-        if isinstance(default, float)
-        else (f"{text} [default: {default}]")
-    )
+    shown = f"{default:g}" if isinstance(default, float) else default
+    return f"{text} [default: {shown}]"

@@ -15,8 +15,13 @@ from platformdirs import user_cache_path
 
 from omegadot.commands.versions.environments import default_cache
 from omegadot.commands.versions.metric import Figure, differ, matching, shown, unknown_metric
-from omegadot.commands.versions.product import product_of
-from omegadot.commands.versions.release import Span, requested_releases, rising, version_of
+from omegadot.commands.versions.release import (
+    Span,
+    product_of,
+    requested_releases,
+    rising,
+    version_of,
+)
 from omegadot.harness.usage import UsageError
 
 RELEASES = ("6.16.2", "6.16.10", "6.17.0", "6.17.1", "6.18.0rc1", "6.18.0", "6.18.0.post1", "7.0")

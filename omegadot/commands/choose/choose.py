@@ -88,9 +88,8 @@ def choose(
     }
     file = read_requirements(Path(requirements)) if requirements else {}
     wanted = merged(file, requested, str(requirements))
-    given: list[ScenarioLike] = several(scenarios)
     motion = Motion(
-        given,
+        several(scenarios),
         None if body is None else os.fspath(body),
         angular_velocity,
         orientation,
@@ -120,7 +119,8 @@ def choose(
         "versions": package_versions(),
     }
     result = ChooseResult(found, _answered(found, choice, request.choices))
-    found["exit_code"] = exit_code(result)
+    # As the command ends: something qualifies in every case or not, or an engine did not answer.
+    found["exit_code"] = 3 if not result.answered else 0 if result.qualifies else 1
     return result if out is None else replace(result, written=result.save(out))
 
 
@@ -130,13 +130,6 @@ def _choices(engines: Sequence[EngineLike], adapters: Sequence[EngineLike]) -> l
     if any(choice.name == "exact" and choice.required for choice in choices):
         raise UsageError("--engine exact: it is what the others are measured by; name another.")
     return [c for c in choices if c.name != "exact" and (c.required or c.name != "reference")]
-
-
-def exit_code(result: ChooseResult) -> int:
-    """0 something qualifies in every case, 1 not so, 3 an engine failed to answer or to start."""
-    if not result.answered:
-        return 3
-    return 0 if result.qualifies else 1
 
 
 def _answered(found: Mapping[str, Any], choice: Choice, choices: Sequence[EngineChoice]) -> bool:

@@ -107,7 +107,6 @@ def choose(
     arguments = given(locals())
     named = [*arguments.pop("scenarios", []), *arguments.pop("scenario", [])]
     from omegadot.commands.choose.choose import choose as choose_engine
-    from omegadot.commands.choose.choose import exit_code
     from omegadot.reports.choice.text import print_choice
     from omegadot.reports.record.run_json import dump_json
     from omegadot.reports.text.numbers import listed
@@ -119,4 +118,4 @@ def choose(
         print_choice(found.document)
         if found.written:
             typer.echo(f"Written to {listed([str(path) for path in found.written])}.")
-    raise typer.Exit(exit_code(found))
+    raise typer.Exit(found.document["exit_code"])

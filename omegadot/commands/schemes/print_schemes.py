@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.text import Text
 
 from omegadot.commands.schemes.schemes import SchemesResult
-from omegadot.commands.schemes.table import Table, remarks_of, tables_of
+from omegadot.commands.schemes.table import remarks_of, tables_of
 from omegadot.diagnosis.scheme_study.orders import COARSEST
 from omegadot.diagnosis.scheme_study.record import Record
 from omegadot.gates.verdicts import ORDER_TOLERANCE
@@ -55,34 +55,26 @@ def markdown_of(record: Record) -> str:
     probes = "\n".join(f"- *{probe['kind']}*: {probe['shows']}" for probe in record["probes"])
     coarsest, tolerance = f"{COARSEST:g}", f"{ORDER_TOLERANCE:g}"
     head = _HEAD.format(probes=probes, coarsest=coarsest, tolerance=tolerance)
-    parts = [head, *map(_table, tables_of(record))]
+    parts = [head]
+    for table in tables_of(record):
+        rows = (table.heads, ("---",) * len(table.heads), *table.rows)
+        cells = [[cell.replace("|", "\\|") for cell in row] for row in rows]
+        lines = "\n".join(f"| {' | '.join(row)} |" for row in cells)
+        parts.append(f"## {table.title}\n\n{lines}\n")
     remarks = remarks_of(record)
     if remarks:
         parts.append("## Remarks\n\n" + "\n".join(f"- {line}" for line in remarks) + "\n")
     return "\n".join(parts)
 
 
-def _table(table: Table) -> str:
-    rule = ("---",) * len(table.heads)
-    lines = [_line(row) for row in (table.heads, rule, *table.rows)]
-    return f"## {table.title}\n\n" + "\n".join(lines) + "\n"
-
-
-def _line(cells: tuple[str, ...]) -> str:
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
-
-
 def print_schemes(found: SchemesResult, form: str) -> None:
     """As "text", "json" or "markdown"."""
     if form == "json":
         typer.echo(json.dumps(found.record, indent=2))
-    elif form == "markdown":
+        return
+    if form == "markdown":
         typer.echo(markdown_of(found.record), nl=False)
-    else:
-        _print_text(found)
-
-
-def _print_text(found: SchemesResult) -> None:
+        return
     console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
     for table in tables_of(found.record):
         if table.rows:

@@ -20,8 +20,7 @@ from platformdirs import user_cache_path
 
 from omegadot.commands.other_python import worker_command
 from omegadot.commands.versions.installer import Installer, InstallError, python_of
-from omegadot.commands.versions.product import Product
-from omegadot.commands.versions.release import Span
+from omegadot.commands.versions.release import Product, Span
 from omegadot.harness.usage import UsageError
 from omegadot.reports.record.whole_file import write_whole
 

@@ -14,8 +14,7 @@ from omegadot.commands.versions.environments import Absent, Place
 from omegadot.commands.versions.figures import Wanted
 from omegadot.commands.versions.measure import Sitting
 from omegadot.commands.versions.metric import Name
-from omegadot.commands.versions.product import Product
-from omegadot.commands.versions.release import version_of
+from omegadot.commands.versions.release import Product, version_of
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load
 from omegadot.gates.case import Case
 from omegadot.workers.harness_end.pool import outcome_of

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from packaging.version import InvalidVersion, Version
 
-from omegadot.harness.usage import UsageError
+from omegadot.adapters.registry import BUILT_IN
+from omegadot.harness.usage import UsageError, nearest
 
 
 def version_of(text: str) -> Version | None:
@@ -101,3 +102,49 @@ def _within(argument: str, span: Span, releases: Callable[[Span], Sequence[str]]
         there = f"they go from {known[0]} to {known[-1]}" if known else "there are none"
         raise UsageError(f"{argument}: no release for this Python lies there; {there}.")
     return found
+
+
+ALWAYS = ("numpy", "scipy")  # what a worker needs besides its engine
+
+
+@dataclass(frozen=True)
+class Product:
+    """engine: its name here.  target: its adapter.  package: its name where it is installed from.
+
+    extras: what must be installed with some releases.
+    """
+
+    engine: str
+    target: str
+    package: str
+    extras: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def requirements(self, version: str) -> list[str]:
+        """What to install for a release."""
+        return [f"{self.package}=={version}", *ALWAYS, *self.extras.get(version, ())]
+
+
+# These releases accept any version of the two libraries, and are linked against older ones.
+_OLDER_LIBRARIES = ("cmeel-urdfdom<5", "cmeel-tinyxml2<11")
+_PINOCCHIO_EXTRAS = dict.fromkeys(("3.4.0", "3.7.0", "3.8.0", "3.9.0"), _OLDER_LIBRARIES)
+PRODUCTS = (
+    Product("mujoco", BUILT_IN["mujoco"], "mujoco"),
+    Product("dart", BUILT_IN["dart"], "dartpy"),
+    Product("pinocchio", BUILT_IN["pinocchio"], "pin", _PINOCCHIO_EXTRAS),
+)
+
+
+def product_of(argument: str, target: str = "", package: str = "") -> Product:
+    """The product that an engine's or a package's name stands for; with a target, one's own.
+
+    Raises UsageError.
+    """
+    if target:
+        return Product(argument, target, package or argument)
+    known = {name: product for product in PRODUCTS for name in (product.engine, product.package)}
+    if argument not in known:
+        raise UsageError(
+            f"{argument}: no such engine with releases; {nearest(argument, known)}, "
+            "or name an adapter of your own with --adapter FILE.py:Class."
+        )
+    return known[argument]

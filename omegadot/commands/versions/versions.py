@@ -15,9 +15,8 @@ from omegadot.commands.versions.changes import Portrait
 from omegadot.commands.versions.environments import Environments, default_cache
 from omegadot.commands.versions.gallery import Gallery
 from omegadot.commands.versions.installer import InstallError, installer_named
-from omegadot.commands.versions.product import product_of
 from omegadot.commands.versions.record import record_of
-from omegadot.commands.versions.release import requested_releases
+from omegadot.commands.versions.release import product_of, requested_releases
 from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import several
 from omegadot.harness.engine_target import EngineLike, target_of
