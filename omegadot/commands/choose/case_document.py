@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from omegadot.commands.choose.candidate import Candidate
 from omegadot.commands.choose.chooser import CaseChoice, Choice
 from omegadot.commands.choose.ranking import Place, Point, Spread, front, ranked
-from omegadot.commands.choose.requirements import ACCURACY, Requirements
+from omegadot.commands.choose.requirements import ACCURACY
 from omegadot.commands.choose.search import Edge
 from omegadot.commands.choose.trial import Row, Trial
 
@@ -18,8 +18,8 @@ Costs = dict[str, Spread]
 class CaseDocument:
     """One case's part of the document."""
 
-    def __init__(self, choice: Choice, found: CaseChoice, wanted: Requirements) -> None:
-        self._choice, self._found, self._wanted = choice, found, wanted
+    def __init__(self, choice: Choice, found: CaseChoice) -> None:
+        self._choice, self._found, self._wanted = choice, found, choice.requirements
         self._duration = found.case.scenario.run.duration
 
     def _per_step(self, candidate: Candidate) -> Spread | None:

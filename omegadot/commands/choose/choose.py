@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from omegadot import __version__
-from omegadot.commands.choose.chooser import Choice, Chooser
+from omegadot.commands.choose.chooser import Choice
 from omegadot.commands.choose.document import document
 from omegadot.commands.choose.motion import Motion, cases_of
 from omegadot.commands.choose.requirements import merged, read_requirements
@@ -106,10 +106,11 @@ def choose(
     if out is not None:
         check_choice_folder(Path(out))
     with reporting(progress) as report:
-        choice = Chooser(request, wanted, budget, report).execute()
+        choice = Choice(request, wanted, budget, report)
+        choice.execute()
     now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
     found = {
-        **document(choice, wanted),
+        **document(choice),
         "omegadot": __version__,
         "created": now.isoformat(),
         "command": list(command),
@@ -118,7 +119,7 @@ def choose(
         "machine": describe_machine(),
         "versions": package_versions(),
     }
-    result = ChooseResult(found, _answered(found, choice, request.choices))
+    result = ChooseResult(found, _answered(found, choice))
     # As the command ends: something qualifies in every case or not, or an engine did not answer.
     found["exit_code"] = 3 if not result.answered else 0 if result.qualifies else 1
     return result if out is None else replace(result, written=result.save(out))
@@ -132,12 +133,12 @@ def _choices(engines: Sequence[EngineLike], adapters: Sequence[EngineLike]) -> l
     return [c for c in choices if c.name != "exact" and (c.required or c.name != "reference")]
 
 
-def _answered(found: Mapping[str, Any], choice: Choice, choices: Sequence[EngineChoice]) -> bool:
+def _answered(found: Mapping[str, Any], choice: Choice) -> bool:
     """Whether every engine, the exact solution included, started where it had to and answered."""
-    required = {c.name for c in choices if c.required}
-    for missing, answer in choice.missing:
+    required = {c.name for c in choice.request.choices if c.required}
+    for missing, answer in choice.engines.missing:
         if answer.outcome != "not-installed" or missing.name in required:
             return False
     rows = [row for case in found["scenarios"] for row in case["candidates"]]
-    broken = choice.deaths or any(row["status"] in BROKEN for row in rows)
+    broken = found["worker_deaths"] or any(row["status"] in BROKEN for row in rows)
     return not (broken or any(case["reason"] for case in found["scenarios"]))

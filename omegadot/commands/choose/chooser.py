@@ -18,7 +18,7 @@ from omegadot.commands.progress import Count, Progress, Reporter
 from omegadot.gates.case import Case
 from omegadot.harness.engines import Engines
 from omegadot.harness.outcome import RunRequest
-from omegadot.harness.plan import Engine, EngineChoice
+from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import Array
 from omegadot.workers.harness_end.pool import outcome_of
 from omegadot.workers.harness_end.process import Answer
@@ -42,60 +42,51 @@ class CaseChoice:
 
 @dataclass
 class Choice:
-    """Everything that was found out.
+    """One choice, and everything that is found out for it.
 
-    refused: by engine, what it misses before it steps.  costs: seconds per step, by case and
-    candidate.  memory: bytes, by engine.
+    budget: s that one run of the search may take.  report: how far it is.  refused: by engine, what
+    it misses before it steps.  costs: seconds per step, by case and candidate.  memory: bytes, by
+    engine.
     """
-
-    cases: list[CaseChoice]
-    engines: list[Engine] = field(default_factory=list)
-    missing: list[tuple[EngineChoice, Answer]] = field(default_factory=list)
-    refused: dict[str, list[str]] = field(default_factory=dict)
-    costs: dict[Key, Spread] = field(default_factory=dict)
-    memory: dict[str, int | None] = field(default_factory=dict)
-    deaths: list[tuple[str, str]] = field(default_factory=list)
-
-
-@dataclass
-class Chooser:
-    """One choice. budget: s that one run of the search may take.  report: how far it is."""
 
     request: RunRequest
     requirements: Requirements
     budget: float
     report: Reporter
-    _one_at_a_time: threading.Lock = field(default_factory=threading.Lock)
+    refused: dict[str, list[str]] = field(default_factory=dict)
+    costs: dict[Key, Spread] = field(default_factory=dict)
+    memory: dict[str, int | None] = field(default_factory=dict)
 
-    def execute(self) -> Choice:
+    def __post_init__(self) -> None:
+        """Nothing has started yet."""
+        self.engines = Engines(self.request)
+        self.cases = [CaseChoice(case) for case in self.request.cases]
+        self._one_at_a_time = threading.Lock()
+
+    def execute(self) -> None:
         """Seek, then time. Ctrl-C ends the workers at once and is passed on."""
         self.report(Progress("starting the engines"))
-        self.engines = Engines(self.request)
-        choice = Choice([CaseChoice(case) for case in self.request.cases])
         try:
             self.engines.start()
-            choice.engines, choice.missing = self.engines.started, self.engines.missing
-            self._seek_all(choice)
-            self._time(choice)
+            self._seek_all()
+            self._time()
         except BaseException:
             self.engines.stop()
             raise
         finally:
             self.engines.finish()
-        choice.deaths = self.engines.deaths()
-        return choice
 
-    def _seek_all(self, choice: Choice) -> None:
-        for engine in choice.engines:
-            choice.refused[engine.name] = unmet(engine.description, self.requirements)
-        fit = [e for e in choice.engines if not choice.refused[e.name]]
-        total = sum(len(e.integrators) for e in fit) * len(choice.cases)
+    def _seek_all(self) -> None:
+        for engine in self.engines.started:
+            self.refused[engine.name] = unmet(engine.description, self.requirements)
+        fit = [e for e in self.engines.started if not self.refused[e.name]]
+        total = sum(len(e.integrators) for e in fit) * len(self.cases)
         self._count = Count(self.report, "seeking the largest steps", total)
-        rulers = [self.engines.submit("exact", partial(self._ruler, c)) for c in choice.cases]
+        rulers = [self.engines.submit("exact", partial(self._ruler, c)) for c in self.cases]
         for ruler in rulers:
             outcome_of(ruler)
         seeking: list[tuple[CaseChoice, Future[list[Candidate]]]] = []
-        for found in choice.cases:
+        for found in self.cases:
             if found.ruler is None or found.unverifiable:
                 continue
             for engine in fit:
@@ -139,17 +130,17 @@ class Chooser:
             self._count.advance()
         return found
 
-    def _time(self, choice: Choice) -> None:
+    def _time(self) -> None:
         """Time every candidate that qualifies, or would if one limit were another."""
         wanted: dict[Key, tuple[Candidate, Trial]] = {}
-        for found in choice.cases:
+        for found in self.cases:
             for candidate in found.candidates:
                 edges = [candidate.edge, *candidate.variants.values()]
                 trial = next((e.passing for e in edges if e.passing is not None), None)
                 if trial is not None and candidate.outcome == "ok":
                     wanted[found.case.name, candidate.name] = (candidate, trial)
         self._count.advance(0, "timing, engine by engine")
-        choice.costs = time_all(wanted)
-        for name in {candidate.engine.name for f in choice.cases for candidate in f.candidates}:
+        self.costs = time_all(wanted)
+        for name in {candidate.engine.name for f in self.cases for candidate in f.candidates}:
             with contextlib.suppress(KeyError):
-                choice.memory[name] = self.engines.drivers[name].worker.peak_memory()
+                self.memory[name] = self.engines.drivers[name].worker.peak_memory()

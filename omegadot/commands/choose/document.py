@@ -23,20 +23,20 @@ def requirements_row(wanted: Requirements) -> Row:
     return {"accuracy": limits, **rest}
 
 
-def engine_rows(choice: Choice, wanted: Requirements) -> list[Row]:
+def engine_rows(choice: Choice) -> list[Row]:
     """Every engine: what it is, or why it did not start."""
     rows: list[Row] = []
-    for engine in choice.engines:
+    for engine in choice.engines.started:
         own = engine.description
         rows.append(
             {"name": engine.name, "installed": True, "version": own.version}
             | {"licence": own.licence, "precision": own.precision, "reason": ""}
             | {"integrators": [vars(integrator) for integrator in own.integrators]}
             | {"refused": choice.refused.get(engine.name, [])}
-            | {"note": python_note(engine.name, wanted.python)}
+            | {"note": python_note(engine.name, choice.requirements.python)}
             | {"memory": choice.memory.get(engine.name)}
         )
-    for missing, answer in choice.missing:
+    for missing, answer in choice.engines.missing:
         rows.append(
             {"name": missing.name, "installed": False, "version": "", "integrators": []}
             | {"outcome": answer.outcome, "reason": answer.reason, "refused": [], "note": ""}
@@ -44,17 +44,17 @@ def engine_rows(choice: Choice, wanted: Requirements) -> list[Row]:
     return rows
 
 
-def document(choice: Choice, wanted: Requirements) -> Row:
+def document(choice: Choice) -> Row:
     """The whole choice: requirements, engines, cases, and what qualifies in every case."""
-    cases = [CaseDocument(choice, found, wanted) for found in choice.cases]
+    cases = [CaseDocument(choice, found) for found in choice.cases]
     return {
         "schema": SCHEMA,
         "kind": "choice",
-        "requirements": requirements_row(wanted),
-        "engines": engine_rows(choice, wanted),
+        "requirements": requirements_row(choice.requirements),
+        "engines": engine_rows(choice),
         "scenarios": [case.row() for case in cases],
         "everywhere": _everywhere(cases),
-        "worker_deaths": [{"engine": name, "how": how} for name, how in choice.deaths],
+        "worker_deaths": [{"engine": name, "how": how} for name, how in choice.engines.deaths()],
     }
 
 
