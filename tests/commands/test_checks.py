@@ -8,9 +8,17 @@ import pytest
 from command_line import FAULTY, WRONG, omegadot, quick_scenario
 
 from omegadot.commands.check.check import arguments_of
-from omegadot.commands.check.generate import REGISTRY, Registry, Subject, checks_of, coverage
 from omegadot.commands.check.judge import failure
-from omegadot.commands.check.result import Check, Result, Tally
+from omegadot.commands.check.result import (
+    REGISTRY,
+    Check,
+    Registry,
+    Result,
+    Subject,
+    Tally,
+    checks_of,
+    coverage,
+)
 from omegadot.commands.check.select import Arguments, select
 from omegadot.gates.rows import Row
 from omegadot.harness.arguments import case_of

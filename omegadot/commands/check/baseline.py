@@ -19,7 +19,7 @@ from omegadot.commands.check.baseline_file import (
     RunKey,
     ScenarioFigures,
 )
-from omegadot.commands.check.generate import Subject
+from omegadot.commands.check.result import Subject
 from omegadot.gates.rows import Row
 from omegadot.harness.outcome import EngineCase
 from omegadot.reports.text.numbers import short

@@ -8,8 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from omegadot.adapters.registry import registered
-from omegadot.commands.check.generate import Subject
-from omegadot.commands.check.result import Check, Result, Tally
+from omegadot.commands.check.result import Check, Result, Subject, Tally
 from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.suite import Suite
 from omegadot.commands.progress import Count, Reporting, reporting

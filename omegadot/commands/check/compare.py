@@ -12,8 +12,7 @@ from omegadot.commands.check.baseline_file import (
     RunKey,
     ScenarioFigures,
 )
-from omegadot.commands.check.generate import Subject
-from omegadot.commands.check.result import PASSED, Check, Result
+from omegadot.commands.check.result import PASSED, Check, Result, Subject
 from omegadot.gates.case import Case
 from omegadot.reports.text.numbers import short
 

@@ -16,8 +16,7 @@ from typing import Any
 from omegadot.adapters.registry import BUILT_IN
 from omegadot.commands.check.baseline_file import Baseline
 from omegadot.commands.check.compare import baseline_checks
-from omegadot.commands.check.generate import Subject, checks_of
-from omegadot.commands.check.result import Check, Result
+from omegadot.commands.check.result import Check, Result, Subject, checks_of
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of
 from omegadot.harness.plan import EngineChoice

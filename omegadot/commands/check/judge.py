@@ -6,8 +6,15 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from omegadot.commands.check.generate import GATES_OF_A_RUN, GATES_OF_A_SCENARIO
-from omegadot.commands.check.result import PASSED, Check, Result, error, skipped
+from omegadot.commands.check.result import (
+    GATES_OF_A_RUN,
+    GATES_OF_A_SCENARIO,
+    PASSED,
+    Check,
+    Result,
+    error,
+    skipped,
+)
 from omegadot.gates.exact_rows import exact_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.judge import JudgedRun

@@ -13,8 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.commands.check.check import CheckResult
-from omegadot.commands.check.generate import coverage
-from omegadot.commands.check.result import Check, Result, Verdict
+from omegadot.commands.check.result import Check, Result, Verdict, coverage
 from omegadot.commands.options import exit_code
 from omegadot.reports.text.numbers import times
 

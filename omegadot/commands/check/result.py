@@ -1,14 +1,21 @@
-"""A check and what comes of it, and how the checks of each engine ended."""
+"""Checks: which there are before any is made, what comes of each, and how an engine's ended."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from pydantic import TypeAdapter
+
+from omegadot.gates.case import Case
+from omegadot.harness.engines import Engines
+from omegadot.harness.plan import Engine
 from omegadot.reports.text.numbers import times
 
+GATES_OF_A_SCENARIO = ("model", "equation")
+GATES_OF_A_RUN = ("scheme", "invariants", "trajectory")
 Verdict = Literal["pass", "fail", "declared", "skip", "error"]
 
 
@@ -82,3 +89,80 @@ class Tally:
             for engine in dict.fromkeys(named)
             if set(self.verdicts.get(engine, ())) == {"skip"}
         ]
+
+
+@dataclass(frozen=True)
+class Subject:
+    """An engine that started. integrators: those to check.  declared: all that it has."""
+
+    name: str
+    version: str
+    integrators: tuple[str, ...]
+    declared: tuple[str, ...]
+
+    @property
+    def whole(self) -> Subject:
+        """The same engine with all of its integrators."""
+        return replace(self, integrators=self.declared)
+
+
+def _checks_of_case(subject: Subject, case: Case) -> Iterator[Check]:
+    yield from (Check(subject.name, case.name, gate) for gate in GATES_OF_A_SCENARIO)
+    if subject.name == "exact":  # it is not stepped, and has its invariants to show
+        yield Check(subject.name, case.name, "invariants")
+        return
+    for integrator in subject.integrators:
+        for sweep in case.sweeps:
+            for gate in GATES_OF_A_RUN:
+                yield Check(subject.name, case.name, gate, integrator, sweep.timestep)
+
+
+def checks_of(subjects: Iterable[Subject], cases: Sequence[Case]) -> list[Check]:
+    """Every check, scenario by scenario, so that each is run once and then done with."""
+    engines = list(subjects)
+    return [c for case in cases for subject in engines for c in _checks_of_case(subject, case)]
+
+
+def subject_of(engine: Engine) -> Subject:
+    """What is to be known of an engine that started."""
+    return Subject(
+        engine.name,
+        engine.description.version,
+        tuple(i.name for i in engine.integrators),
+        tuple(i.name for i in engine.description.integrators),
+    )
+
+
+@dataclass(frozen=True)
+class Registry:
+    """Engines that started, and those that did not, with outcome and reason."""
+
+    subjects: tuple[Subject, ...]
+    missing: dict[str, tuple[str, str]]
+
+    @classmethod
+    def of(cls, engines: Engines) -> Registry:
+        """The registry of engines that have been started."""
+        subjects = tuple(subject_of(engine) for engine in engines.started)
+        missing = {choice.name: (a.outcome, a.reason) for choice, a in engines.missing}
+        return cls(subjects, missing)
+
+
+REGISTRY = TypeAdapter(Registry)
+"""Makes a registry a text, and again a registry of the text in another process."""
+
+
+def coverage(subjects: Sequence[Subject], checks: Sequence[Check]) -> list[str]:
+    """Engine, version, and how many scenarios, gates and checks; a line an engine."""
+    lines = []
+    for subject in subjects:
+        own = [check for check in checks if check.engine == subject.name]
+        scenarios = len({check.scenario for check in own if check.scenario})
+        gates = len({check.gate for check in own if check.scenario})
+        chosen = set(subject.integrators) != set(subject.declared)
+        name = f"{subject.name} {subject.version}" + (
+            f" ({', '.join(subject.integrators)})" if chosen else ""
+        )
+        covered = f"{times(scenarios, 'scenario')} x {times(gates, 'gate')}"
+        lines.append(f"{name}: {covered}, {times(len(own), 'check')}")
+    return lines

@@ -10,9 +10,8 @@ from omegadot.commands.check.baseline_file import ScenarioFigures, read_baseline
 from omegadot.commands.check.compare import GATE as BASELINE
 from omegadot.commands.check.compare import baseline_checks, compare
 from omegadot.commands.check.exceptions import matches_nothing, unmatched, with_exceptions
-from omegadot.commands.check.generate import Registry, checks_of
 from omegadot.commands.check.judge import results_of
-from omegadot.commands.check.result import Check, Result, error, skipped
+from omegadot.commands.check.result import Check, Registry, Result, checks_of, error, skipped
 from omegadot.commands.check.select import Selection
 from omegadot.diagnosis.diagnose import causes_of
 from omegadot.gates.case import Case

@@ -12,8 +12,7 @@ from omegadot.commands.check.exceptions import (
     no_longer_fails,
     unmatched,
 )
-from omegadot.commands.check.generate import subject_of
-from omegadot.commands.check.result import Check
+from omegadot.commands.check.result import Check, subject_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.outcome import EngineCase, Outcome
