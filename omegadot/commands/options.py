@@ -63,13 +63,15 @@ Jobs = Annotated[
 def given(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """A command's ``locals()`` for the function behind it, which has the same arguments.
 
-    What was not typed is left out, so that the function's own default holds; so is the format.
+    What was not typed is left out, so that the function's own default holds; so is the format. How
+    far the command is goes to a terminal.
     """
-    return {
+    found = {
         name: value.value if isinstance(value, StrEnum) else value
         for name, value in arguments.items()
         if value is not None and name != "output"
     }
+    return {**found, "progress": on_a_terminal()}
 
 
 def exit_code(passed: bool, answered: bool) -> int:

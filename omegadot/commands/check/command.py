@@ -6,19 +6,8 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import (
-    Exceptions,
-    Format,
-    Integrators,
-    Output,
-    Text,
-    Texts,
-    Timeout,
-    exit_code,
-    given,
-    on_a_terminal,
-    option,
-)
+from omegadot.commands import options
+from omegadot.commands.options import Text, Texts, option
 
 
 def check(
@@ -34,8 +23,8 @@ def check(
             "--scenario",
         ),
     ] = None,
-    integrators: Integrators = None,
-    exceptions: Exceptions = None,
+    integrators: options.Integrators = None,
+    exceptions: options.Exceptions = None,
     baseline: Annotated[Text, option("DIR", "Compare with the values stored in DIR.")] = None,
     update_baseline: Annotated[
         bool,
@@ -43,21 +32,21 @@ def check(
             "--update-baseline", help="Store the values in --baseline DIR instead of comparing."
         ),
     ] = False,
-    timeout: Timeout = 60.0,
-    output: Output = Format.text,
+    timeout: options.Timeout = 60.0,
+    output: options.Output = options.Format.text,
 ) -> None:
     """Check one engine, built in or your own, at every gate.
 
     Exit codes: 0 every check holds, 1 one fails or all were skipped, 2 wrong usage or input, 3 the
     engine crashed, timed out or could not be started.
     """
-    arguments = given(locals())
+    arguments = options.given(locals())
     from omegadot.commands.check.check import check as check_engine
     from omegadot.commands.check.print_checks import print_checks, print_json
 
-    found = check_engine(**arguments, progress=on_a_terminal())
-    if output is Format.json:
+    found = check_engine(**arguments)
+    if output is options.Format.json:
         print_json(found)
     else:
         print_checks(found)
-    raise typer.Exit(exit_code(found.passed, found.answered))
+    raise typer.Exit(options.exit_code(found.passed, found.answered))

@@ -6,12 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from omegadot.commands.check.baseline import Change, changes
-from omegadot.commands.check.baseline_file import (
-    Baseline,
-    Figures,
-    RunKey,
-    ScenarioFigures,
-)
+from omegadot.commands.check.baseline_file import Baseline, Figures, RunKey, ScenarioFigures
 from omegadot.commands.check.result import PASSED, Check, Result, Subject
 from omegadot.gates.case import Case
 from omegadot.reports.text.numbers import short

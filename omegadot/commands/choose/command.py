@@ -7,19 +7,8 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import (
-    Adapters,
-    Format,
-    Jobs,
-    Output,
-    Text,
-    Texts,
-    Timeout,
-    command_line,
-    given,
-    on_a_terminal,
-    option,
-)
+from omegadot.commands import options
+from omegadot.commands.options import Text, Texts, option
 
 
 def choose(
@@ -87,32 +76,32 @@ def choose(
     engines: Annotated[
         Texts, option("NAME[:INTEGRATOR]", "Consider only these engines; repeatable.", "--engine")
     ] = None,
-    adapters: Adapters = None,
+    adapters: options.Adapters = None,
     budget: Annotated[
         float, option("S", "Time limit in s for one run of the search.", min=0.01)
     ] = 2.0,
-    timeout: Timeout = 60.0,
-    jobs: Jobs = None,
+    timeout: options.Timeout = 60.0,
+    jobs: options.Jobs = None,
     out: Annotated[
         Path | None,
         option("DIR", "Folder for the choice; in a run's folder it becomes part of its report."),
     ] = None,
-    output: Output = Format.text,
+    output: options.Output = options.Format.text,
 ) -> None:
     """Find the engines, integrators and largest steps that meet requirements, cheapest first.
 
     Exit codes: 0 something qualifies, 1 nothing does, 2 wrong usage or input, 3 an engine crashed,
     timed out or could not be started.
     """
-    arguments = given(locals())
+    arguments = options.given(locals())
     named = [*arguments.pop("scenarios", []), *arguments.pop("scenario", [])]
     from omegadot.commands.choose.choose import choose as choose_engine
     from omegadot.reports.choice.text import print_choice
     from omegadot.reports.record.run_json import dump_json
     from omegadot.reports.text.numbers import listed
 
-    found = choose_engine(named, **arguments, command=command_line(), progress=on_a_terminal())
-    if output is Format.json:
+    found = choose_engine(named, **arguments, command=options.command_line())
+    if output is options.Format.json:
         typer.echo(dump_json(found.document), nl=False)
     else:
         print_choice(found.document)

@@ -8,20 +8,8 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import (
-    Adapters,
-    Exceptions,
-    Format,
-    Jobs,
-    Output,
-    Setup,
-    Texts,
-    Timeout,
-    command_line,
-    given,
-    on_a_terminal,
-    option,
-)
+from omegadot.commands import options
+from omegadot.commands.options import Texts, option
 
 
 def run(
@@ -48,15 +36,15 @@ def run(
         "omegadot-run"
     ),
     setup: Annotated[
-        Setup,
+        options.Setup,
         typer.Option(
             help="physics: defaults that disturb the motion are off; as-shipped: all defaults."
         ),
-    ] = Setup.physics,
-    adapters: Adapters = None,
-    exceptions: Exceptions = None,
-    timeout: Timeout = 60.0,
-    jobs: Jobs = None,
+    ] = options.Setup.physics,
+    adapters: options.Adapters = None,
+    exceptions: options.Exceptions = None,
+    timeout: options.Timeout = 60.0,
+    jobs: options.Jobs = None,
     memory: Annotated[
         float | None,
         option(
@@ -64,14 +52,14 @@ def run(
         ),
     ] = None,
     seed: Annotated[int, option("INTEGER", "Seed of the random states.", min=0)] = 0,
-    output: Output = Format.text,
+    output: options.Output = options.Format.text,
 ) -> None:
     """Run scenarios on engines, judge them, and write a record with its report.
 
     Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
     timed out or could not be started.
     """
-    arguments = given(locals())
+    arguments = options.given(locals())
     from omegadot.commands.run.print_run import exit_code, print_json, print_text
     from omegadot.commands.run.result import RunInterrupted
     from omegadot.commands.run.run import run as run_scenarios
@@ -79,10 +67,10 @@ def run(
     if memory is not None and not _memory_is_limited():
         typer.echo("omegadot: --memory is ignored: this system keeps no such limit.", err=True)
     try:
-        result = run_scenarios(**arguments, command=command_line(), progress=on_a_terminal())
+        result = run_scenarios(**arguments, command=options.command_line())
     except RunInterrupted as interrupted:
         result = interrupted.result
-    if output is Format.json:
+    if output is options.Format.json:
         print_json(result)
     else:
         print_text(result)

@@ -6,15 +6,8 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import (
-    Adapters,
-    PageFormat,
-    PageOutput,
-    Texts,
-    exit_code,
-    on_a_terminal,
-    option,
-)
+from omegadot.commands import options
+from omegadot.commands.options import Texts, option
 
 
 def schemes(
@@ -26,7 +19,7 @@ def schemes(
             "--engine",
         ),
     ] = None,
-    adapters: Adapters = None,
+    adapters: options.Adapters = None,
     python: Annotated[
         Texts,
         option(
@@ -35,22 +28,19 @@ def schemes(
             "NumPy and SciPy; repeatable.",
         ),
     ] = None,
-    output: PageOutput = PageFormat.text,
+    output: options.PageOutput = options.PageFormat.text,
 ) -> None:
     """Identify the scheme of every integrator by its steps, with its orders and defects.
 
     Exit codes: 0 all is as declared, 1 something is not, 2 wrong usage, 3 an engine crashed,
     timed out or could not be started.
     """
+    arguments = options.given(locals())
     from omegadot.commands.other_python import interpreters
     from omegadot.commands.schemes.print_schemes import print_schemes
     from omegadot.commands.schemes.schemes import schemes as study_schemes
 
-    found = study_schemes(
-        engines or (),
-        adapters=adapters or (),
-        pythons=interpreters(python or []),
-        progress=on_a_terminal(),
-    )
+    pythons = interpreters(arguments.pop("python", []))
+    found = study_schemes(**arguments, pythons=pythons)
     print_schemes(found, output.value)
-    raise typer.Exit(exit_code(found.passed, found.answered))
+    raise typer.Exit(options.exit_code(found.passed, found.answered))

@@ -11,14 +11,7 @@ from packaging.version import Version
 from omegadot.commands.versions.changes import Change, Portrait, changes_between
 from omegadot.commands.versions.figures import Wanted
 from omegadot.commands.versions.gallery import Gallery
-from omegadot.commands.versions.metric import (
-    KINDS,
-    Name,
-    matching,
-    terms_of,
-    title,
-    unknown_metric,
-)
+from omegadot.commands.versions.metric import KINDS, Name, matching, terms_of, title, unknown_metric
 from omegadot.diagnosis.scheme_study.probes import PROBES
 from omegadot.gates.measured_run import CHANNELS
 from omegadot.harness.usage import UsageError, nearest

@@ -9,19 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from omegadot.commands.options import (
-    Integrators,
-    PageFormat,
-    PageOutput,
-    Setup,
-    Text,
-    Texts,
-    Timeout,
-    exit_code,
-    given,
-    on_a_terminal,
-    option,
-)
+from omegadot.commands import options
+from omegadot.commands.options import Setup, Text, Texts, option
 
 if TYPE_CHECKING:
     from omegadot.commands.versions.result import VersionsResult
@@ -50,13 +39,13 @@ def versions(
     scenarios: Annotated[
         Texts, option("NAME", "A built-in's name, or a path; repeatable.", "--scenario")
     ] = None,
-    integrators: Integrators = None,
+    integrators: options.Integrators = None,
     timestep: Annotated[
         float | None, option("S", "A time step in s instead of each scenario's middle one.")
     ] = None,
     bisect: Annotated[Text, option("METRIC", "Find the release in which METRIC changed.")] = None,
     out: Annotated[Path | None, option("DIR", "Write versions.json and versions.html.")] = None,
-    output: PageOutput = PageFormat.text,
+    output: options.PageOutput = options.PageFormat.text,
     cache: Annotated[Path | None, option("DIR", "Folder of the environments.")] = None,
     offline: Annotated[
         bool, typer.Option("--offline", help="Use only environments in the cache.")
@@ -70,7 +59,7 @@ def versions(
         Text, option("NAME", "With --adapter: the package whose releases are installed.")
     ] = None,
     speed: Annotated[bool, typer.Option(help="Measure the time per step.")] = True,
-    timeout: Timeout = 60.0,
+    timeout: options.Timeout = 60.0,
     jobs: Annotated[
         int | None,
         option("N", "Number of versions measured at the same time. Default: all cores.", min=1),
@@ -81,22 +70,22 @@ def versions(
     Exit codes: 0 done, whatever changed, 1 some version is not as its adapter declares, or the
     ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be measured.
     """
-    arguments = {"releases": [], **given(locals())}
+    arguments = {"releases": [], **options.given(locals())}
     from omegadot.commands.versions.versions import versions as compare_versions
 
-    found = compare_versions(**arguments, progress=on_a_terminal())
+    found = compare_versions(**arguments)
     print_versions(found, output)
-    raise typer.Exit(exit_code(found.passed, found.comparable))
+    raise typer.Exit(options.exit_code(found.passed, found.comparable))
 
 
-def print_versions(found: VersionsResult, output: PageFormat) -> None:
+def print_versions(found: VersionsResult, output: options.PageFormat) -> None:
     """Print what was found, as text, JSON or Markdown."""
     from omegadot.reports.versions.sheet import sheet_of
     from omegadot.reports.versions.text import markdown_of, print_sheet
 
-    if output is PageFormat.json:
+    if output is options.PageFormat.json:
         typer.echo(json.dumps(found.record, indent=2))
-    elif output is PageFormat.markdown:
+    elif output is options.PageFormat.markdown:
         typer.echo(markdown_of(sheet_of(found.record)), nl=False)
     else:
         print_sheet(sheet_of(found.record))

@@ -6,13 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from omegadot.adapters.protocol import Description, Integrator
-from omegadot.commands.versions.aims import (
-    Aims,
-    drift_names,
-    equation_names,
-    names_of,
-    probe_names,
-)
+from omegadot.commands.versions.aims import Aims, drift_names, equation_names, names_of, probe_names
 from omegadot.commands.versions.changes import Portrait
 from omegadot.commands.versions.figures import (
     Figures,
