@@ -56,12 +56,6 @@ def _grouped(results: Mapping[Check, Result], verdict: str) -> dict[str, list[Ch
     return found
 
 
-def _counts(results: Mapping[Check, Result]) -> str:
-    counts = Counter(result.verdict for result in results.values())
-    parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
-    return f"{times(len(results), 'check')}: {parts}." if parts else "There is nothing to check."
-
-
 def print_json(found: CheckResult) -> None:
     """Every check and its result, for machines."""
     counts = Counter(result.verdict for result in found.by_check.values())
@@ -93,4 +87,7 @@ def print_checks(found: CheckResult) -> None:
         console.print(Text(f"skip  {times(len(checks), 'check')}: {reason}", "dim"))
     for line in (*found.only_skipped, *(f"Baseline written: {path}" for path in found.baselines)):
         console.print(Text(line))
-    console.print(Text(_counts(results), "bold"))
+    counts = Counter(result.verdict for result in results.values())
+    parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
+    total = f"{times(len(results), 'check')}: {parts}."
+    console.print(Text(total if parts else "There is nothing to check.", "bold"))

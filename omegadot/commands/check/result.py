@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import Literal
 
 from pydantic import TypeAdapter
 
 from omegadot.gates.case import Case
-from omegadot.harness.engines import Engines
 from omegadot.harness.plan import Engine
 from omegadot.reports.text.numbers import times
 
@@ -106,21 +106,18 @@ class Subject:
         return replace(self, integrators=self.declared)
 
 
-def _checks_of_case(subject: Subject, case: Case) -> Iterator[Check]:
-    yield from (Check(subject.name, case.name, gate) for gate in GATES_OF_A_SCENARIO)
-    if subject.name == "exact":  # it is not stepped, and has its invariants to show
-        yield Check(subject.name, case.name, "invariants")
-        return
-    for integrator in subject.integrators:
-        for sweep in case.sweeps:
-            for gate in GATES_OF_A_RUN:
-                yield Check(subject.name, case.name, gate, integrator, sweep.timestep)
-
-
 def checks_of(subjects: Iterable[Subject], cases: Sequence[Case]) -> list[Check]:
     """Every check, scenario by scenario, so that each is run once and then done with."""
-    engines = list(subjects)
-    return [c for case in cases for subject in engines for c in _checks_of_case(subject, case)]
+    found = []
+    for case, subject in product(cases, subjects):
+        where = (subject.name, case.name)
+        found += [Check(*where, gate) for gate in GATES_OF_A_SCENARIO]
+        if subject.name == "exact":  # it is not stepped, and has its invariants to show
+            found.append(Check(*where, "invariants"))
+            continue
+        runs = product(subject.integrators, case.sweeps, GATES_OF_A_RUN)
+        found += [Check(*where, gate, name, sweep.timestep) for name, sweep, gate in runs]
+    return found
 
 
 def subject_of(engine: Engine) -> Subject:
@@ -139,13 +136,6 @@ class Registry:
 
     subjects: tuple[Subject, ...]
     missing: dict[str, tuple[str, str]]
-
-    @classmethod
-    def of(cls, engines: Engines) -> Registry:
-        """The registry of engines that have been started."""
-        subjects = tuple(subject_of(engine) for engine in engines.started)
-        missing = {choice.name: (a.outcome, a.reason) for choice, a in engines.missing}
-        return cls(subjects, missing)
 
 
 REGISTRY = TypeAdapter(Registry)

@@ -11,7 +11,15 @@ from omegadot.commands.check.compare import GATE as BASELINE
 from omegadot.commands.check.compare import baseline_checks, compare
 from omegadot.commands.check.exceptions import matches_nothing, unmatched, with_exceptions
 from omegadot.commands.check.judge import results_of
-from omegadot.commands.check.result import Check, Registry, Result, checks_of, error, skipped
+from omegadot.commands.check.result import (
+    Check,
+    Registry,
+    Result,
+    checks_of,
+    error,
+    skipped,
+    subject_of,
+)
 from omegadot.commands.check.select import Selection
 from omegadot.diagnosis.diagnose import causes_of
 from omegadot.gates.case import Case
@@ -33,6 +41,10 @@ class Suite:
         self.selection = selection
         self._runner: Runner | None = None
         self.registry = registry or self._start()
+        # Engines that did not start: outcome and reason.
+        text = "no engine of this name is known; install the package that announces it"
+        unknown = dict.fromkeys(selection.unknown, ("not-installed", text))
+        self._absent = {**self.registry.missing, **unknown}
         subjects, folder, cases = self.registry.subjects, selection.baseline, selection.cases
         self._versions = {s.name: s.version for s in subjects}
         self._stored = {s.name: read_baseline(folder, s.name) if folder else None for s in subjects}
@@ -56,7 +68,8 @@ class Suite:
             runner.engines.finish()
             raise
         self._runner = runner
-        return Registry.of(runner.engines)
+        missing = {c.name: (a.outcome, a.reason) for c, a in runner.engines.missing}
+        return Registry(tuple(map(subject_of, runner.engines.started)), missing)
 
     def store(self) -> list[Path]:
         """The files written, where baselines are to be updated: of every engine with figures."""
@@ -77,9 +90,8 @@ class Suite:
             self._runner = None
 
     def _generate(self) -> list[Check]:
-        names = [choice.name for choice in self.selection.choices]
-        absent = [n for n in (*names, *self.selection.unknown) if n in self._absences()]
-        found = [Check(name, "", START) for name in absent]
+        names = [*(choice.name for choice in self.selection.choices), *self.selection.unknown]
+        found = [Check(name, "", START) for name in names if name in self._absent]
         found += [Check(name, "", EXCEPTIONS) for name, left in self._unmatched.items() if left]
         comparing = self.selection.baseline and not self.selection.arguments.update
         for case in self.selection.cases:
@@ -88,28 +100,19 @@ class Suite:
                 found += baseline_checks(subject, [case], self._stored[subject.name])
         return found
 
-    def _absences(self) -> dict[str, tuple[str, str]]:
-        """Engines that did not start: outcome and reason."""
-        text = "no engine of this name is known; install the package that announces it"
-        unknown = dict.fromkeys(self.selection.unknown, ("not-installed", text))
-        return {**self.registry.missing, **unknown}
-
     def result_of(self, check: Check) -> Result:
         """The result of one of the checks, from the one run of its scenario."""
         if check.gate == START:
-            return self._of_start(check)
+            outcome, reason = self._absent[check.engine]
+            required = check.engine in self.selection.arguments.required
+            if outcome in ("not-installed", "unsupported") and not required:
+                return skipped(f"{outcome}: {reason}")
+            return error(outcome, reason)
         if check.gate == EXCEPTIONS:
             return Result("fail", " ".join(map(matches_nothing, self._unmatched[check.engine])))
         if check not in self._results:
             self._run(next(c for c in self.selection.cases if c.name == check.scenario))
         return with_exceptions(check, self._results[check], self.selection.exceptions)
-
-    def _of_start(self, check: Check) -> Result:
-        outcome, reason = self._absences()[check.engine]
-        required = check.engine in self.selection.arguments.required
-        if outcome in ("not-installed", "unsupported") and not required:
-            return skipped(f"{outcome}: {reason}")
-        return error(outcome, reason)
 
     def _judge(self, case: Case) -> JudgedCase:
         if self._runner is None:

@@ -6,21 +6,10 @@ from omegadot.commands.choose.case_document import CaseDocument
 from omegadot.commands.choose.chooser import Choice
 from omegadot.commands.choose.eligible import python_note
 from omegadot.commands.choose.ranking import ranked, total
-from omegadot.commands.choose.requirements import ACCURACY, Requirements
+from omegadot.commands.choose.requirements import ACCURACY
 from omegadot.commands.choose.trial import Row
 
 SCHEMA = 1
-
-
-def requirements_row(wanted: Requirements) -> Row:
-    """What was requested, limits in SI next to their text as given."""
-    limits = [
-        {"requirement": key, "limit": limit, "unit": ACCURACY[key][1]}
-        | {"requested": wanted.requested[key]}
-        for key, limit in wanted.limits.items()
-    ]
-    rest = {k: v for k, v in vars(wanted).items() if k not in ("limits", "requested")}
-    return {"accuracy": limits, **rest}
 
 
 def engine_rows(choice: Choice) -> list[Row]:
@@ -47,10 +36,17 @@ def engine_rows(choice: Choice) -> list[Row]:
 def document(choice: Choice) -> Row:
     """The whole choice: requirements, engines, cases, and what qualifies in every case."""
     cases = [CaseDocument(choice, found) for found in choice.cases]
+    wanted = choice.requirements
+    accuracy = [  # limits in SI, next to their text as given
+        {"requirement": key, "limit": limit, "unit": ACCURACY[key][1]}
+        | {"requested": wanted.requested[key]}
+        for key, limit in wanted.limits.items()
+    ]
+    others = {k: v for k, v in vars(wanted).items() if k not in ("limits", "requested")}
     return {
         "schema": SCHEMA,
         "kind": "choice",
-        "requirements": requirements_row(choice.requirements),
+        "requirements": {"accuracy": accuracy, **others},
         "engines": engine_rows(choice),
         "scenarios": [case.row() for case in cases],
         "everywhere": _everywhere(cases),
