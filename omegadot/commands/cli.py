@@ -14,15 +14,13 @@ from omegadot.commands.choose.command import choose
 from omegadot.commands.compare.command import compare
 from omegadot.commands.engines.command import engines
 from omegadot.commands.faults.command import faults
-from omegadot.commands.options import PlainHelp
+from omegadot.commands.options import INTERRUPTED, PlainHelp
 from omegadot.commands.report.command import report
 from omegadot.commands.run.command import run
 from omegadot.commands.scenarios.command import scenarios
 from omegadot.commands.schemes.command import schemes
 from omegadot.commands.score.command import score
 from omegadot.commands.versions.command import versions
-
-INTERRUPTED = 130  # as shells count: 128 + SIGINT
 
 app = typer.Typer(
     name="omegadot",

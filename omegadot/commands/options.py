@@ -74,6 +74,9 @@ def given(arguments: Mapping[str, Any]) -> dict[str, Any]:
     return {**found, "progress": on_a_terminal()}
 
 
+INTERRUPTED = 130  # as shells count: 128 + SIGINT
+
+
 def exit_code(passed: bool, answered: bool) -> int:
     """0 everything holds, 1 something does not, 3 an engine failed to answer or to start."""
     if not answered:

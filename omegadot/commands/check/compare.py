@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from omegadot.commands.check.baseline import Change, changes
+from omegadot.commands.check.baseline import OF_A_SCENARIO, Change, changes
 from omegadot.commands.check.baseline_file import Baseline, Figures, RunKey, ScenarioFigures
 from omegadot.commands.check.result import PASSED, Check, Result, Subject
 from omegadot.gates.case import Case
@@ -14,10 +14,6 @@ from omegadot.reports.text.numbers import short
 # Another order of accuracy moves an error by more than this; another setting seldom does.
 ANOTHER_INTEGRATOR = 10.0
 TRANSLATION = {"position", "linear_momentum", "energy"}
-
-
-def _channel(change: Change) -> str:
-    return change.name.split()[0]
 
 
 def _of_a_scenario(found: Sequence[Change]) -> str:
@@ -33,7 +29,7 @@ def _of_a_scenario(found: Sequence[Change]) -> str:
 
 
 def _of_a_run(found: Sequence[Change]) -> str:
-    by_channel = {_channel(change): change for change in reversed(found)}
+    by_channel = {change.name.split()[0]: change for change in reversed(found)}
     if set(by_channel) <= TRANSLATION:
         return (
             "the translation is stepped otherwise (at the origin or the centre of mass, or with "
@@ -57,7 +53,7 @@ def meaning(was: Figures, now: Figures, found: Sequence[Change], same_version: b
         message = (
             f"the integrator changed: declared {was.scheme} then, {now.scheme or 'nothing'} now"
         )
-    elif any(_channel(change) in ("model", "equation") for change in found):
+    elif any(change.name.split()[0] in OF_A_SCENARIO for change in found):
         message = _of_a_scenario(found)
     else:
         message = _of_a_run(found)

@@ -146,8 +146,5 @@ def unmatched(
     # All that there may be: its integrators, on these scenarios and on all built-in ones.
     scenarios = [case.scenario for case in cases] + [load_builtin(n) for n in builtin_names()]
     whole = [*cases, *(case_of(scenario, ()) for scenario in scenarios)]
-    known = [
-        *checks_of([subject.whole], whole),
-        *baseline_checks(subject.whole, whole, stored),
-    ]
+    known = [*checks_of([subject.whole], whole), *baseline_checks(subject.whole, whole, stored)]
     return [e for e in own if not any(e.matches(check) for check in known)]

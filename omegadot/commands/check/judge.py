@@ -79,22 +79,13 @@ def _of_rows(rows: Sequence[Row], cause: Callable[[], str], unjudged: str) -> Re
     return skipped(f"not judged: {next(iter(notes), unjudged)}")
 
 
-def _answered(answers: Sequence[Answer]) -> Result | None:
-    """The first answer that is a failure, or the refusal where every answer is one."""
+def _of_scenario(found: EngineCase, gate: str, cause: Callable[[], str]) -> Result:
+    answers: list[Answer] = [getattr(found.result, name) for name in REQUESTED[gate]]
     for answer in answers:
         if answer.outcome not in ("ok", "unsupported"):
             return error(answer.outcome, answer.reason)
-    refused = [answer for answer in answers if answer.outcome == "unsupported"]
-    if len(refused) == len(answers):
-        return skipped(f"unsupported: {refused[0].reason}")
-    return None
-
-
-def _of_scenario(found: EngineCase, gate: str, cause: Callable[[], str]) -> Result:
-    answers = [getattr(found.result, name) for name in REQUESTED[gate]]
-    refused = _answered(answers)
-    if refused is not None:
-        return refused
+    if not any(answer.ok for answer in answers):
+        return skipped(f"unsupported: {answers[0].reason}")
     rows = [row for row in found.shared if row.gate == gate]
     return _of_rows(rows, cause, "the engine gave nothing to judge")
 

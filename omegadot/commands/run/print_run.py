@@ -13,8 +13,6 @@ from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.text.terminal import print_summary
 
-INTERRUPTED = 130  # as shells count: 128 + SIGINT
-
 
 def exit_code(result: RunResult) -> int:
     """0 every gate holds, 1 a gate fails or a declared exception does not hold any more, 3 an
@@ -23,7 +21,7 @@ def exit_code(result: RunResult) -> int:
     An engine that is not installed counts only where it was given by name.
     """
     if not result.complete:
-        return INTERRUPTED
+        return options.INTERRUPTED
     return options.exit_code(result.passed, result.answered)
 
 

@@ -24,6 +24,9 @@ from omegadot.commands.versions.release import Product, Span
 from omegadot.harness.usage import UsageError
 from omegadot.reports.record.whole_file import write_whole
 
+# What an environment depends on besides its release: this Python and this machine's kind.
+_SUFFIX = f"-{sys.implementation.cache_tag}-{sys.platform}-{platform.machine()}.json"
+
 
 @dataclass(frozen=True)
 class Place:
@@ -45,11 +48,6 @@ def default_cache() -> Path:
     return user_cache_path("omegadot", appauthor=False, opinion=False) / "versions"
 
 
-def _suffix() -> str:
-    """What an environment depends on besides its release: this Python and this machine's kind."""
-    return f"-{sys.implementation.cache_tag}-{sys.platform}-{platform.machine()}"
-
-
 class Environments:
     """The cache, and the installer that fills it; none where nothing may be fetched."""
 
@@ -58,9 +56,9 @@ class Environments:
 
     def cached(self) -> list[str]:
         """The releases of the product whose environments are whole."""
-        start, end = f"{self._product.package}-", f"{_suffix()}.json"
-        names = [file.name for file in self._cache.glob(f"{start}*{end}")]
-        versions = [name.removeprefix(start).removesuffix(end) for name in names]
+        start = f"{self._product.package}-"
+        names = [file.name for file in self._cache.glob(f"{start}*{_SUFFIX}")]
+        versions = [name.removeprefix(start).removesuffix(_SUFFIX) for name in names]
         return [version for version in versions if self._known(version) is not None]
 
     def releases(self, span: Span) -> list[str]:
@@ -97,7 +95,7 @@ class Environments:
             ) from error
 
     def _marker(self, version: str) -> Path:
-        return self._cache / f"{self._product.package}-{version}{_suffix()}.json"
+        return self._cache / f"{self._product.package}-{version}{_SUFFIX}"
 
     def _known(self, version: str) -> Path | None:
         """The interpreter of a whole environment; None where the Python it leads to is gone."""

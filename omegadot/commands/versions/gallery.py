@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from omegadot.commands.other_python import worker_command
@@ -47,10 +48,14 @@ class Gallery:
     _workers: list[WorkerProcess] = field(default_factory=list)
     _stopping: threading.Event = field(default_factory=threading.Event)
 
-    def _worker(self, place: Place) -> WorkerProcess:
+    @contextmanager
+    def _worker(self, place: Place) -> Iterator[WorkerProcess]:
         worker = WorkerProcess(self.product.target, self.setup, self.timeout, place.command)
         self._workers.append(worker)
-        return worker
+        try:
+            yield worker
+        finally:
+            worker.finish()
 
     def look(self, version: str, choose: Callable[[list[Name]], Wanted] | None = None) -> Portrait:
         """One version. choose: from the names of its metrics, which are wanted; all without it."""
@@ -66,16 +71,13 @@ class Gallery:
             portrait.outcome, portrait.reason = "not-installed", place.reason
             return portrait
         portrait.origin = place.origin
-        worker = self._worker(place)
-        try:
+        with self._worker(place) as worker:
             sitting = Sitting(portrait, worker, self.aims, self._stopping.is_set)
             names = sitting.start()
             self._check_start(portrait, place)
             if portrait.ok:
                 self._places[version] = place
                 sitting.request(choose(names) if choose else everything)
-        finally:
-            worker.finish()
         return portrait
 
     def _check_start(self, portrait: Portrait, place: Place) -> None:
@@ -112,11 +114,8 @@ class Gallery:
         known = [portrait for portrait in portraits if portrait.ok]
         for turn in range(ROUNDS):
             for portrait in known if turn % 2 == 0 else reversed(known):
-                worker = self._worker(self._places[portrait.version])
-                try:
+                with self._worker(self._places[portrait.version]) as worker:
                     _time_steps(portrait, worker, self.aims.cases[0])
-                finally:
-                    worker.finish()
 
 
 def _time_steps(portrait: Portrait, worker: WorkerProcess, case: Case) -> None:
