@@ -23,7 +23,7 @@ from omegadot.commands.check.result import (
 from omegadot.commands.check.select import Selection
 from omegadot.diagnosis.diagnose import causes_of
 from omegadot.gates.case import Case
-from omegadot.harness.outcome import JudgedCase, RunRequest
+from omegadot.harness.outcome import RunRequest
 from omegadot.harness.runner import Runner
 
 START, EXCEPTIONS = "start", "exceptions"
@@ -114,22 +114,19 @@ class Suite:
             self._run(next(c for c in self.selection.cases if c.name == check.scenario))
         return with_exceptions(check, self._results[check], self.selection.exceptions)
 
-    def _judge(self, case: Case) -> JudgedCase:
+    def _run(self, case: Case) -> None:
+        """Run one scenario on every engine; keep its checks' results, not the trajectories."""
         if self._runner is None:
             self._start()
         assert self._runner is not None
-        try:
-            return self._runner.run_case(case)
-        except BaseException:
-            self._runner.engines.stop()  # no one waits for what they are busy with
-            raise
-
-    def _run(self, case: Case) -> None:
-        """Run one scenario on every engine; keep its checks' results, not the trajectories."""
         with warnings.catch_warnings():
             # An engine that diverges overflows on its way; the gates state so.
             warnings.simplefilter("ignore", RuntimeWarning)
-            judged = self._judge(case)
+            try:
+                judged = self._runner.run_case(case)
+            except BaseException:
+                self._runner.engines.stop()  # no one waits for what they are busy with
+                raise
             for found in judged.engines:
                 self._results |= dict(results_of(judged, found, causes_of(judged, found, SEED)))
                 if judged.truth is not None and answered(found):
