@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -33,22 +32,21 @@ app = typer.Typer(
 )
 
 
-def _add(command: Callable[..., None], short_help: str) -> None:
-    app.command(cls=PlainHelp, short_help=short_help)(command)
-
-
 # Short enough for one line of 80 columns, the longest name included.
-_add(run, "Run scenarios on engines, judge them, write a report.")
-_add(engines, "List the engines, their integrators and settings.")
-_add(scenarios, "List the built-in scenarios and what each shows.")
-_add(schemes, "Identify the scheme of every integrator by its steps.")
-_add(check, "Check one engine, built in or your own.")
-_add(faults, "Inject known faults and show which gate catches them.")
-_add(choose, "Find engine, integrator and step for a requirement.")
-_add(report, "Draw the report of a stored run, or of two runs.")
-_add(score, "Score a trajectory or log of any simulator.")
-_add(compare, "Compare two runs: what improved, what got worse.")
-_add(versions, "Find what changed between releases of an engine.")
+for command, short_help in (
+    (run, "Run scenarios on engines, judge them, write a report."),
+    (engines, "List the engines, their integrators and settings."),
+    (scenarios, "List the built-in scenarios and what each shows."),
+    (schemes, "Identify the scheme of every integrator by its steps."),
+    (check, "Check one engine, built in or your own."),
+    (faults, "Inject known faults and show which gate catches them."),
+    (choose, "Find engine, integrator and step for a requirement."),
+    (report, "Draw the report of a stored run, or of two runs."),
+    (score, "Score a trajectory or log of any simulator."),
+    (compare, "Compare two runs: what improved, what got worse."),
+    (versions, "Find what changed between releases of an engine."),
+):
+    app.command(cls=PlainHelp, short_help=short_help)(command)
 
 
 def _version(show: bool) -> None:

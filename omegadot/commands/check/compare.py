@@ -11,6 +11,9 @@ from omegadot.commands.check.result import PASSED, Check, Result, Subject
 from omegadot.gates.case import Case
 from omegadot.reports.text.numbers import short
 
+GATE = "baseline"
+MOST_LISTED = 3
+UPDATE = "look at it, then accept it with --update-baseline"
 # Another order of accuracy moves an error by more than this; another setting seldom does.
 ANOTHER_INTEGRATOR = 10.0
 TRANSLATION = {"position", "linear_momentum", "energy"}
@@ -60,11 +63,6 @@ def meaning(was: Figures, now: Figures, found: Sequence[Change], same_version: b
     if same_version:
         return f"{message}; the version is the same, so look at the build or the adapter"
     return message
-
-
-GATE = "baseline"
-MOST_LISTED = 3
-UPDATE = "look at it, then accept it with --update-baseline"
 
 
 def baseline_checks(

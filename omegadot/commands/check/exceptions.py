@@ -88,22 +88,19 @@ def _next_to(target: str) -> Path | None:
 
 
 def exceptions_of(
-    choices: Iterable[EngineChoice], files: Iterable[Path]
+    choices: Sequence[EngineChoice], files: Iterable[Path]
 ) -> list[DeclaredException]:
     """The exceptions of some engines: the project's own, those next to an adapter, those of files.
 
     Raises UsageError.
     """
-    found: list[DeclaredException] = []
-    names = set()
+    names, own = {choice.name for choice in choices}, list[Path]()
     for choice in choices:
-        names.add(choice.name)
         built_in = BUILT_IN.get(choice.name) == choice.target
         path = OWN_FOLDER / f"{choice.name}.toml" if built_in else _next_to(choice.target)
         if path is not None and path.is_file():
-            found += read_exceptions(path)
-    for path in files:
-        found += read_exceptions(path)
+            own.append(path)
+    found = [exception for path in (*own, *files) for exception in read_exceptions(path)]
     return [exception for exception in found if exception.engine in names]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping
 
 import typer
@@ -35,14 +35,14 @@ def _cell(verdicts: Counter[Verdict]) -> Text:
 def _table(results: Mapping[Check, Result]) -> Table:
     scenarios = list(dict.fromkeys(check.scenario for check in results if check.scenario))
     gates = list(dict.fromkeys(check.gate for check in results if check.scenario))
-    cells: dict[tuple[str, str], Counter[Verdict]] = {}
+    cells: dict[tuple[str, str], Counter[Verdict]] = defaultdict(Counter)
     for check, result in results.items():
-        cells.setdefault((check.scenario, check.gate), Counter())[result.verdict] += 1
+        cells[check.scenario, check.gate][result.verdict] += 1
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
     for name in ("scenario", *gates):
         table.add_column(name, no_wrap=True)
     for scenario in scenarios:
-        row = [_cell(cells.get((scenario, gate), Counter())) for gate in gates]
+        row = [_cell(cells[scenario, gate]) for gate in gates]
         table.add_row(Text(scenario), *row)
     return table
 

@@ -32,7 +32,6 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "update-baseline": {"action": "store_true", "help": "store the measured values in DIR instead"},
     "exceptions": _repeatable("FILE", "known failures, declared in TOML; repeatable"),
 }
-TIMEOUT = {"type": float, "metavar": "S", "default": 60.0}
 HELP = ("-h", "--help")
 
 
@@ -47,7 +46,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     for name, how in OPTIONS.items():
         group.addoption(PREFIX + name, dest=dest_of(name), **how)
     text = "limit for one request to an engine in s (60)"
-    group.addoption(PREFIX + "timeout", dest=dest_of("timeout"), help=text, **TIMEOUT)
+    limit: dict[str, Any] = {"type": float, "metavar": "S", "default": 60.0, "help": text}
+    group.addoption(PREFIX + "timeout", dest=dest_of("timeout"), **limit)
 
 
 def _is_free(option: str, parser: pytest.Parser) -> bool:

@@ -36,17 +36,13 @@ class Motion:
 
 def cases_of(motion: Motion) -> list[Case]:
     """The cases to choose for. Raises UsageError and ScenarioError."""
-    return [case_of(scenario, ()) for scenario in _scenarios(motion)]
-
-
-def _scenarios(motion: Motion) -> list[Scenario]:
     if motion.scenarios:
         chosen = [scenario.to_dict() for scenario in scenarios_of(motion.scenarios)]
     elif motion.body is not None:
         chosen = [_bare(motion)]
     else:
         raise UsageError("nothing to simulate; give a SCENARIO or --body FILE#LINK.")
-    return [_changed(data, motion) for data in chosen]
+    return [case_of(_changed(data, motion), ()) for data in chosen]
 
 
 def _bare(motion: Motion) -> dict[str, Any]:

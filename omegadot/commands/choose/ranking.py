@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -122,11 +123,8 @@ class Point:
     figures: tuple[float, ...]
 
 
-def _beats(one: Point, other: Point) -> bool:
-    pairs = list(zip(one.figures, other.figures, strict=True))
-    return all(a <= b for a, b in pairs) and any(a < b for a, b in pairs)
-
-
 def front(points: Sequence[Point]) -> list[Point]:
     """The points that no other one equals or betters in everything: the Pareto front."""
-    return [p for p in points if not any(_beats(other, p) for other in points)]
+    found = {p.figures for p in points}
+    beaten = {f for f in found for o in found if o != f and all(map(operator.le, o, f))}
+    return [p for p in points if p.figures not in beaten]

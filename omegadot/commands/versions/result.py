@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from omegadot.commands.versions.release import FEWEST
 from omegadot.reports.notebook import framed
 from omegadot.reports.versions.files import write_versions
 from omegadot.reports.versions.page import draw_versions
 
-FEWEST = 2
 Value = float | str | None
 
 
