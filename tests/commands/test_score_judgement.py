@@ -3,7 +3,16 @@
 import numpy as np
 import polars as pl
 import pytest
-from score_line import BRICK, INERTIA, MAPPED, run_score, runge_kutta, tumble, turns, write_brick
+from score_line import (
+    BRICK,
+    INERTIA,
+    MAPPED,
+    run_score,
+    runge_kutta,
+    tumble,
+    turns,
+    write_brick,
+)
 
 from omegadot.reports import draw_page, read_record
 from omegadot.reports.summary.summary import summarise

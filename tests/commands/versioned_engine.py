@@ -12,7 +12,13 @@ import os
 import sys
 from pathlib import Path
 
-from omegadot.adapters.protocol import Description, Integrator, Setup, Trajectory, UnsupportedError
+from omegadot.adapters.protocol import (
+    Description,
+    Integrator,
+    Setup,
+    Trajectory,
+    UnsupportedError,
+)
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
