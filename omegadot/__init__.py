@@ -11,33 +11,49 @@ from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
 
-if TYPE_CHECKING:
-    from omegadot.adapters.registry import AdapterError
-    from omegadot.commands.check.check import CheckResult, check
-    from omegadot.commands.check.result import Check, Result
-    from omegadot.commands.choose.choose import choose
-    from omegadot.commands.choose.result import ChooseResult, Ranked
-    from omegadot.commands.compare.compare import compare
-    from omegadot.commands.engines.engines import EngineEntry, engines
-    from omegadot.commands.exact.exact import ExactStates, exact
-    from omegadot.commands.faults.faults import FaultsResult, faults
-    from omegadot.commands.progress import Progress
-    from omegadot.commands.report.report import report
-    from omegadot.commands.run.result import RunInterrupted, RunResult
-    from omegadot.commands.run.run import run
-    from omegadot.commands.schemes.schemes import SchemesResult, schemes
-    from omegadot.commands.score.detection.detect import Detected, detect
-    from omegadot.commands.score.judged import ChannelScore
-    from omegadot.commands.score.score import ScoreResult, score
-    from omegadot.commands.score.table import TraceError
-    from omegadot.commands.versions.result import VersionChange, VersionsResult
-    from omegadot.commands.versions.versions import versions
-    from omegadot.harness.engines import NoTruthError
-    from omegadot.harness.usage import UsageError
-    from omegadot.reports.record.schema import RecordError
-    from omegadot.reports.run_record import RunRecord, TaskResult, read_record
-    from omegadot.reports.two_runs.comparison import Comparison
-    from omegadot.scenarios import Scenario, ScenarioError, builtin_names, scenario
+if TYPE_CHECKING:  # "as": it is exported
+    from omegadot.adapters.registry import AdapterError as AdapterError
+    from omegadot.commands.check.check import CheckResult as CheckResult
+    from omegadot.commands.check.check import check as check
+    from omegadot.commands.check.result import Check as Check
+    from omegadot.commands.check.result import Result as Result
+    from omegadot.commands.choose.choose import choose as choose
+    from omegadot.commands.choose.result import ChooseResult as ChooseResult
+    from omegadot.commands.choose.result import Ranked as Ranked
+    from omegadot.commands.compare.compare import compare as compare
+    from omegadot.commands.engines.engines import EngineEntry as EngineEntry
+    from omegadot.commands.engines.engines import engines as engines
+    from omegadot.commands.exact.exact import ExactStates as ExactStates
+    from omegadot.commands.exact.exact import exact as exact
+    from omegadot.commands.faults.faults import FaultsResult as FaultsResult
+    from omegadot.commands.faults.faults import faults as faults
+    from omegadot.commands.progress import Progress as Progress
+    from omegadot.commands.report.report import report as report
+    from omegadot.commands.run.result import RunInterrupted as RunInterrupted
+    from omegadot.commands.run.result import RunResult as RunResult
+    from omegadot.commands.run.run import run as run
+    from omegadot.commands.schemes.schemes import SchemesResult as SchemesResult
+    from omegadot.commands.schemes.schemes import schemes as schemes
+    from omegadot.commands.score.detection.detect import Detected as Detected
+    from omegadot.commands.score.detection.detect import detect as detect
+    from omegadot.commands.score.judged import ChannelScore as ChannelScore
+    from omegadot.commands.score.score import ScoreResult as ScoreResult
+    from omegadot.commands.score.score import score as score
+    from omegadot.commands.score.table import TraceError as TraceError
+    from omegadot.commands.versions.result import VersionChange as VersionChange
+    from omegadot.commands.versions.result import VersionsResult as VersionsResult
+    from omegadot.commands.versions.versions import versions as versions
+    from omegadot.harness.engines import NoTruthError as NoTruthError
+    from omegadot.harness.usage import UsageError as UsageError
+    from omegadot.reports.record.schema import RecordError as RecordError
+    from omegadot.reports.run_record import RunRecord as RunRecord
+    from omegadot.reports.run_record import TaskResult as TaskResult
+    from omegadot.reports.run_record import read_record as read_record
+    from omegadot.reports.two_runs.comparison import Comparison as Comparison
+    from omegadot.scenarios import Scenario as Scenario
+    from omegadot.scenarios import ScenarioError as ScenarioError
+    from omegadot.scenarios import builtin_names as builtin_names
+    from omegadot.scenarios import scenario as scenario
 
 _PLACES = {
     "adapters.registry": ("AdapterError",),
@@ -69,51 +85,7 @@ _PLACES = {
 }
 _MODULE_OF = {name: module for module, names in _PLACES.items() for name in names}
 
-__all__ = [
-    "AdapterError",
-    "ChannelScore",
-    "Check",
-    "CheckResult",
-    "ChooseResult",
-    "Comparison",
-    "Detected",
-    "EngineEntry",
-    "ExactStates",
-    "FaultsResult",
-    "NoTruthError",
-    "Progress",
-    "Ranked",
-    "RecordError",
-    "Result",
-    "RunInterrupted",
-    "RunRecord",
-    "RunResult",
-    "Scenario",
-    "ScenarioError",
-    "SchemesResult",
-    "ScoreResult",
-    "TaskResult",
-    "TraceError",
-    "UsageError",
-    "VersionChange",
-    "VersionsResult",
-    "__version__",
-    "builtin_names",
-    "check",
-    "choose",
-    "compare",
-    "detect",
-    "engines",
-    "exact",
-    "faults",
-    "read_record",
-    "report",
-    "run",
-    "scenario",
-    "schemes",
-    "score",
-    "versions",
-]
+__all__ = ["__version__", *_MODULE_OF]
 
 
 if not TYPE_CHECKING:  # a type checker sees the imports above, and no other name

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -14,15 +13,13 @@ from omegadot.commands.choose.command import choose
 from omegadot.commands.compare.command import compare
 from omegadot.commands.engines.command import engines
 from omegadot.commands.faults.command import faults
-from omegadot.commands.plain_help import PlainHelp
+from omegadot.commands.options import INTERRUPTED, PlainHelp
 from omegadot.commands.report.command import report
 from omegadot.commands.run.command import run
 from omegadot.commands.scenarios.command import scenarios
 from omegadot.commands.schemes.command import schemes
 from omegadot.commands.score.command import score
 from omegadot.commands.versions.command import versions
-
-INTERRUPTED = 130  # as shells count: 128 + SIGINT
 
 app = typer.Typer(
     name="omegadot",
@@ -35,22 +32,21 @@ app = typer.Typer(
 )
 
 
-def _add(command: Callable[..., None], short_help: str) -> None:
-    app.command(cls=PlainHelp, short_help=short_help)(command)
-
-
 # Short enough for one line of 80 columns, the longest name included.
-_add(run, "Run scenarios on engines, judge them, write a report.")
-_add(engines, "List the engines, their integrators and settings.")
-_add(scenarios, "List the built-in scenarios and what each shows.")
-_add(schemes, "Identify the scheme of every integrator by its steps.")
-_add(check, "Check one engine, built in or your own.")
-_add(faults, "Inject known faults and show which gate catches them.")
-_add(choose, "Find engine, integrator and step for a requirement.")
-_add(report, "Draw the report of a stored run, or of two runs.")
-_add(score, "Score a trajectory or log of any simulator.")
-_add(compare, "Compare two runs: what improved, what got worse.")
-_add(versions, "Find what changed between releases of an engine.")
+for command, short_help in (
+    (run, "Run scenarios on engines, judge them, write a report."),
+    (engines, "List the engines, their integrators and settings."),
+    (scenarios, "List the built-in scenarios and what each shows."),
+    (schemes, "Identify the scheme of every integrator by its steps."),
+    (check, "Check one engine, built in or your own."),
+    (faults, "Inject known faults and show which gate catches them."),
+    (choose, "Find engine, integrator and step for a requirement."),
+    (report, "Draw the report of a stored run, or of two runs."),
+    (score, "Score a trajectory or log of any simulator."),
+    (compare, "Compare two runs: what improved, what got worse."),
+    (versions, "Find what changed between releases of an engine."),
+):
+    app.command(cls=PlainHelp, short_help=short_help)(command)
 
 
 def _version(show: bool) -> None:
@@ -107,9 +103,5 @@ def _sentence(error: Exception) -> str | None:
     from omegadot.reports.record.schema import RecordError
     from omegadot.scenarios import ScenarioError
 
-    if _is_our_own(error):
-        return str(error)
     wrong_input = AdapterError | ExtendedTypeError | RecordError | ScenarioError | UsageError
-    if isinstance(error, wrong_input):
-        return str(error)
-    return None
+    return str(error) if _is_our_own(error) or isinstance(error, wrong_input) else None

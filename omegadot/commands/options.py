@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 import sys
-from enum import StrEnum
+from collections.abc import Mapping
+from enum import Enum, StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand
 
 
 class Format(StrEnum):
@@ -28,6 +34,56 @@ class Setup(StrEnum):
     as_shipped = "as-shipped"
 
 
+def option(metavar: str, text: str, *names: str, **more: Any) -> Any:
+    """An option: name of its value, help, and its own name where the argument has another."""
+    return typer.Option(*names, metavar=metavar, help=text, **more)
+
+
+Text = str | None
+Texts = list[str] | None
+# Options of several commands. An argument has the name that the function behind it has.
+Output = Annotated[Format, typer.Option("--format", help="Output format.")]
+PageOutput = Annotated[PageFormat, typer.Option("--format", help="Output format.")]
+Adapters = Annotated[
+    Texts, option("FILE.py:CLASS", "An engine of your own; repeatable.", "--adapter")
+]
+Integrators = Annotated[
+    Texts, option("NAME", "An integrator; repeatable. Default: all.", "--integrator")
+]
+Exceptions = Annotated[
+    list[Path] | None, option("FILE", "Known failures, declared in TOML; repeatable.")
+]
+Timeout = Annotated[float, option("S", "Time limit in s for one request to an engine.", min=0.1)]
+Jobs = Annotated[
+    int | None,
+    option("N", "Number of engines that run at the same time. Default: all cores.", min=1),
+]
+
+
+def given(arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """A command's ``locals()`` for the function behind it, which has the same arguments.
+
+    What was not typed is left out, so that the function's own default holds; so is the format. How
+    far the command is goes to a terminal.
+    """
+    found = {
+        name: value.value if isinstance(value, StrEnum) else value
+        for name, value in arguments.items()
+        if value is not None and name != "output"
+    }
+    return {**found, "progress": on_a_terminal()}
+
+
+INTERRUPTED = 130  # as shells count: 128 + SIGINT
+
+
+def exit_code(passed: bool, answered: bool) -> int:
+    """0 everything holds, 1 something does not, 3 an engine failed to answer or to start."""
+    if not answered:
+        return 3
+    return 0 if passed else 1
+
+
 def command_line() -> list[str]:
     """The command as it was typed, for what is stored of it."""
     return ["omegadot", *sys.argv[1:]]
@@ -36,3 +92,54 @@ def command_line() -> list[str]:
 def on_a_terminal() -> bool:
     """Whether a person sees standard error: how far a command is goes nowhere else."""
     return sys.stderr.isatty()
+
+
+class PlainHelp(TyperCommand):
+    """A command whose usage reads ``omegadot check [OPTIONS] ADAPTER``.
+
+    An argument is shown by its metavar, and an option by its names and its metavar or its choices.
+    Types and ranges of the parser are left out: the help text of an option states its unit.
+    """
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """``[OPTIONS]`` and the arguments by their metavars."""
+        return ["[OPTIONS]", *(_metavar(p) for p in self.params if _is_argument(p))]
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """The arguments, then the options, each with its help and its default."""
+        shown = [p for p in self.get_params(ctx) if not getattr(p, "hidden", False)]
+        arguments = [(_metavar(p), _help(p)) for p in shown if _is_argument(p)]
+        options = [(_option(p), _help(p)) for p in shown if not _is_argument(p)]
+        for title, rows in (("Arguments", arguments), ("Options", options)):
+            if rows:
+                with formatter.section(title):
+                    formatter.write_dl(rows)
+
+
+def _is_argument(param: Any) -> bool:
+    return bool(param.param_type_name == "argument")
+
+
+def _metavar(param: Any) -> str:
+    return str(param.metavar or param.name.upper())
+
+
+def _option(param: Any) -> str:
+    names = ", ".join(sorted(param.opts, key=len))
+    if param.secondary_opts:
+        return f"{names} / {', '.join(param.secondary_opts)}"
+    if param.is_flag or param.count:
+        return names
+    if param.metavar is None and isinstance(param.default, Enum):
+        return f"{names} {'|'.join(str(member.value) for member in type(param.default))}"
+    return f"{names} {_metavar(param)}"
+
+
+def _help(param: Any) -> str:
+    text, default = str(param.help or ""), param.default
+    if isinstance(default, Enum):
+        default = default.value
+    if _is_argument(param) or param.is_flag or default in (None, "", (), []):
+        return text
+    shown = f"{default:g}" if isinstance(default, float) else default
+    return f"{text} [default: {shown}]"

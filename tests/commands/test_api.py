@@ -175,7 +175,7 @@ def test_errors_are_the_commands(
         ({"memory": "x"}, "--memory x: give a number of at least 0.1"),
         ({"seed": -1}, "--seed -1"),
         ({"timesteps": "0.01"}, "--timestep '0.01'"),
-        ({"exceptions": "none.toml"}, "none.toml: cannot be read"),
+        ({"exceptions": "none.toml"}, "none.toml is missing"),
     ],
 )
 def test_arguments_of_the_wrong_kind_are_one_sentence(arguments: Any, text: str) -> None:

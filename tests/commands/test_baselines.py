@@ -19,10 +19,8 @@ from omegadot.commands.check.baseline_file import (
     to_text,
     write_baseline,
 )
-from omegadot.commands.check.compare import compare
-from omegadot.commands.check.generate import Subject
-from omegadot.commands.check.meaning import meaning
-from omegadot.commands.check.result import Check
+from omegadot.commands.check.compare import compare, meaning
+from omegadot.commands.check.result import Check, Subject
 from omegadot.harness.usage import UsageError
 
 RUN = RunKey("RK4", 0.01)

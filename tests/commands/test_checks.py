@@ -8,12 +8,18 @@ import pytest
 from command_line import FAULTY, WRONG, omegadot, quick_scenario
 
 from omegadot.commands.check.check import arguments_of
-from omegadot.commands.check.generate import Subject, checks_of
-from omegadot.commands.check.message import failure
-from omegadot.commands.check.registry import Registry
-from omegadot.commands.check.result import Check, Result
+from omegadot.commands.check.judge import failure
+from omegadot.commands.check.result import (
+    REGISTRY,
+    Check,
+    Registry,
+    Result,
+    Subject,
+    Tally,
+    checks_of,
+    coverage,
+)
 from omegadot.commands.check.select import Arguments, select
-from omegadot.commands.check.tally import Tally, coverage
 from omegadot.gates.rows import Row
 from omegadot.harness.arguments import case_of
 from omegadot.harness.usage import UsageError
@@ -56,7 +62,7 @@ def test_coverage_counts_scenarios_gates_and_checks() -> None:
 
 def test_a_registry_survives_the_way_to_another_process() -> None:
     registry = Registry((MUJOCO,), {"dart": ("not-installed", "No module named 'dartpy'")})
-    assert Registry.from_json(registry.to_json()) == registry
+    assert REGISTRY.validate_json(REGISTRY.dump_json(registry)) == registry
 
 
 def test_a_failure_names_the_worst_row_its_bound_and_the_others() -> None:

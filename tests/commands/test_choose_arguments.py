@@ -10,8 +10,7 @@ import pytest
 from omegadot.adapters.protocol import Description
 from omegadot.commands.choose.eligible import unmet
 from omegadot.commands.choose.motion import Motion, cases_of
-from omegadot.commands.choose.requirements import Requirements, merged
-from omegadot.commands.choose.requirements_file import read_requirements
+from omegadot.commands.choose.requirements import Requirements, merged, read_requirements
 from omegadot.commands.units import quantity
 from omegadot.harness.usage import UsageError
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from omegadot.commands.choose.ranking import Point, front, ranked
-from omegadot.commands.choose.spread import Spread, total
+from omegadot.commands.choose.ranking import Point, Spread, front, ranked, total
 
 WEATHER = (1.0, 1.4, 0.9, 3.0, 1.1, 1.2, 2.2)  # how slow the machine was, round by round
 
@@ -17,7 +16,7 @@ def cost(factor: float, *own: float) -> Spread:
 
 
 def ranks(costs: dict[str, Spread]) -> dict[str, tuple[int, bool]]:
-    return {place.key: (place.rank, place.tied) for place in ranked(costs)}
+    return {place.candidate: (place.rank, place.tied) for place in ranked(costs)}
 
 
 def test_the_weather_of_a_round_decides_nothing() -> None:

@@ -9,14 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from omegadot.commands.choose.search import (
-    EDGE,
-    Edge,
-    Range,
-    Trials,
-    confirmed,
-    largest_step,
-)
+from omegadot.commands.choose.search import EDGE, Edge, Search, Trials
 from omegadot.commands.choose.trial import Measured, Trial
 
 LIMITS = {"attitude": 1.0}
@@ -35,7 +28,7 @@ def search(error: Callable[[float], float], start: int = 1000, declared: float =
 
     trials: Trials = {}
     trials[start] = evaluate(start)
-    edge = confirmed(trials, evaluate, LIMITS, Range(FEWEST, lambda: most), declared)
+    edge = Search(trials, evaluate, LIMITS, FEWEST, lambda: most, declared).confirmed()
     return edge, trials
 
 
@@ -120,8 +113,7 @@ def test_other_limits_are_sought_from_the_runs_that_are_there() -> None:
         measured = {"attitude": Measured((200 / steps) ** 4, 0.0)}
         return Trial(steps, 1.0 / steps, measured, 1e-6, steps + 1)
 
-    among = Range(FEWEST, lambda: MOST)
-    tighter = largest_step(trials, evaluate, {"attitude": 0.5}, among, 4.0)
+    tighter = Search(trials, evaluate, {"attitude": 0.5}, FEWEST, lambda: MOST, 4.0).largest_step()
     assert tighter.passing is not None
     assert tighter.passing.steps == pytest.approx(200 * 2**0.25, rel=EDGE - 1.0)
     assert len(made) <= 3

@@ -13,7 +13,7 @@ from command_line import omegadot, quick_scenario
 
 from omegadot.commands.check.baseline import OF_A_RUN, OF_A_SCENARIO
 from omegadot.commands.compare.compare import compare
-from omegadot.commands.report.print_report import printed
+from omegadot.commands.report.command import printed
 from omegadot.harness.usage import UsageError
 from omegadot.reports.record.record import METRICS, read_record
 from omegadot.reports.record.run_json import dump_json

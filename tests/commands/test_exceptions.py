@@ -122,7 +122,7 @@ def test_the_projects_own_files_are_read() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("engine = ", "not a TOML file"),
+        ("engine = ", "not valid TOML"),
         ("[[exception]]\n", 'engine = "NAME"'),
         (declaration("x").replace("reason", "reson"), "write reason"),
         (declaration("x").replace(LINK, " "), "link is missing or empty"),

@@ -13,11 +13,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from platformdirs import user_cache_path
 
-from omegadot.commands.versions.arguments import requested_releases
 from omegadot.commands.versions.environments import default_cache
 from omegadot.commands.versions.metric import Figure, differ, matching, shown, unknown_metric
-from omegadot.commands.versions.product import product_of
-from omegadot.commands.versions.release import Span, rising, version_of
+from omegadot.commands.versions.release import (
+    Span,
+    product_of,
+    requested_releases,
+    rising,
+    version_of,
+)
 from omegadot.harness.usage import UsageError
 
 RELEASES = ("6.16.2", "6.16.10", "6.17.0", "6.17.1", "6.18.0rc1", "6.18.0", "6.18.0.post1", "7.0")
@@ -74,11 +78,11 @@ def test_ranges_have_both_ends_and_no_trial_releases() -> None:
 
 def test_arguments_are_versions_ranges_and_interpreters() -> None:
     python = sys.executable
-    requested = requested_releases(
+    versions, pythons = requested_releases(
         ["7.0", "6.16.2..6.17.0", f"6.17.1={python}", "6.17.0"], releases
     )
-    assert requested.versions == ["6.16.2", "6.16.10", "6.17.0", "6.17.1", "7.0"]
-    assert requested.pythons == {"6.17.1": python}
+    assert versions == ["6.16.2", "6.16.10", "6.17.0", "6.17.1", "7.0"]
+    assert pythons == {"6.17.1": python}
 
 
 @pytest.mark.parametrize(

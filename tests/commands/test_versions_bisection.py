@@ -7,12 +7,9 @@ import math
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from omegadot.commands.versions.bisected import _no_such
-from omegadot.commands.versions.bisection import Bisection, bisect
-from omegadot.commands.versions.changes import changes_between
-from omegadot.commands.versions.measure import Portrait
+from omegadot.commands.versions.bisection import Bisection, _no_such, bisect
+from omegadot.commands.versions.changes import Portrait, changes_between, pace_of, ratio_of
 from omegadot.commands.versions.metric import Figure
-from omegadot.commands.versions.speed import pace_of, ratio_of
 
 NAME = ("order", "RK4", "free", "attitude")
 BROKEN = "broken"

@@ -15,7 +15,8 @@ from chromium import Chromium
 from command_line import QUICK, Result, omegadot, quick_scenario
 from versioned_engine import ALL, TARGET, arguments
 
-from omegadot.commands.versions.print_versions import exit_code, print_versions
+from omegadot.commands.options import PageFormat, exit_code
+from omegadot.commands.versions.command import print_versions
 from omegadot.commands.versions.versions import versions as compare_versions
 from omegadot.harness.usage import UsageError
 from omegadot.reports.versions.sheet import sheet_of
@@ -173,8 +174,8 @@ def looked(folder: Path, *versions: str, **more: Any) -> dict[str, Any]:
 def printed(form: str, **requested: Any) -> int:
     """Compare, print, and give the exit code, as the command does."""
     found = compare_versions(**requested)
-    print_versions(found, form)
-    return exit_code(found)
+    print_versions(found, PageFormat(form))
+    return exit_code(found.passed, found.comparable)
 
 
 @pytest.mark.parametrize(

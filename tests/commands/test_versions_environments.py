@@ -20,8 +20,7 @@ from omegadot.commands.versions.installer import (
     python_of,
     reason_of,
 )
-from omegadot.commands.versions.product import product_of
-from omegadot.commands.versions.release import Span
+from omegadot.commands.versions.release import Span, product_of
 from omegadot.harness.usage import UsageError
 
 MUJOCO = product_of("mujoco")

@@ -13,7 +13,7 @@ import pytest
 from command_line import ENGINES, FAULTY, omegadot
 
 from omegadot.adapters.reference.adapter import ReferenceAdapter
-from omegadot.commands.schemes.markdown import markdown_of
+from omegadot.commands.schemes.print_schemes import markdown_of
 from omegadot.diagnosis.scheme_study import fingerprint
 from omegadot.diagnosis.scheme_study.naming import Naming, name_schemes
 from omegadot.diagnosis.scheme_study.orders import Observed, Point, observe

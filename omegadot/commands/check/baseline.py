@@ -19,7 +19,7 @@ from omegadot.commands.check.baseline_file import (
     RunKey,
     ScenarioFigures,
 )
-from omegadot.commands.check.generate import Subject
+from omegadot.commands.check.result import Subject
 from omegadot.gates.rows import Row
 from omegadot.harness.outcome import EngineCase
 from omegadot.reports.text.numbers import short
@@ -66,12 +66,10 @@ def _figures(rows: Iterable[Row], scheme: str = "") -> Figures:
     """The rows that have a bound of rounding, by name."""
     named = {}
     for row in rows:
-        if row.bound is None:
-            continue
-        if row.gate in OF_A_SCENARIO:
-            named[f"{row.gate} {row.channel} {row.metric}"] = Figure(row.value, 2.0 * row.bound)
-        elif row.metric in OF_A_RUN:
-            named[f"{row.channel} {row.metric}"] = Figure(row.value, 2.0 * row.bound)
+        shared = row.gate in OF_A_SCENARIO
+        if row.bound is not None and (shared or row.metric in OF_A_RUN):
+            gate = f"{row.gate} " if shared else ""
+            named[f"{gate}{row.channel} {row.metric}"] = Figure(row.value, 2.0 * row.bound)
     return Figures(named, scheme)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from omegadot.harness.usage import UsageError
+from omegadot.reports.record.whole_file import write_whole
 
 SCHEMA = 1
 DIGITS = 3
@@ -93,13 +93,10 @@ def to_text(engine: str, baseline: Mapping[str, ScenarioFigures]) -> str:
 
 
 def write_baseline(folder: Path, engine: str, baseline: Mapping[str, ScenarioFigures]) -> Path:
-    """Write an engine's figures, whole or not at all."""
+    """Write an engine's figures, whole or not at all. Raises RecordError."""
     path = path_of(folder, engine)
     folder.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    temporary.write_text(to_text(engine, baseline), encoding="utf-8")
-    temporary.replace(path)
-    return path
+    return write_whole(path, to_text(engine, baseline))
 
 
 def _figures(table: dict[str, Any]) -> Figures:

@@ -8,12 +8,9 @@ from functools import cached_property
 from pathlib import Path
 
 from omegadot.adapters.registry import registered
-from omegadot.commands.check.compare import store
-from omegadot.commands.check.generate import Subject
-from omegadot.commands.check.result import Check, Result
-from omegadot.commands.check.select import Arguments, Selection, select
+from omegadot.commands.check.result import Check, Result, Subject, Tally
+from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.suite import Suite
-from omegadot.commands.check.tally import Tally
 from omegadot.commands.progress import Count, Reporting, reporting
 from omegadot.harness.arguments import adapters_named, several
 from omegadot.harness.engine_target import EngineLike, target_of
@@ -75,7 +72,7 @@ def check(
     names, paths, scenarios or their tables; all built-in ones without any.  integrators: all
     without any.  exceptions: files of declared exceptions.  baseline: a folder of figures to
     compare with, or to store them in.  timeout: s, for one request to the engine.
-    Raises UsageError, ScenarioError and NoTruthError.
+    Raises UsageError, ScenarioError, RecordError and NoTruthError.
     """
     arguments = Arguments(
         scenarios=several(scenarios),
@@ -95,17 +92,11 @@ def check(
                 count.advance()
         finally:
             suite.finish()
-    return _result_of(suite, selection, results)
-
-
-def _result_of(suite: Suite, selection: Selection, results: dict[Check, Result]) -> CheckResult:
-    tally, written = Tally(), []
+    tally = Tally()
     for one, result in results.items():
         tally.add(one.engine, result.verdict, result.message)
-    if selection.update and selection.baseline is not None:
-        written = store(selection.baseline, suite.registry.subjects, suite.figures)
     skipped = tally.only_skipped(choice.name for choice in selection.choices)
-    return CheckResult(results, suite.registry.subjects, tuple(skipped), tuple(written))
+    return CheckResult(results, suite.registry.subjects, tuple(skipped), tuple(suite.store()))
 
 
 def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Arguments) -> Arguments:

@@ -1,50 +1,84 @@
-"""The checks that a baseline adds, one for each run and each scenario, and its update."""
+"""The checks that a baseline adds, one for each run and each scenario, and what a change means."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
+import math
+from collections.abc import Iterator, Sequence
 
-from omegadot.commands.check.baseline import changes, updated
-from omegadot.commands.check.baseline_file import (
-    Baseline,
-    RunKey,
-    ScenarioFigures,
-    read_baseline,
-    write_baseline,
-)
-from omegadot.commands.check.generate import Subject
-from omegadot.commands.check.meaning import meaning
-from omegadot.commands.check.result import PASSED, Check, Result
+from omegadot.commands.check.baseline import OF_A_SCENARIO, Change, changes
+from omegadot.commands.check.baseline_file import Baseline, Figures, RunKey, ScenarioFigures
+from omegadot.commands.check.result import PASSED, Check, Result, Subject
 from omegadot.gates.case import Case
+from omegadot.reports.text.numbers import short
 
 GATE = "baseline"
 MOST_LISTED = 3
 UPDATE = "look at it, then accept it with --update-baseline"
+# Another order of accuracy moves an error by more than this; another setting seldom does.
+ANOTHER_INTEGRATOR = 10.0
+TRANSLATION = {"position", "linear_momentum", "energy"}
 
 
-def _keys_now(subject: Subject, case: Case) -> list[RunKey]:
-    finest = min(sweep.timestep for sweep in case.sweeps)
-    stepped = subject.name != "exact"
-    return [RunKey(), *(RunKey(name, finest) for name in subject.integrators if stepped)]
+def _of_a_scenario(found: Sequence[Change]) -> str:
+    channels = {change.name.split()[1] for change in found}
+    if any(change.name.startswith("equation") for change in found):
+        if "omega_dot" in channels:
+            return "the equation of motion changed: omega-dot is another at identical states"
+        part = "inverse dynamics" if "torque" in channels else "the acceleration of the body"
+        return f"the equation changed: {part} is another at identical states"
+    if "model" in channels:
+        return "the engine holds another mass, centre of mass or inertia than before"
+    return "states are read back otherwise: a frame or a reference point changed"
 
 
-def _is_chosen(subject: Subject, key: RunKey) -> bool:
-    """Whether a stored run belongs to what is checked: an integrator that is gone does."""
-    left_out = set(subject.declared) - set(subject.integrators)
-    narrowed = bool(left_out)
-    return not key.integrator or key.integrator in subject.integrators or not narrowed
+def _of_a_run(found: Sequence[Change]) -> str:
+    by_channel = {change.name.split()[0]: change for change in reversed(found)}
+    if set(by_channel) <= TRANSLATION:
+        return (
+            "the translation is stepped otherwise (at the origin or the centre of mass, or with "
+            "another rule), the turning is as before"
+        )
+    if "omega" not in by_channel:
+        return "the update of the attitude changed, that of omega did not"
+    factor = by_channel["omega"].factor
+    if math.isnan(factor):
+        return "the run diverges, or no longer does"
+    if not 1.0 / ANOTHER_INTEGRATOR < factor < ANOTHER_INTEGRATOR:
+        how = f"grew {short(factor)}x" if factor > 1.0 else f"shrank {short(1.0 / factor)}x"
+        how = how if 0.0 < factor < math.inf else "vanished or appeared"
+        return f"omega error {how}: the integrator changed"
+    return "the order is the same: a default such as a tolerance, a damping or a limit changed"
+
+
+def meaning(was: Figures, now: Figures, found: Sequence[Change], same_version: bool) -> str:
+    """The likeliest reason for some changes, in one clause."""
+    if was.scheme != now.scheme and was.scheme:
+        message = (
+            f"the integrator changed: declared {was.scheme} then, {now.scheme or 'nothing'} now"
+        )
+    elif any(change.name.split()[0] in OF_A_SCENARIO for change in found):
+        message = _of_a_scenario(found)
+    else:
+        message = _of_a_run(found)
+    if same_version:
+        return f"{message}; the version is the same, so look at the build or the adapter"
+    return message
 
 
 def baseline_checks(
     subject: Subject, cases: Sequence[Case], stored: Baseline | None
 ) -> Iterator[Check]:
     """A check for every run there is and for every one that the baseline remembers."""
+    stepped = subject.integrators if subject.name != "exact" else ()
+    whole = set(subject.declared) <= set(subject.integrators)
     for case in cases:
-        keys = dict.fromkeys(_keys_now(subject, case))
+        finest = min(sweep.timestep for sweep in case.sweeps)
+        keys = [RunKey(), *(RunKey(name, finest) for name in stepped)]
         if stored is not None and case.name in stored:
-            keys |= dict.fromkeys(k for k in stored[case.name].runs if _is_chosen(subject, k))
-        for key in keys:
+            # An integrator that is gone belongs to what is checked, unless some are left out.
+            known = stored[case.name].runs
+            keys += [k for k in known if whole or k.integrator in ("", *subject.integrators)]
+        for key in dict.fromkeys(keys):
             yield Check(subject.name, case.name, GATE, key.integrator or None, key.timestep)
 
 
@@ -71,14 +105,3 @@ def compare(
     more = f"; and {len(found) - MOST_LISTED} more" if len(found) > MOST_LISTED else ""
     why = meaning(known, own, found, was.version == version)
     return Result("fail", f"{versions}: {listed}{more}. Probably {why}. {UPDATE.capitalize()}.")
-
-
-def store(folder: Path, subjects: Iterable[Subject], figures: dict[str, Baseline]) -> list[Path]:
-    """Update the baseline of every engine that gave figures; the files that were written."""
-    written = []
-    for subject in subjects:
-        if subject.name in figures:
-            stored = read_baseline(folder, subject.name)
-            whole = updated(stored, figures[subject.name], subject)
-            written.append(write_baseline(folder, subject.name, whole))
-    return written

@@ -7,7 +7,6 @@ check at all, fail the run. A crash or a time-out is never excused.
 from __future__ import annotations
 
 import importlib.util
-import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -15,9 +14,15 @@ from pathlib import Path
 from typing import Any
 
 from omegadot.adapters.registry import BUILT_IN
-from omegadot.commands.check.result import Check, Result
+from omegadot.commands.check.baseline_file import Baseline
+from omegadot.commands.check.compare import baseline_checks
+from omegadot.commands.check.result import Check, Result, Subject, checks_of
+from omegadot.gates.case import Case
+from omegadot.harness.arguments import case_of
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
+from omegadot.scenarios import ScenarioError, builtin_names, load_builtin
+from omegadot.scenarios.toml_file import read_toml
 
 OWN_FOLDER = Path(__file__).with_name("known")
 SUFFIX = ".exceptions.toml"
@@ -51,11 +56,9 @@ def read_exceptions(path: Path) -> list[DeclaredException]:
     Raises UsageError.
     """
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as problem:
-        raise UsageError(f"{path}: cannot be read: {problem.strerror}; check the path.") from None
-    except ValueError as problem:
-        raise UsageError(f"{path}: not a TOML file: {problem}.") from None
+        data = read_toml(path, str(path))
+    except ScenarioError as error:
+        raise UsageError(str(error)) from None
     _refuse_unknown(data, ("engine", "exception"), str(path))
     engine, entries = data.get("engine"), data.get("exception", [])
     if not isinstance(engine, str) or not isinstance(entries, list):
@@ -85,22 +88,19 @@ def _next_to(target: str) -> Path | None:
 
 
 def exceptions_of(
-    choices: Iterable[EngineChoice], files: Iterable[Path]
+    choices: Sequence[EngineChoice], files: Iterable[Path]
 ) -> list[DeclaredException]:
     """The exceptions of some engines: the project's own, those next to an adapter, those of files.
 
     Raises UsageError.
     """
-    found: list[DeclaredException] = []
-    names = set()
+    names, own = {choice.name for choice in choices}, list[Path]()
     for choice in choices:
-        names.add(choice.name)
         built_in = BUILT_IN.get(choice.name) == choice.target
         path = OWN_FOLDER / f"{choice.name}.toml" if built_in else _next_to(choice.target)
         if path is not None and path.is_file():
-            found += read_exceptions(path)
-    for path in files:
-        found += read_exceptions(path)
+            own.append(path)
+    found = [exception for path in (*own, *files) for exception in read_exceptions(path)]
     return [exception for exception in found if exception.engine in names]
 
 
@@ -128,3 +128,20 @@ def with_exceptions(
         text = f"{exception.reason} ({exception.link}): {result.message}"
         return Result("declared", text, result.outcome)
     return Result("fail", no_longer_fails(exception)) if result.verdict == "pass" else result
+
+
+def unmatched(
+    exceptions: Iterable[DeclaredException],
+    subject: Subject,
+    cases: Sequence[Case],
+    stored: Baseline | None = None,
+) -> list[DeclaredException]:
+    """The exceptions of one engine that match nothing, not even a check that is left out here."""
+    own = [exception for exception in exceptions if exception.engine == subject.name]
+    if not own:
+        return []
+    # All that there may be: its integrators, on these scenarios and on all built-in ones.
+    scenarios = [case.scenario for case in cases] + [load_builtin(n) for n in builtin_names()]
+    whole = [*cases, *(case_of(scenario, ()) for scenario in scenarios)]
+    known = [*checks_of([subject.whole], whole), *baseline_checks(subject.whole, whole, stored)]
+    return [e for e in own if not any(e.matches(check) for check in known)]

@@ -1,18 +1,68 @@
-"""From one engine's judged case to the results of its checks."""
+"""From one engine's judged case to the results of its checks, each failure as a sentence."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from omegadot.commands.check.generate import GATES_OF_A_RUN, GATES_OF_A_SCENARIO
-from omegadot.commands.check.message import failure
-from omegadot.commands.check.result import PASSED, Check, Result, error, skipped
+from omegadot.commands.check.result import (
+    GATES_OF_A_RUN,
+    GATES_OF_A_SCENARIO,
+    PASSED,
+    Check,
+    Result,
+    error,
+    skipped,
+)
 from omegadot.gates.exact_rows import exact_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
+from omegadot.reports.text.numbers import listed, short
 from omegadot.workers.harness_end.process import Answer
+
+# Their notes are the whole sentence, with the figures in it.
+NOTE_ALONE = ("match", "observed_order", "sample_times")
+# For these the note is clearer than the figure, a fraction of its bound.
+NOTE_BEFORE_FIGURE = ("restarted", "rate_at_no_step", "start", "precision")
+
+
+def _excess(row: Row) -> float:
+    """How many times its bound a value is; infinite where it is not finite or nothing is due."""
+    if row.metric in NOTE_ALONE:
+        return 0.0
+    if row.bound is None or not math.isfinite(row.value):
+        return math.inf
+    return row.value / row.bound if row.bound > 0.0 else math.inf
+
+
+def _unit(row: Row) -> str:
+    return "" if row.unit == "1" else f" {row.unit}"
+
+
+def sentence(row: Row) -> str:
+    """One failing row as text."""
+    if row.metric in (*NOTE_ALONE, *NOTE_BEFORE_FIGURE) and row.note:
+        return f"{row.channel}: {row.note}"
+    message = f"{row.channel}: {row.metric} is {short(row.value, 3)}{_unit(row)}"
+    if row.bound is not None:
+        excess, bound = _excess(row), f"{short(row.bound)}{_unit(row)}"
+        times = f"{short(excess)} times " if math.isfinite(excess) else "above "
+        message += f", {times}its bound of {bound}"
+    return f"{message} ({row.note})" if row.note else message
+
+
+def failure(rows: Sequence[Row], cause: str = "") -> str:
+    """The failing rows of one gate: the worst in full, the other channels by name."""
+    failing = [row for row in rows if row.verdict == "fail"]
+    worst = max(failing, key=_excess)
+    others = dict.fromkeys(row.channel for row in failing if row.channel != worst.channel)
+    message = sentence(worst)
+    if others:
+        message += f"; {listed(list(others))} {'fail' if len(others) > 1 else 'fails'} as well"
+    return f"{message}. Likely cause: {cause.rstrip('.')}." if cause else f"{message}."
+
 
 # The answers, besides runs, that a gate of a scenario judges.
 REQUESTED = {"model": ("model",), "equation": ("forward", "path", "inverse")}
@@ -29,22 +79,13 @@ def _of_rows(rows: Sequence[Row], cause: Callable[[], str], unjudged: str) -> Re
     return skipped(f"not judged: {next(iter(notes), unjudged)}")
 
 
-def _answered(answers: Sequence[Answer]) -> Result | None:
-    """The first answer that is a failure, or the refusal where every answer is one."""
+def _of_scenario(found: EngineCase, gate: str, cause: Callable[[], str]) -> Result:
+    answers: list[Answer] = [getattr(found.result, name) for name in REQUESTED[gate]]
     for answer in answers:
         if answer.outcome not in ("ok", "unsupported"):
             return error(answer.outcome, answer.reason)
-    refused = [answer for answer in answers if answer.outcome == "unsupported"]
-    if len(refused) == len(answers):
-        return skipped(f"unsupported: {refused[0].reason}")
-    return None
-
-
-def _of_scenario(found: EngineCase, gate: str, cause: Callable[[], str]) -> Result:
-    answers = [getattr(found.result, name) for name in REQUESTED[gate]]
-    refused = _answered(answers)
-    if refused is not None:
-        return refused
+    if not any(answer.ok for answer in answers):
+        return skipped(f"unsupported: {answers[0].reason}")
     rows = [row for row in found.shared if row.gate == gate]
     return _of_rows(rows, cause, "the engine gave nothing to judge")
 
@@ -60,14 +101,20 @@ def _of_run(run: JudgedRun, gate: str, cause: Callable[[], str]) -> Result:
     return _of_rows(rows, cause, run.why)
 
 
-def _judgements(
+def results_of(
     judged: JudgedCase, found: EngineCase, cause: Cause
 ) -> Iterator[tuple[Check, Result]]:
+    """The results of every check of one engine on one case; none without an exact trajectory.
+
+    cause: called only where a check fails; "" where no cause is found.
+    """
     name, case = found.engine.name, judged.case
+    if judged.truth is None:
+        return
     for gate in GATES_OF_A_SCENARIO:
         check = Check(name, case.name, gate)
         yield check, _of_scenario(found, gate, partial(cause, None))
-    if name == "exact" and judged.truth is not None:
+    if name == "exact":
         rows = [row for row in exact_rows(case, judged.truth) if row.gate == "invariants"]
         why = "nothing is constant under this load"
         yield Check(name, case.name, "invariants"), _of_rows(rows, lambda: "", why)
@@ -75,11 +122,3 @@ def _judgements(
         for gate in GATES_OF_A_RUN:
             check = Check(name, case.name, gate, run.integrator.name, run.sweep.timestep)
             yield check, _of_run(run, gate, partial(cause, run))
-
-
-def results_of(judged: JudgedCase, found: EngineCase, cause: Cause) -> dict[Check, Result]:
-    """The results of every check of one engine on one case; none without an exact trajectory.
-
-    cause: called only where a check fails; "" where no cause is found.
-    """
-    return {} if judged.truth is None else dict(_judgements(judged, found, cause))

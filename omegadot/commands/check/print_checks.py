@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping
 
 import typer
@@ -13,8 +13,8 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.commands.check.check import CheckResult
-from omegadot.commands.check.result import Check, Result, Verdict
-from omegadot.commands.check.tally import coverage
+from omegadot.commands.check.result import Check, Result, Verdict, coverage
+from omegadot.commands.options import exit_code
 from omegadot.reports.text.numbers import times
 
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
@@ -35,14 +35,14 @@ def _cell(verdicts: Counter[Verdict]) -> Text:
 def _table(results: Mapping[Check, Result]) -> Table:
     scenarios = list(dict.fromkeys(check.scenario for check in results if check.scenario))
     gates = list(dict.fromkeys(check.gate for check in results if check.scenario))
-    cells: dict[tuple[str, str], Counter[Verdict]] = {}
+    cells: dict[tuple[str, str], Counter[Verdict]] = defaultdict(Counter)
     for check, result in results.items():
-        cells.setdefault((check.scenario, check.gate), Counter())[result.verdict] += 1
+        cells[check.scenario, check.gate][result.verdict] += 1
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
     for name in ("scenario", *gates):
         table.add_column(name, no_wrap=True)
     for scenario in scenarios:
-        row = [_cell(cells.get((scenario, gate), Counter())) for gate in gates]
+        row = [_cell(cells[scenario, gate]) for gate in gates]
         table.add_row(Text(scenario), *row)
     return table
 
@@ -56,29 +56,14 @@ def _grouped(results: Mapping[Check, Result], verdict: str) -> dict[str, list[Ch
     return found
 
 
-def _counts(results: Mapping[Check, Result]) -> str:
-    counts = Counter(result.verdict for result in results.values())
-    parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
-    return f"{times(len(results), 'check')}: {parts}." if parts else "There is nothing to check."
-
-
-def exit_code(found: CheckResult) -> int:
-    """0 every check holds, 1 one fails or all were skipped, 3 the engine did not answer."""
-    if not found.answered:
-        return 3
-    return 0 if found.passed else 1
-
-
 def print_json(found: CheckResult) -> None:
     """Every check and its result, for machines."""
-    counts = dict.fromkeys(("pass", "fail", "declared", "skip", "error"), 0)
-    for result in found.by_check.values():
-        counts[result.verdict] += 1
+    counts = Counter(result.verdict for result in found.by_check.values())
     printed = {
         "schema": 1,
-        "exit_code": exit_code(found),
+        "exit_code": exit_code(found.passed, found.answered),
         "engines": [vars(subject) for subject in found.subjects],
-        "verdicts": counts,
+        "verdicts": {v: counts[v] for v in ("pass", "fail", "declared", "skip", "error")},
         "only_skipped": found.only_skipped,
         "checks": [{"id": c.id, **vars(c), **vars(r)} for c, r in found.by_check.items()],
     }
@@ -102,4 +87,7 @@ def print_checks(found: CheckResult) -> None:
         console.print(Text(f"skip  {times(len(checks), 'check')}: {reason}", "dim"))
     for line in (*found.only_skipped, *(f"Baseline written: {path}" for path in found.baselines)):
         console.print(Text(line))
-    console.print(Text(_counts(results), "bold"))
+    counts = Counter(result.verdict for result in results.values())
+    parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
+    total = f"{times(len(results), 'check')}: {parts}."
+    console.print(Text(total if parts else "There is nothing to check.", "bold"))

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from omegadot.commands.check.result import Check, Result
+from omegadot.commands.check.result import Check
 from omegadot.commands.check.suite import Suite
 
 ROOT = "omegadot"
@@ -48,11 +48,7 @@ class CheckItem(pytest.Item):
         """Request the result: the scenario is run when its first check is."""
         result = self.suite.result_of(self.check)
         # Properties travel with the report, also from another process, and stand in JUnit's file.
-        found = ((ENGINE, self.check.engine), (VERDICT, result.verdict))
-        self.user_properties += found
-        self._report(result)
-
-    def _report(self, result: Result) -> None:
+        self.user_properties += ((ENGINE, self.check.engine), (VERDICT, result.verdict))
         if result.verdict == "skip":
             self.user_properties.append((MESSAGE, result.message))
             pytest.skip(result.message)

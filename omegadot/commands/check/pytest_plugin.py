@@ -9,13 +9,35 @@ keeps it.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
-from omegadot.commands.check.pytest_options import OPTIONS, PREFIX, dest_of
 
-TIMEOUT = {"type": float, "metavar": "S", "default": 60.0}
+def _repeatable(metavar: str, text: str) -> dict[str, Any]:
+    return {"action": "append", "metavar": metavar, "help": text}
+
+
+PREFIX = "--omegadot-"
+OPTIONS: dict[str, dict[str, Any]] = {
+    "engine": _repeatable("NAME[:INTEGRATOR]", "check this engine; repeatable"),
+    "adapter": _repeatable("FILE|module:Class", "check an engine of your own; repeatable"),
+    "require-engine": _repeatable(
+        "NAME", "check this engine, and fail where it is missing; repeatable"
+    ),
+    "scenario": _repeatable(
+        "NAME|FILE", "check on this scenario; repeatable; default: every built-in"
+    ),
+    "baseline": {"metavar": "DIR", "help": "compare with the values stored in DIR"},
+    "update-baseline": {"action": "store_true", "help": "store the measured values in DIR instead"},
+    "exceptions": _repeatable("FILE", "known failures, declared in TOML; repeatable"),
+}
 HELP = ("-h", "--help")
+
+
+def dest_of(name: str) -> str:
+    """The name under which an option's value is kept."""
+    return "omegadot_" + name.replace("-", "_")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -24,11 +46,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     for name, how in OPTIONS.items():
         group.addoption(PREFIX + name, dest=dest_of(name), **how)
     text = "limit for one request to an engine in s (60)"
-    group.addoption(PREFIX + "timeout", dest=dest_of("timeout"), help=text, **TIMEOUT)
-
-
-def _is_among(option: str, args: list[str]) -> bool:
-    return any(arg == option or arg.startswith(f"{option}=") for arg in args)
+    limit: dict[str, Any] = {"type": float, "metavar": "S", "default": 60.0, "help": text}
+    group.addoption(PREFIX + "timeout", dest=dest_of("timeout"), **limit)
 
 
 def _is_free(option: str, parser: pytest.Parser) -> bool:
@@ -37,6 +56,13 @@ def _is_free(option: str, parser: pytest.Parser) -> bool:
         return option in parser.parse_known_and_unknown_args([option, "0"])[1]
     except pytest.UsageError:  # the option is known, and its value is refused
         return False
+
+
+def _is_typed(config: pytest.Config) -> bool:
+    """Whether an option of ours was typed, and does not come from a configuration file."""
+    options = tuple(f"{start}{name}" for name in OPTIONS for start in ("--", PREFIX))
+    typed = [str(arg).partition("=")[0] for arg in config.invocation_params.args]
+    return any(argument in options for argument in typed)
 
 
 @pytest.hookimpl(hookwrapper=True)
@@ -48,15 +74,16 @@ def pytest_load_initial_conftests(
     group = parser.getgroup("omegadot")
     help_requested = any(argument in args for argument in HELP)
     for name, how in OPTIONS.items():
-        wanted = help_requested or _is_among(f"--{name}", args)
-        if wanted and _is_free(f"--{name}", parser):
+        used = any(argument.partition("=")[0] == f"--{name}" for argument in args)
+        if (help_requested or used) and _is_free(f"--{name}", parser):
             group.addoption(f"--{name}", dest=dest_of(name), **how)
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
     """Start only where an option of ours is given."""
-    if any(config.getoption(dest_of(name), None) for name in OPTIONS):
+    given = {name: config.getoption(dest_of(name), None) for name in (*OPTIONS, "timeout")}
+    if any(given[name] for name in OPTIONS):
         from omegadot.commands.check.pytest_session import start_session
 
-        start_session(config)
+        start_session(config, given, _is_typed(config))

@@ -9,14 +9,11 @@ from typing import Any
 import pytest
 
 from omegadot.adapters.registry import AdapterError
-from omegadot.commands.check.baseline_file import Baseline, from_text, to_text
-from omegadot.commands.check.compare import store
+from omegadot.commands.check.baseline_file import from_text, to_text
 from omegadot.commands.check.pytest_items import ENGINE, MESSAGE, ROOT, VERDICT, collect
-from omegadot.commands.check.pytest_options import OPTIONS, PREFIX, dest_of
-from omegadot.commands.check.registry import Registry
-from omegadot.commands.check.select import Arguments, Selection, select
+from omegadot.commands.check.result import REGISTRY, Tally, coverage
+from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.suite import Suite
-from omegadot.commands.check.tally import Tally, coverage
 from omegadot.harness.usage import UsageError
 from omegadot.scenarios import ScenarioError
 
@@ -24,8 +21,7 @@ from omegadot.scenarios import ScenarioError
 SHARED = "omegadot"
 
 
-def _arguments(config: pytest.Config) -> Arguments:
-    given = {name: config.getoption(dest_of(name), None) for name in OPTIONS}
+def _arguments(given: dict[str, Any]) -> Arguments:
     return Arguments(
         engines=given["engine"] or (),
         adapters=given["adapter"] or (),
@@ -34,18 +30,11 @@ def _arguments(config: pytest.Config) -> Arguments:
         exceptions=given["exceptions"] or (),
         baseline=given["baseline"],
         update=bool(given["update-baseline"]),
-        timeout=config.getoption(dest_of("timeout")),
+        timeout=given["timeout"],
     )
 
 
-def _is_typed(config: pytest.Config) -> bool:
-    """Whether an option of ours was typed, and does not come from a configuration file."""
-    options = tuple(f"{start}{name}" for name in OPTIONS for start in ("--", PREFIX))
-    typed = [str(arg).partition("=")[0] for arg in config.invocation_params.args]
-    return any(argument in options for argument in typed)
-
-
-def _take_paths(config: pytest.Config) -> tuple[tuple[str, ...], bool]:
+def _take_paths(config: pytest.Config, typed: bool) -> tuple[tuple[str, ...], bool]:
     """The checks named among the paths, and whether nothing besides checks is to be collected.
 
     Checks stand alone where they were requested on the command line and no path was.
@@ -53,40 +42,38 @@ def _take_paths(config: pytest.Config) -> tuple[tuple[str, ...], bool]:
     named = tuple(arg for arg in config.args if arg.startswith(f"{ROOT}::"))
     config.args = [arg for arg in config.args if arg not in named]
     pathless = config.args_source is not pytest.Config.ArgsSource.ARGS or not config.args
-    alone = pathless and (bool(named) or _is_typed(config))
+    alone = pathless and (bool(named) or typed)
     if alone:
         config.args = []
     return named, alone
 
 
-def start_session(config: pytest.Config) -> None:
-    """Select, start the engines, and register the session. Wrong usage ends pytest."""
+def start_session(config: pytest.Config, given: dict[str, Any], typed: bool) -> None:
+    """Select, start the engines, and register the session. Wrong usage ends pytest.
+
+    given: the options, by name.  typed: whether one of them stands on the command line.
+    """
     shared: dict[str, Any] = getattr(config, "workerinput", {})
-    named, alone = _take_paths(config)
+    named, alone = _take_paths(config, typed)
     if alone and getattr(config.option, "dist", "no") == "load":
         config.option.dist = "loadscope"  # a scenario's checks stay together, and it is run once
     try:
-        selection = select(_arguments(config))
+        selection = select(_arguments(given))
         workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
         selection = replace(selection, jobs=max(1, selection.jobs // workers))
-        registry = Registry.from_json(shared[SHARED]) if SHARED in shared else None
+        registry = REGISTRY.validate_json(shared[SHARED]) if SHARED in shared else None
         suite = Suite(selection, registry)
     except (AdapterError, ScenarioError, UsageError) as problem:
         raise pytest.UsageError(f"omegadot: {problem}") from None
-    config.pluginmanager.register(
-        PytestSession(config, selection, suite, named), "omegadot-session"
-    )
+    config.pluginmanager.register(PytestSession(config, suite, named), "omegadot-session")
 
 
 class PytestSession:
     """One session. named: node ids, or the beginnings of some, that are to be run alone."""
 
-    def __init__(
-        self, config: pytest.Config, selection: Selection, suite: Suite, named: tuple[str, ...]
-    ) -> None:
-        self.config, self.selection, self.suite, self.named = config, selection, suite, named
+    def __init__(self, config: pytest.Config, suite: Suite, named: tuple[str, ...]) -> None:
+        self.config, self.suite, self.named = config, suite, named
         self.tally = Tally()
-        self.figures: dict[str, Baseline] = suite.figures
         self.remarks: list[str] = []
 
     def pytest_report_header(self) -> list[str]:
@@ -100,20 +87,21 @@ class PytestSession:
         self, session: pytest.Session, items: list[pytest.Item]
     ) -> None:
         """Add the checks, before the options that select among items look at them."""
+        below = tuple(f"{name}::" for name in self.named)
         for item in collect(self.suite, session):
-            if not self.named or any(_stands_below(item.nodeid, name) for name in self.named):
+            if not self.named or f"{item.nodeid}::".startswith(below):
                 items.append(item)
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_configure_node(self, node: Any) -> None:
         """Give what the engines reported to a worker of xdist, so that all collect the same."""
-        node.workerinput[SHARED] = self.suite.registry.to_json()
+        node.workerinput[SHARED] = REGISTRY.dump_json(self.suite.registry).decode()
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_testnodedown(self, node: Any) -> None:
         """Take the figures that a worker of xdist has measured."""
         for engine, text in getattr(node, "workeroutput", {}).get(SHARED, {}).items():
-            self.figures.setdefault(engine, {}).update(from_text(text))
+            self.suite.figures.setdefault(engine, {}).update(from_text(text))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Count a check by its engine."""
@@ -127,14 +115,11 @@ class PytestSession:
         """End the engines, store the figures, and fail where an engine was skipped throughout."""
         self.suite.finish()
         if hasattr(self.config, "workeroutput"):
-            texts = {name: to_text(name, found) for name, found in self.figures.items()}
+            texts = {name: to_text(name, found) for name, found in self.suite.figures.items()}
             self.config.workeroutput[SHARED] = texts
             return
-        folder = self.selection.baseline
-        if self.selection.update and folder is not None:
-            written = store(folder, self.suite.registry.subjects, self.figures)
-            self.remarks += [f"baseline written: {path}" for path in written]
-        named = [choice.name for choice in self.selection.choices if choice.required]
+        self.remarks += [f"baseline written: {path}" for path in self.suite.store()]
+        named = [choice.name for choice in self.suite.selection.choices if choice.required]
         idle = self.tally.only_skipped(named)
         self.remarks += idle
         if idle and session.exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
@@ -150,7 +135,3 @@ class PytestSession:
     def pytest_unconfigure(self) -> None:
         """End the engines, however the session ended."""
         self.suite.finish()
-
-
-def _stands_below(nodeid: str, name: str) -> bool:
-    return nodeid == name or nodeid.startswith(f"{name}::")

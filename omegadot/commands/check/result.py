@@ -1,10 +1,21 @@
-"""A check and what comes of it."""
+"""Checks: which there are before any is made, what comes of each, and how an engine's ended."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import Literal
 
+from pydantic import TypeAdapter
+
+from omegadot.gates.case import Case
+from omegadot.harness.plan import Engine
+from omegadot.reports.text.numbers import times
+
+GATES_OF_A_SCENARIO = ("model", "equation")
+GATES_OF_A_RUN = ("scheme", "invariants", "trajectory")
 Verdict = Literal["pass", "fail", "declared", "skip", "error"]
 
 
@@ -54,3 +65,94 @@ def skipped(reason: str) -> Result:
 def error(outcome: str, reason: str) -> Result:
     """An engine that did not answer."""
     return Result("error", f"{outcome}: {reason}", outcome)
+
+
+@dataclass
+class Tally:
+    """Verdicts by engine, and the first reason for a skip."""
+
+    verdicts: dict[str, Counter[str]] = field(default_factory=dict)
+    reasons: dict[str, str] = field(default_factory=dict)
+
+    def add(self, engine: str, verdict: str, message: str = "") -> None:
+        """Count one check."""
+        self.verdicts.setdefault(engine, Counter())[verdict] += 1
+        if verdict == "skip":
+            self.reasons.setdefault(engine, message)
+
+    def only_skipped(self, named: Iterable[str]) -> list[str]:
+        """A sentence for each engine requested by name of which every check was skipped."""
+        return [
+            f"{engine}: all of its {times(sum(self.verdicts[engine].values()), 'check')} "
+            f"{'was' if sum(self.verdicts[engine].values()) == 1 else 'were'} skipped, and a skip "
+            f"is not a pass ({self.reasons[engine]})."
+            for engine in dict.fromkeys(named)
+            if set(self.verdicts.get(engine, ())) == {"skip"}
+        ]
+
+
+@dataclass(frozen=True)
+class Subject:
+    """An engine that started. integrators: those to check.  declared: all that it has."""
+
+    name: str
+    version: str
+    integrators: tuple[str, ...]
+    declared: tuple[str, ...]
+
+    @property
+    def whole(self) -> Subject:
+        """The same engine with all of its integrators."""
+        return replace(self, integrators=self.declared)
+
+
+def checks_of(subjects: Iterable[Subject], cases: Sequence[Case]) -> list[Check]:
+    """Every check, scenario by scenario, so that each is run once and then done with."""
+    found = []
+    for case, subject in product(cases, subjects):
+        where = (subject.name, case.name)
+        found += [Check(*where, gate) for gate in GATES_OF_A_SCENARIO]
+        if subject.name == "exact":  # it is not stepped, and has its invariants to show
+            found.append(Check(*where, "invariants"))
+            continue
+        runs = product(subject.integrators, case.sweeps, GATES_OF_A_RUN)
+        found += [Check(*where, gate, name, sweep.timestep) for name, sweep, gate in runs]
+    return found
+
+
+def subject_of(engine: Engine) -> Subject:
+    """What is to be known of an engine that started."""
+    return Subject(
+        engine.name,
+        engine.description.version,
+        tuple(i.name for i in engine.integrators),
+        tuple(i.name for i in engine.description.integrators),
+    )
+
+
+@dataclass(frozen=True)
+class Registry:
+    """Engines that started, and those that did not, with outcome and reason."""
+
+    subjects: tuple[Subject, ...]
+    missing: dict[str, tuple[str, str]]
+
+
+REGISTRY = TypeAdapter(Registry)
+"""Makes a registry a text, and again a registry of the text in another process."""
+
+
+def coverage(subjects: Sequence[Subject], checks: Sequence[Check]) -> list[str]:
+    """Engine, version, and how many scenarios, gates and checks; a line an engine."""
+    lines = []
+    for subject in subjects:
+        own = [check for check in checks if check.engine == subject.name]
+        scenarios = len({check.scenario for check in own if check.scenario})
+        gates = len({check.gate for check in own if check.scenario})
+        chosen = set(subject.integrators) != set(subject.declared)
+        name = f"{subject.name} {subject.version}" + (
+            f" ({', '.join(subject.integrators)})" if chosen else ""
+        )
+        covered = f"{times(scenarios, 'scenario')} x {times(gates, 'gate')}"
+        lines.append(f"{name}: {covered}, {times(len(own), 'check')}")
+    return lines

@@ -33,16 +33,15 @@ class Arguments:
 
 @dataclass(frozen=True)
 class Selection:
-    """What to check. unknown: engines that are required and unknown."""
+    """What to check. unknown: engines that are required and unknown.  baseline: a folder."""
+
+    arguments: Arguments
 
     choices: list[EngineChoice]
     cases: list[Case]
     exceptions: list[DeclaredException]
-    required: frozenset[str] = frozenset()
-    unknown: tuple[str, ...] = ()
-    baseline: Path | None = None
-    update: bool = False
-    timeout: float = 60.0
+    unknown: tuple[str, ...]
+    baseline: Path | None
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
 
 
@@ -63,12 +62,10 @@ def select(arguments: Arguments) -> Selection:
             wanted.append(name)
     choices = [] if unknown and not wanted else engine_choices(wanted, arguments.adapters)
     return Selection(
-        choices=choices,
+        arguments,
+        choices,
         cases=[case_of(scenario, ()) for scenario in scenarios_of(arguments.scenarios)],
         exceptions=exceptions_of(choices, map(Path, arguments.exceptions)),
-        required=frozenset(arguments.required),
         unknown=unknown,
         baseline=None if arguments.baseline is None else Path(arguments.baseline),
-        update=arguments.update,
-        timeout=arguments.timeout,
     )

@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 
-from omegadot.commands.check.baseline import answered, figures_of
-from omegadot.commands.check.baseline_file import Baseline, ScenarioFigures, read_baseline
+from omegadot.commands.check.baseline import answered, figures_of, updated
+from omegadot.commands.check.baseline_file import ScenarioFigures, read_baseline, write_baseline
 from omegadot.commands.check.compare import GATE as BASELINE
 from omegadot.commands.check.compare import baseline_checks, compare
-from omegadot.commands.check.exceptions import matches_nothing, with_exceptions
-from omegadot.commands.check.generate import checks_of
+from omegadot.commands.check.exceptions import matches_nothing, unmatched, with_exceptions
 from omegadot.commands.check.judge import results_of
-from omegadot.commands.check.registry import Registry
-from omegadot.commands.check.result import Check, Result, error, skipped
+from omegadot.commands.check.result import (
+    Check,
+    Registry,
+    Result,
+    checks_of,
+    error,
+    skipped,
+    subject_of,
+)
 from omegadot.commands.check.select import Selection
-from omegadot.commands.check.unmatched import unmatched
 from omegadot.diagnosis.diagnose import causes_of
 from omegadot.gates.case import Case
-from omegadot.harness.outcome import JudgedCase, RunRequest
+from omegadot.harness.outcome import RunRequest
 from omegadot.harness.runner import Runner
 
 START, EXCEPTIONS = "start", "exceptions"
@@ -35,22 +41,26 @@ class Suite:
         self.selection = selection
         self._runner: Runner | None = None
         self.registry = registry or self._start()
-        self._stored: dict[str, Baseline | None] = {}
-        if selection.baseline is not None:
-            for subject in self.registry.subjects:
-                self._stored[subject.name] = read_baseline(selection.baseline, subject.name)
-        self._unmatched = self._unmatched_exceptions()
+        # Engines that did not start: outcome and reason.
+        text = "no engine of this name is known; install the package that announces it"
+        unknown = dict.fromkeys(selection.unknown, ("not-installed", text))
+        self._absent = {**self.registry.missing, **unknown}
+        subjects, folder, cases = self.registry.subjects, selection.baseline, selection.cases
+        self._versions = {s.name: s.version for s in subjects}
+        self._stored = {s.name: read_baseline(folder, s.name) if folder else None for s in subjects}
+        self._unmatched = {
+            s.name: unmatched(selection.exceptions, s, cases, self._stored[s.name])
+            for s in subjects
+        }
         self.checks: list[Check] = self._generate()
         self._results: dict[Check, Result] = {}
         self.figures: dict[str, dict[str, ScenarioFigures]] = {}
 
     def _start(self) -> Registry:
         chosen = self.selection
-        runner = Runner(
-            RunRequest(
-                chosen.cases, chosen.choices, seed=SEED, timeout=chosen.timeout, jobs=chosen.jobs
-            )
-        )
+        timeout, jobs = chosen.arguments.timeout, chosen.jobs
+        request = RunRequest(chosen.cases, chosen.choices, seed=SEED, timeout=timeout, jobs=jobs)
+        runner = Runner(request)
         try:
             runner.engines.start()
         except BaseException:
@@ -58,7 +68,20 @@ class Suite:
             runner.engines.finish()
             raise
         self._runner = runner
-        return Registry.of(runner.engines)
+        missing = {c.name: (a.outcome, a.reason) for c, a in runner.engines.missing}
+        return Registry(tuple(map(subject_of, runner.engines.started)), missing)
+
+    def store(self) -> list[Path]:
+        """The files written, where baselines are to be updated: of every engine with figures."""
+        folder, written = self.selection.baseline, list[Path]()
+        if folder is None or not self.selection.arguments.update:
+            return written
+        for subject in self.registry.subjects:
+            if subject.name in self.figures:
+                stored = read_baseline(folder, subject.name)
+                whole = updated(stored, self.figures[subject.name], subject)
+                written.append(write_baseline(folder, subject.name, whole))
+        return written
 
     def finish(self) -> None:
         """End the workers; they are started again if another result is requested."""
@@ -67,79 +90,52 @@ class Suite:
             self._runner = None
 
     def _generate(self) -> list[Check]:
-        names = [choice.name for choice in self.selection.choices]
-        absent = [n for n in (*names, *self.selection.unknown) if n in self._absences()]
-        found = [Check(name, "", START) for name in absent]
-        found += [Check(name, "", EXCEPTIONS) for name in self._unmatched]
-        comparing = self.selection.baseline is not None and not self.selection.update
+        names = [*(choice.name for choice in self.selection.choices), *self.selection.unknown]
+        found = [Check(name, "", START) for name in names if name in self._absent]
+        found += [Check(name, "", EXCEPTIONS) for name, left in self._unmatched.items() if left]
+        comparing = self.selection.baseline and not self.selection.arguments.update
         for case in self.selection.cases:
             found += checks_of(self.registry.subjects, [case])
             for subject in self.registry.subjects if comparing else ():
                 found += baseline_checks(subject, [case], self._stored[subject.name])
         return found
 
-    def _absences(self) -> dict[str, tuple[str, str]]:
-        """Engines that did not start: outcome and reason."""
-        text = "no engine of this name is known; install the package that announces it"
-        unknown = dict.fromkeys(self.selection.unknown, ("not-installed", text))
-        return {**self.registry.missing, **unknown}
-
-    def _unmatched_exceptions(self) -> dict[str, list[str]]:
-        """What is reported of exceptions that match no check, by engine."""
-        found = {}
-        for subject in self.registry.subjects:
-            stored = self._stored.get(subject.name)
-            left = unmatched(self.selection.exceptions, subject, self.selection.cases, stored)
-            if left:
-                found[subject.name] = [matches_nothing(exception) for exception in left]
-        return found
-
     def result_of(self, check: Check) -> Result:
         """The result of one of the checks, from the one run of its scenario."""
         if check.gate == START:
-            return self._of_start(check)
+            outcome, reason = self._absent[check.engine]
+            required = check.engine in self.selection.arguments.required
+            if outcome in ("not-installed", "unsupported") and not required:
+                return skipped(f"{outcome}: {reason}")
+            return error(outcome, reason)
         if check.gate == EXCEPTIONS:
-            return Result("fail", " ".join(self._unmatched[check.engine]))
+            return Result("fail", " ".join(map(matches_nothing, self._unmatched[check.engine])))
         if check not in self._results:
             self._run(next(c for c in self.selection.cases if c.name == check.scenario))
-        own = [e for e in self.selection.exceptions if e.engine == check.engine]
-        return with_exceptions(check, self._results[check], own)
-
-    def _of_start(self, check: Check) -> Result:
-        outcome, reason = self._absences()[check.engine]
-        required = check.engine in self.selection.required
-        if outcome in ("not-installed", "unsupported") and not required:
-            return skipped(f"{outcome}: {reason}")
-        return error(outcome, reason)
-
-    def _judge(self, case: Case) -> JudgedCase:
-        if self._runner is None:
-            self._start()
-        assert self._runner is not None
-        try:
-            return self._runner.run_case(case)
-        except BaseException:
-            self._runner.engines.stop()  # no one waits for what they are busy with
-            raise
+        return with_exceptions(check, self._results[check], self.selection.exceptions)
 
     def _run(self, case: Case) -> None:
         """Run one scenario on every engine; keep its checks' results, not the trajectories."""
+        if self._runner is None:
+            self._start()
+        assert self._runner is not None
         with warnings.catch_warnings():
             # An engine that diverges overflows on its way; the gates state so.
             warnings.simplefilter("ignore", RuntimeWarning)
-            judged = self._judge(case)
+            try:
+                judged = self._runner.run_case(case)
+            except BaseException:
+                self._runner.engines.stop()  # no one waits for what they are busy with
+                raise
             for found in judged.engines:
-                self._results |= results_of(judged, found, causes_of(judged, found, SEED))
+                self._results |= dict(results_of(judged, found, causes_of(judged, found, SEED)))
                 if judged.truth is not None and answered(found):
                     self.figures.setdefault(found.engine.name, {})[case.name] = figures_of(found)
         lost = error("raised", judged.reason or "the engine gave no answer")
         for check in self.checks:
             if check.scenario == case.name and check.gate == BASELINE:
-                self._results[check] = self._compared(check)
+                now = self.figures.get(check.engine, {}).get(check.scenario)
+                stored, version = self._stored[check.engine], self._versions[check.engine]
+                self._results[check] = compare(check, stored, now, version)
             elif check.scenario == case.name:
                 self._results.setdefault(check, lost)
-
-    def _compared(self, check: Check) -> Result:
-        version = next(s.version for s in self.registry.subjects if s.name == check.engine)
-        now = self.figures.get(check.engine, {}).get(check.scenario)
-        return compare(check, self._stored[check.engine], now, version)

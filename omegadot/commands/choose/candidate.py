@@ -3,21 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.commands.choose.ruler import Ruler
-from omegadot.commands.choose.search import (
-    Edge,
-    Range,
-    Seeking,
-    Trials,
-    confirmed,
-    edge_of,
-    largest_step,
-)
-from omegadot.commands.choose.trial import Trial
+from omegadot.commands.choose.ruler import CHANNELS, NoTruthError, Ruler
+from omegadot.commands.choose.search import Edge, Search, Trials, edge_of, order_between
+from omegadot.commands.choose.trial import Row, Trial
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine
 from omegadot.workers.wire import state_from
@@ -26,6 +18,8 @@ LARGEST_TURN = math.pi  # rad a step; beyond half a turn attitudes cannot be dis
 FEWEST_STEPS = 2
 UNDECLARED = 2.0  # the order to begin with where none is declared
 MOST_RECHECKS = 8
+LIKE = (0.75, 1.35)  # an order within these of the declared one is trusted to go on
+Limits = Mapping[str, float]
 
 
 class BrokenError(Exception):
@@ -38,13 +32,17 @@ class BrokenError(Exception):
 
 @dataclass
 class Candidate:
-    """What was found out about an engine's integrator.
+    """What was found out about an engine's integrator, run by run.
 
-    variants: by requirement and factor, the edge for that limit multiplied.
+    budget: s that one run may take.  edge: for the limits.  variants: by requirement and factor,
+    the edge for that limit multiplied.
     """
 
     engine: Engine
     integrator: Integrator
+    driver: Driver
+    ruler: Ruler
+    budget: float
     trials: Trials = field(default_factory=dict)
     edge: Edge = field(default_factory=lambda: Edge(None, None))
     variants: dict[tuple[str, float], Edge] = field(default_factory=dict)
@@ -56,73 +54,86 @@ class Candidate:
         """Engine and integrator, as the command line takes them."""
         return f"{self.engine.name}:{self.integrator.name}"
 
-    def declared_order(self, limits: Mapping[str, float]) -> float:
+    def declared_order(self, limits: Limits) -> float:
         """The lowest order that is declared in the channels requested."""
         orders = self.integrator.orders
-        named = {"attitude": "attitude", "energy-drift": "energy"}
-        named |= {"momentum-drift": "angular_momentum", "linear-momentum-drift": "linear_momentum"}
-        found = [orders[c] for key in limits if (c := named.get(key, "omega")) in orders]
+        found = [orders[c] for key in limits if (c := CHANNELS.get(key, "omega")) in orders]
         return float(min(found, default=UNDECLARED))
 
+    def nearest(self, limits: Limits) -> Trial | None:
+        """The run that came nearest to meeting every limit; the larger step where two are equal."""
+        trials = self.trials.values()
+        return min(trials, key=lambda t: (t.ratio(limits), t.steps), default=None)
 
-class Prober:
-    """Runs one candidate's integrator. budget: s that one run may take."""
+    def predicted(self, limits: Limits) -> Row | None:
+        """Where the order states the limits would be met: a guess, not a verdict.
 
-    def __init__(self, driver: Driver, ruler: Ruler, candidate: Candidate, budget: float) -> None:
-        self._driver, self._ruler, self._budget = driver, ruler, budget
-        self._candidate = candidate
-        rate = ruler.yardstick.rate
-        half_turns = math.ceil(rate * ruler.duration / LARGEST_TURN)
-        self._range = Range(max(FEWEST_STEPS, half_turns), self._most_steps)
+        order: that of the two finest runs, or the declared one where there is but one.  seconds:
+        what one such run would take. It lies beyond the search's budget.
+        """
+        trials = sorted(self.trials.values(), key=lambda t: t.steps)
+        order, declared = None, self.declared_order(limits)
+        if len(trials) > 1:
+            order = order_between(trials[-2], trials[-1], limits)
+        elif trials and math.isfinite(trials[0].ratio(limits)):
+            order = declared
+        if order is None or not LIKE[0] * declared <= order <= LIKE[1] * declared:
+            return None  # the errors do not shrink at their order yet: the rest cannot be predicted
+        finest = trials[-1]
+        steps = finest.steps * finest.ratio(limits) ** (1.0 / order)
+        timestep = finest.timestep * finest.steps / steps
+        return {"timestep": timestep, "order": order, "seconds": steps * finest.seconds_per_step}
 
-    def _most_steps(self) -> int:
+    @property
+    def fewest_steps(self) -> int:
+        """As few steps a horizon as keep each below the turn that attitudes can show."""
+        angle = self.ruler.yardstick.rate * self.ruler.duration
+        return max(FEWEST_STEPS, math.ceil(angle / LARGEST_TURN))
+
+    def most_steps(self) -> int:
         """As many as the budget has time for, at the best pace seen: a busy machine is not slow."""
-        known = [t.seconds_per_step for t in self._candidate.trials.values() if t.seconds_per_step]
-        if not known:
-            return self._range.fewest
-        most = int(self._budget / min(known))
-        return max(most, self._range.fewest, *self._candidate.trials)
+        known = [t.seconds_per_step for t in self.trials.values() if t.seconds_per_step]
+        affordable = int(self.budget / min(known)) if known else 0
+        return max(affordable, self.fewest_steps, *(self.trials if known else ()))
 
     def evaluate(self, steps: int, dense: bool = False) -> Trial:
         """Run the whole horizon in so many steps and measure it. Raises BrokenError."""
-        sweep = self._ruler.sweep(steps, dense)
-        name, case = self._candidate.integrator.name, self._ruler.case
-        answer = self._driver.run(case, name, sweep)
-        if answer.outcome == "raised" and any(t.errors for t in self._candidate.trials.values()):
+        sweep = self.ruler.sweep(steps, dense)
+        answer = self.driver.run(self.ruler.case, self.integrator.name, sweep)
+        if answer.outcome == "raised" and any(t.errors for t in self.trials.values()):
             # It works with other steps, so this one is simply too large for it.
-            return Trial(steps, sweep.timestep, {}, 0.0, 0, answer.outcome, answer.reason)
+            return Trial(steps, sweep.timestep, {}, 0.0, 0)
         if not answer.ok:
             raise BrokenError(answer.outcome, answer.reason)
-        state = state_from(answer.result["state"])
-        errors = self._ruler.errors(sweep, state)
+        errors = self.ruler.errors(sweep, state_from(answer.result["state"]))
         seconds = float(answer.result["seconds_per_step"])
         return Trial(steps, sweep.timestep, errors, seconds, len(sweep.times))
 
-    def _start(self) -> int:
-        """The middle of the scenario's own steps, in steps a horizon."""
-        steps = sorted(sweep.timestep for sweep in self._ruler.case.sweeps)
-        wanted = math.ceil(self._ruler.duration / steps[len(steps) // 2])
-        return max(wanted, self._range.fewest)
+    def seek(self, limits: Limits, factors: Sequence[float]) -> None:
+        """Find the largest step, and that for each limit multiplied by each of the factors."""
+        # The middle of the scenario's own steps is tried first.
+        steps = sorted(sweep.timestep for sweep in self.ruler.case.sweeps)
+        start = max(math.ceil(self.ruler.duration / steps[len(steps) // 2]), self.fewest_steps)
+        try:
+            self.trials[start] = self.evaluate(start)
+            self.edge = self._looked_at_closely(Search.confirmed, limits)
+            for key in limits:
+                for factor in factors:
+                    changed = {**limits, key: limits[key] * factor}
+                    edge = self._looked_at_closely(Search.largest_step, changed)
+                    self.variants[key, factor] = edge
+        except (BrokenError, NoTruthError) as error:
+            self.outcome, self.reason = getattr(error, "outcome", "raised"), str(error)
 
-    def seek(self, limits: Mapping[str, float]) -> Edge:
-        """The largest step, tried at its neighbours and at every one of its samples."""
-        trials = self._candidate.trials
-        if not trials:
-            trials[self._start()] = self.evaluate(self._start())
-        return self._looked_at_closely(confirmed, limits)
-
-    def vary(self, limits: Mapping[str, float]) -> Edge:
-        """The largest step for other limits, beginning with the runs that were made already."""
-        return self._looked_at_closely(largest_step, limits)
-
-    def _looked_at_closely(self, seeking: Seeking, limits: Mapping[str, float]) -> Edge:
+    def _looked_at_closely(self, seek: Callable[[Search], Edge], limits: Limits) -> Edge:
         """What is found, until it passes at every one of its samples too."""
-        trials, declared = self._candidate.trials, self._candidate.declared_order(limits)
+        least, declared = self.fewest_steps, self.declared_order(limits)
+        search = Search(self.trials, self.evaluate, limits, least, self.most_steps, declared)
         for _ in range(MOST_RECHECKS):
-            found = seeking(trials, self.evaluate, limits, self._range, declared).passing
-            if found is None or found.samples >= len(self._ruler.sweep(found.steps, True).times):
+            found = seek(search).passing
+            if found is None or found.samples >= len(self.ruler.sweep(found.steps, True).times):
                 break
-            trials[found.steps] = self.evaluate(found.steps, dense=True)
-            if trials[found.steps].passes(limits):
+            self.trials[found.steps] = self.evaluate(found.steps, dense=True)
+            if self.trials[found.steps].passes(limits):
                 break
-        return edge_of(trials, limits)
+        return edge_of(self.trials, limits)

@@ -2,56 +2,45 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
 
 from omegadot.commands.choose.candidate import Candidate
 from omegadot.commands.choose.chooser import CaseChoice, Choice
-from omegadot.commands.choose.ranking import Point, front, ranked
-from omegadot.commands.choose.requirements import Requirements
-from omegadot.commands.choose.spread import Spread
-from omegadot.commands.choose.trial import Trial
-from omegadot.commands.choose.trial_rows import (
-    Row,
-    missed_rows,
-    nearest_trial,
-    predicted_row,
-    spread_row,
-    trial_row,
-)
-from omegadot.commands.choose.variants import Edges, variant_rows
+from omegadot.commands.choose.ranking import Place, Point, Spread, front, ranked
+from omegadot.commands.choose.requirements import ACCURACY
+from omegadot.commands.choose.search import Edge
+from omegadot.commands.choose.trial import Row, Trial
 
 _NOTHING: Row = {"median": 0.0}
+Costs = dict[str, Spread]
 
 
 class CaseDocument:
     """One case's part of the document."""
 
-    def __init__(self, choice: Choice, found: CaseChoice, wanted: Requirements) -> None:
-        self._choice, self._found, self._wanted = choice, found, wanted
+    def __init__(self, choice: Choice, found: CaseChoice) -> None:
+        self._choice, self._found, self._wanted = choice, found, choice.requirements
         self._duration = found.case.scenario.run.duration
 
-    def _seconds(self, candidate: Candidate, steps: int) -> Spread | None:
-        """What the whole horizon takes in so many steps."""
-        spread = self._choice.costs.get((self._found.case.name, candidate.name))
-        return None if spread is None else spread.scaled(steps)
+    def _per_step(self, candidate: Candidate) -> Spread | None:
+        return self._choice.costs.get((self._found.case.name, candidate.name))
 
-    def _fast_enough(self, candidate: Candidate, trial: Trial) -> bool:
-        """Whether the median speed meets the requirement, if there is one."""
-        least, seconds = self._wanted.real_time_factor, self._seconds(candidate, trial.steps)
-        if seconds is None:
-            return False
-        return least is None or self._duration / seconds.median >= least
+    def _seconds(self, candidate: Candidate, trial: Trial | None) -> Spread | None:
+        """What the whole horizon takes in as many steps as a run had."""
+        spread = self._per_step(candidate)
+        return spread.scaled(trial.steps) if spread and trial else None
 
-    def qualified(self, edges: Edges | None = None) -> dict[str, Spread]:
+    def _too_slow(self, seconds: Spread) -> bool:
+        least = self._wanted.real_time_factor
+        return least is not None and self._duration / seconds.median < least
+
+    def qualified(self, edges: Mapping[str, Edge] | None = None) -> Costs:
         """Seconds a horizon of those that meet everything, by candidate; `edges` for their own."""
-        edges = edges or {c.name: c.edge for c in self._found.candidates}
         qualified = {}
         for candidate in self._found.candidates:
-            edge = edges[candidate.name]
-            if candidate.outcome != "ok" or edge.passing is None:
-                continue
-            seconds = self._seconds(candidate, edge.passing.steps)
-            if seconds is not None and self._fast_enough(candidate, edge.passing):
+            edge = edges[candidate.name] if edges else candidate.edge
+            seconds = self._seconds(candidate, edge.passing)
+            if candidate.outcome == "ok" and seconds and not self._too_slow(seconds):
                 qualified[candidate.name] = seconds
         return qualified
 
@@ -64,9 +53,9 @@ class CaseDocument:
         """Everything about the case; `candidates` in order of rank, those out of it after."""
         case, ruler = self._found.case, self._found.ruler
         costs = self.qualified()
-        places = {place.key: place for place in ranked(costs)}
+        places = {place.candidate: place for place in ranked(costs)}
         on_front = self._front(costs)
-        rows = [self._candidate(c, costs, places, on_front) for c in self._found.candidates]
+        rows = [self._candidate(c, places, on_front) for c in self._found.candidates]
         last = len(rows) + 1
         rows.sort(key=lambda r: (r["rank"] or last, -(r["real_time_factor"] or _NOTHING)["median"],
                                  (r["nearest"] or {}).get("ratio", float("inf"))))  # fmt: skip
@@ -81,29 +70,31 @@ class CaseDocument:
             "unverifiable": list(self._found.unverifiable),
             "qualifying": len(costs),
             "candidates": rows,
-            "variants": variant_rows(
-                self._found.candidates, self._wanted, self.qualified, places, self._duration
-            ),
+            "variants": self._variants(places),
         }
 
     def _candidate(
-        self, candidate: Candidate, costs: dict[str, Spread], places: Any, on_front: set[str]
+        self, candidate: Candidate, places: Mapping[str, Place], on_front: set[str]
     ) -> Row:
         limits, edge = self._wanted.limits, candidate.edge
+        found, broken = edge.passing, candidate.outcome != "ok"
         place = places.get(candidate.name)
-        seconds = self._seconds(candidate, edge.passing.steps) if edge.passing else None
-        nearest = edge.passing or nearest_trial(candidate, limits)
-        broken = candidate.outcome != "ok"
-        missed = [] if edge.passing else missed_rows(nearest, limits)
-        factor = seconds.under(self._duration) if seconds else None
+        seconds = self._seconds(candidate, found)
+        factor = seconds.under(self._duration) if seconds and not broken else None
+        nearest = found or candidate.nearest(limits)
+        missed = nearest.missed_rows(limits) if nearest and not found else []
         least = self._wanted.real_time_factor
-        if factor is not None and least is not None and factor.median < least and not broken:
+        if found and seconds and factor and least and self._too_slow(seconds):
             missed.append(
                 {"requirement": "real-time-factor", "limit": least, "unit": "1"}
                 | {"found": factor.median, "factor": least / factor.median}
-                | {"timestep": nearest.timestep if nearest else None}
-                | {"steps": nearest.steps if nearest else None}
+                | {"timestep": found.timestep, "steps": found.steps}
             )
+
+        def row(trial: Trial | None) -> Row | None:
+            return trial.row(limits) if trial else None
+
+        per_step = self._per_step(candidate)
         return {
             "engine": candidate.engine.name,
             "version": candidate.engine.description.version,
@@ -113,24 +104,20 @@ class CaseDocument:
             "reason": candidate.reason,
             "rank": place.rank if place else None,
             "tied": bool(place and place.tied),
-            "found": None if broken else trial_row(edge.passing, limits),
-            "larger": trial_row(edge.failing, limits),
-            "passes_again": trial_row(edge.again, limits),
-            "nearest": trial_row(nearest, limits),
+            "found": row(None if broken else found),
+            "larger": row(edge.failing),
+            "passes_again": row(edge.again),
+            "nearest": row(nearest),
             "missed": missed,
-            "real_time_factor": spread_row(factor) if factor and not broken else None,
-            "time_per_step": self._time_per_step(candidate),
+            "real_time_factor": factor and factor.row(),
+            "time_per_step": per_step and per_step.row(),
             "memory": self._choice.memory.get(candidate.engine.name),
             "on_front": candidate.name in on_front,
-            "predicted": None if edge.passing or broken else predicted_row(candidate, limits),
-            "tried": [trial_row(trial, limits) for _, trial in sorted(candidate.trials.items())],
+            "predicted": None if found or broken else candidate.predicted(limits),
+            "tried": [trial.row(limits) for _, trial in sorted(candidate.trials.items())],
         }
 
-    def _time_per_step(self, candidate: Candidate) -> Row | None:
-        spread = self._choice.costs.get((self._found.case.name, candidate.name))
-        return spread_row(spread) if spread else None
-
-    def _front(self, costs: dict[str, Spread]) -> set[str]:
+    def _front(self, costs: Costs) -> set[str]:
         """Those with a run that none beats in cost, error and memory at once."""
         points = []
         for candidate in self._found.candidates:
@@ -138,8 +125,38 @@ class CaseDocument:
                 continue
             memory = float(self._choice.memory.get(candidate.engine.name) or 0.0)
             for trial in candidate.trials.values():
-                seconds = self._seconds(candidate, trial.steps)
-                if seconds is not None and trial.passes(self._wanted.limits):
+                seconds = self._seconds(candidate, trial)
+                if seconds and trial.passes(self._wanted.limits):
                     error = trial.ratio(self._wanted.limits)
                     points.append(Point(candidate.name, (seconds.median, error, memory)))
         return {point.key for point in front(points)}
+
+    def _variants(self, places: Mapping[str, Place]) -> list[Row]:
+        """How the ranking changes when a requirement is halved or doubled, one row for each."""
+        rows, candidates = [], self._found.candidates
+        usual = sorted((name, place.rank) for name, place in places.items())
+        for key, factor in sorted({changed for c in candidates for changed in c.variants}, key=str):
+            edges = {c.name: c.variants.get((key, factor), Edge(None, None)) for c in candidates}
+            costs = self.qualified(edges)
+            order = ranked(costs)
+            ranks = {place.candidate: place.rank for place in order}
+            rows.append(
+                {
+                    "requirement": key,
+                    "factor": factor,
+                    "limit": self._wanted.limits[key] * factor,
+                    "unit": ACCURACY[key][1],
+                    "order": [self._place(place, edges, costs) for place in order],
+                    "same": sorted(ranks.items()) == usual,
+                    "joined": [name for name in ranks if name not in places],
+                    "left": [name for name in places if name not in ranks],
+                }
+            )
+        return rows
+
+    def _place(self, place: Place, edges: Mapping[str, Edge], costs: Costs) -> Row:
+        trial = edges[place.candidate].passing
+        assert trial is not None  # it would not be ranked
+        factor = self._duration / costs[place.candidate].median
+        step = {"timestep": trial.timestep, "steps": trial.steps}
+        return {**vars(place), **step, "real_time_factor": factor}

@@ -11,13 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from omegadot import __version__
-from omegadot.commands.choose.chooser import Choice, Chooser, choices_to_make
+from omegadot.commands.choose.chooser import Choice
 from omegadot.commands.choose.document import document
 from omegadot.commands.choose.motion import Motion, cases_of
-from omegadot.commands.choose.requirements import Requirements, merged
-from omegadot.commands.choose.requirements_file import read_requirements
+from omegadot.commands.choose.requirements import merged, read_requirements
 from omegadot.commands.choose.result import ChooseResult
-from omegadot.commands.progress import Count, Progress, Reporter, Reporting, reporting
+from omegadot.commands.progress import Reporting, reporting
 from omegadot.harness.arguments import engine_choices, several
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import RunRequest
@@ -89,9 +88,8 @@ def choose(
     }
     file = read_requirements(Path(requirements)) if requirements else {}
     wanted = merged(file, requested, str(requirements))
-    given: list[ScenarioLike] = several(scenarios)
     motion = Motion(
-        given,
+        several(scenarios),
         None if body is None else os.fspath(body),
         angular_velocity,
         orientation,
@@ -108,65 +106,39 @@ def choose(
     if out is not None:
         make_folder(Path(out))
     with reporting(progress) as report:
-        choice = _execute(Chooser(request, wanted, budget), report)
-    seconds = round(time.perf_counter() - started, 3)
-    made = {"command": list(command), "budget": budget, "seconds": seconds}
-    result = _result_of(choice, wanted, request.choices, made)
+        choice = Choice(request, wanted, budget, report)
+        choice.execute()
+    now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
+    found = {
+        **document(choice),
+        "omegadot": __version__,
+        "created": now.isoformat(),
+        "command": list(command),
+        "budget": budget,
+        "seconds": round(time.perf_counter() - started, 3),
+        "machine": describe_machine(),
+        "versions": package_versions(),
+    }
+    result = ChooseResult(found, _answered(found, choice))
+    # As the command ends: something qualifies in every case or not, or an engine did not answer.
+    found["exit_code"] = 3 if not result.answered else 0 if result.qualifies else 1
     return result if out is None else replace(result, written=result.save(out))
 
 
 def _choices(engines: Sequence[EngineLike], adapters: Sequence[EngineLike]) -> list[EngineChoice]:
+    """The engines to choose among: not the truth itself, nor the reference unless it is named."""
     choices = engine_choices(engines, adapters)
     if any(choice.name == "exact" and choice.required for choice in choices):
         raise UsageError("--engine exact: it is what the others are measured by; name another.")
-    return choices_to_make(choices)
+    return [c for c in choices if c.name != "exact" and (c.required or c.name != "reference")]
 
 
-def _execute(chooser: Chooser, report: Reporter) -> Choice:
-    report(Progress("starting the engines"))
-
-    def planned(total: int) -> None:
-        count = Count(report, "seeking the largest steps", total)
-        chooser.on_advance = count.advance
-        chooser.on_timing = lambda: count.advance(0, "timing, engine by engine")
-
-    chooser.on_start = planned
-    return chooser.execute()
-
-
-def _result_of(
-    choice: Choice,
-    wanted: Requirements,
-    choices: Sequence[EngineChoice],
-    made: Mapping[str, Any],
-) -> ChooseResult:
-    now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
-    found = {
-        **document(choice, wanted),
-        "omegadot": __version__,
-        "created": now.isoformat(),
-        **made,
-        "machine": describe_machine(),
-        "versions": package_versions(),
-    }
-    result = ChooseResult(found, _answered(found, choice, choices))
-    found["exit_code"] = exit_code(result)
-    return result
-
-
-def exit_code(result: ChooseResult) -> int:
-    """0 something qualifies in every case, 1 not so, 3 an engine failed to answer or to start."""
-    if not result.answered:
-        return 3
-    return 0 if result.qualifies else 1
-
-
-def _answered(found: Mapping[str, Any], choice: Choice, choices: Sequence[EngineChoice]) -> bool:
+def _answered(found: Mapping[str, Any], choice: Choice) -> bool:
     """Whether every engine, the exact solution included, started where it had to and answered."""
-    required = {c.name for c in choices if c.required}
-    for missing, answer in choice.missing:
+    required = {c.name for c in choice.request.choices if c.required}
+    for missing, answer in choice.engines.missing:
         if answer.outcome != "not-installed" or missing.name in required:
             return False
     rows = [row for case in found["scenarios"] for row in case["candidates"]]
-    broken = choice.deaths or any(row["status"] in BROKEN for row in rows)
+    broken = found["worker_deaths"] or any(row["status"] in BROKEN for row in rows)
     return not (broken or any(case["reason"] for case in found["scenarios"]))

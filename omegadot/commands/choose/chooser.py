@@ -4,27 +4,26 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from functools import partial
 
-from omegadot.commands.choose.candidate import BrokenError, Candidate, Prober
+from omegadot.commands.choose.candidate import Candidate
 from omegadot.commands.choose.eligible import unmet
+from omegadot.commands.choose.ranking import Key, Spread, time_all
 from omegadot.commands.choose.requirements import Requirements
 from omegadot.commands.choose.ruler import NoTruthError, Ruler
-from omegadot.commands.choose.spread import Spread
-from omegadot.commands.choose.timing import Timed, time_all
+from omegadot.commands.choose.trial import Trial
+from omegadot.commands.progress import Count, Progress, Reporter
 from omegadot.gates.case import Case
 from omegadot.harness.engines import Engines
 from omegadot.harness.outcome import RunRequest
-from omegadot.harness.plan import Engine, EngineChoice
+from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import Array
 from omegadot.workers.harness_end.pool import outcome_of
 from omegadot.workers.harness_end.process import Answer
 
 FACTORS = (0.5, 2.0)
-TimedKey = tuple[str, str]
 
 
 @dataclass
@@ -43,63 +42,51 @@ class CaseChoice:
 
 @dataclass
 class Choice:
-    """Everything that was found out.
+    """One choice, and everything that is found out for it.
 
-    refused: by engine, what it misses before it steps.  costs: seconds per step, by case and
-    candidate.  memory: bytes, by engine.
-    """
-
-    cases: list[CaseChoice]
-    engines: list[Engine] = field(default_factory=list)
-    missing: list[tuple[EngineChoice, Answer]] = field(default_factory=list)
-    refused: dict[str, list[str]] = field(default_factory=dict)
-    costs: dict[TimedKey, Spread] = field(default_factory=dict)
-    memory: dict[str, int | None] = field(default_factory=dict)
-    deaths: list[tuple[str, str]] = field(default_factory=list)
-
-
-@dataclass
-class Chooser:
-    """One choice. budget: s that one run of the search may take.
-
-    on_start and on_advance report to a progress bar what is planned and done.
+    budget: s that one run of the search may take.  report: how far it is.  refused: by engine, what
+    it misses before it steps.  costs: seconds per step, by case and candidate.  memory: bytes, by
+    engine.
     """
 
     request: RunRequest
     requirements: Requirements
     budget: float
-    on_start: Callable[[int], object] = lambda total: None
-    on_advance: Callable[[], object] = lambda: None
-    on_timing: Callable[[], object] = lambda: None
-    _one_at_a_time: threading.Lock = field(default_factory=threading.Lock)
+    report: Reporter
+    refused: dict[str, list[str]] = field(default_factory=dict)
+    costs: dict[Key, Spread] = field(default_factory=dict)
+    memory: dict[str, int | None] = field(default_factory=dict)
 
-    def execute(self) -> Choice:
-        """Seek, then time. Ctrl-C ends the workers at once and is passed on."""
+    def __post_init__(self) -> None:
+        """Nothing has started yet."""
         self.engines = Engines(self.request)
-        choice = Choice([CaseChoice(case) for case in self.request.cases])
+        self.cases = [CaseChoice(case) for case in self.request.cases]
+        self._one_at_a_time = threading.Lock()
+
+    def execute(self) -> None:
+        """Seek, then time. Ctrl-C ends the workers at once and is passed on."""
+        self.report(Progress("starting the engines"))
         try:
             self.engines.start()
-            choice.engines, choice.missing = self.engines.started, self.engines.missing
-            self._seek_all(choice)
-            self._time(choice)
+            self._seek_all()
+            self._time()
         except BaseException:
             self.engines.stop()
             raise
         finally:
             self.engines.finish()
-        choice.deaths = self.engines.deaths()
-        return choice
 
-    def _seek_all(self, choice: Choice) -> None:
-        for engine in choice.engines:
-            choice.refused[engine.name] = unmet(engine.description, self.requirements)
-        fit = [e for e in choice.engines if not choice.refused[e.name]]
-        self.on_start(sum(len(e.integrators) for e in fit) * len(choice.cases))
-        rulers = [self._exactly(partial(self._ruler, found)) for found in choice.cases]
+    def _seek_all(self) -> None:
+        for engine in self.engines.started:
+            self.refused[engine.name] = unmet(engine.description, self.requirements)
+        fit = [e for e in self.engines.started if not self.refused[e.name]]
+        total = sum(len(e.integrators) for e in fit) * len(self.cases)
+        self._count = Count(self.report, "seeking the largest steps", total)
+        rulers = [self.engines.submit("exact", partial(self._ruler, c)) for c in self.cases]
         for ruler in rulers:
             outcome_of(ruler)
         seeking: list[tuple[CaseChoice, Future[list[Candidate]]]] = []
-        for found in choice.cases:
+        for found in self.cases:
             if found.ruler is None or found.unverifiable:
                 continue
             for engine in fit:
@@ -107,18 +94,12 @@ class Chooser:
                 seeking.append((found, self.engines.submit(engine.name, call)))
         for found, future in seeking:
             candidates = outcome_of(future)
-            found.candidates.extend(candidates)
-
-    def _exactly(self, call: Callable[[], None]) -> Future[None]:
-        return self.engines.submit("exact", call)
+            found.candidates += candidates
 
     def _ruler(self, found: CaseChoice) -> None:
         """Have the case's ruler made, on the exact solution's own thread."""
         case, limits = found.case, self.requirements.limits
-        driver = self.engines.drivers.get("exact")
-        if driver is None:
-            found.reason = "the exact solution could not be started"
-            return
+        driver = self.engines.drivers["exact"]
 
         def solve(times: Array) -> Answer:
             fields = {"system": case.system, "initial": case.initial, "times": times}
@@ -139,46 +120,27 @@ class Chooser:
         declared = {i.name: i for i in driver.integrators()}
         found = []
         for integrator in engine.integrators:
-            candidate = Candidate(engine, declared.get(integrator.name, integrator))
+            own = declared.get(integrator.name, integrator)
+            candidate = Candidate(engine, own, driver, ruler, self.budget)
             found.append(candidate)
-            if not loaded.ok:
-                candidate.outcome, candidate.reason = loaded.outcome, loaded.reason
+            if loaded.ok:
+                candidate.seek(self.requirements.limits, FACTORS)
             else:
-                prober = Prober(driver, ruler, candidate, self.budget)
-                self._seek(candidate, prober)
-            self.on_advance()
+                candidate.outcome, candidate.reason = loaded.outcome, loaded.reason
+            self._count.advance()
         return found
 
-    def _seek(self, candidate: Candidate, prober: Prober) -> None:
-        limits = self.requirements.limits
-        try:
-            candidate.edge = prober.seek(limits)
-            for key in limits:
-                for factor in FACTORS:
-                    changed = self.requirements.scaled(key, factor).limits
-                    candidate.variants[key, factor] = prober.vary(changed)
-        except (BrokenError, NoTruthError) as error:
-            candidate.outcome = getattr(error, "outcome", "raised")
-            candidate.reason = str(error)
-
-    def _time(self, choice: Choice) -> None:
+    def _time(self) -> None:
         """Time every candidate that qualifies, or would if one limit were another."""
-        wanted: dict[TimedKey, Timed] = {}
-        for found in choice.cases:
+        wanted: dict[Key, tuple[Candidate, Trial]] = {}
+        for found in self.cases:
             for candidate in found.candidates:
                 edges = [candidate.edge, *candidate.variants.values()]
                 trial = next((e.passing for e in edges if e.passing is not None), None)
                 if trial is not None and candidate.outcome == "ok":
-                    wanted[found.case.name, candidate.name] = Timed(
-                        found.case, candidate, trial.timestep, trial.steps, trial.seconds_per_step
-                    )
-        self.on_timing()
-        choice.costs = time_all(wanted, self.engines.drivers)
-        for name in {candidate.engine.name for f in choice.cases for candidate in f.candidates}:
+                    wanted[found.case.name, candidate.name] = (candidate, trial)
+        self._count.advance(0, "timing, engine by engine")
+        self.costs = time_all(wanted)
+        for name in {candidate.engine.name for f in self.cases for candidate in f.candidates}:
             with contextlib.suppress(KeyError):
-                choice.memory[name] = self.engines.drivers[name].worker.peak_memory()
-
-
-def choices_to_make(choices: Sequence[EngineChoice]) -> list[EngineChoice]:
-    """The engines to choose among: not the truth itself, nor the reference unless it is named."""
-    return [c for c in choices if c.name != "exact" and (c.required or c.name != "reference")]
+                self.memory[name] = self.engines.drivers[name].worker.peak_memory()

@@ -7,22 +7,20 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import Format, command_line, on_a_terminal
+from omegadot.commands import options
+from omegadot.commands.options import Text, Texts, option
 
 
 def choose(
     scenarios: Annotated[
-        list[str] | None, typer.Argument(metavar="[SCENARIO]...", help="Built-in names or paths.")
+        Texts, typer.Argument(metavar="[SCENARIO]...", help="Built-in names or paths.")
     ] = None,
-    scenario: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="A built-in name or a path; repeatable."),
-    ] = None,
+    scenario: Annotated[Texts, option("NAME", "A built-in name or a path; repeatable.")] = None,
     body: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE#LINK",
-            help="A body: a link of a URDF, MJCF or SDF file, or a TOML file. "
+        Text,
+        option(
+            "FILE#LINK",
+            "A body: a link of a URDF, MJCF or SDF file, or a TOML file. "
             "Without a scenario also give --angular-velocity and --duration.",
         ),
     ] = None,
@@ -35,145 +33,78 @@ def choose(
     ] = False,
     angular_velocity: Annotated[
         tuple[float, float, float] | None,
-        typer.Option(metavar="X Y Z", help="Initial angular velocity, rad/s, body axes."),
+        option("X Y Z", "Initial angular velocity, rad/s, body axes."),
     ] = None,
     orientation: Annotated[
         tuple[float, float, float, float] | None,
-        typer.Option(
-            metavar="W X Y Z", help="Initial orientation, a unit quaternion, world from body."
-        ),
+        option("W X Y Z", "Initial orientation, a unit quaternion, world from body."),
     ] = None,
     duration: Annotated[
-        str | None,
-        typer.Option(
-            metavar="T", help="Simulated time, such as 60 or 1min. Default: the scenario's."
-        ),
+        Text, option("T", "Simulated time, such as 60 or 1min. Default: the scenario's.")
     ] = None,
     requirements: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Requirements in TOML; options given here override it."),
+        Path | None, option("FILE", "Requirements in TOML; options given here override it.")
     ] = None,
-    attitude: Annotated[
-        str | None,
-        typer.Option(metavar="ANGLE", help="Largest attitude error, such as 0.1deg."),
-    ] = None,
-    omega: Annotated[
-        str | None,
-        typer.Option(metavar="RATE", help="Largest error of omega, such as 0.01rad/s."),
-    ] = None,
+    attitude: Annotated[Text, option("ANGLE", "Largest attitude error, such as 0.1deg.")] = None,
+    omega: Annotated[Text, option("RATE", "Largest error of omega, such as 0.01rad/s.")] = None,
     energy_drift: Annotated[
-        str | None,
-        typer.Option(metavar="RATIO", help="Largest relative drift of energy, such as 1e-6."),
+        Text, option("RATIO", "Largest relative drift of energy, such as 1e-6.")
     ] = None,
     momentum_drift: Annotated[
-        str | None,
-        typer.Option(metavar="RATIO", help="Largest relative drift of angular momentum."),
+        Text, option("RATIO", "Largest relative drift of angular momentum.")
     ] = None,
     linear_momentum_drift: Annotated[
-        str | None, typer.Option(metavar="RATIO", help="Largest relative drift of linear momentum.")
+        Text, option("RATIO", "Largest relative drift of linear momentum.")
     ] = None,
     flip_time: Annotated[
-        str | None,
-        typer.Option(metavar="TIME", help="Largest error of a flip's time, such as 1ms."),
+        Text, option("TIME", "Largest error of a flip's time, such as 1ms.")
     ] = None,
     real_time_factor: Annotated[
-        str | None,
-        typer.Option(metavar="X", help="Smallest ratio of simulated to elapsed time."),
+        Text, option("X", "Smallest ratio of simulated to elapsed time.")
     ] = None,
-    precision: Annotated[
-        str | None, typer.Option(metavar="P", help="Floating-point precision: double or single.")
-    ] = None,
-    feature: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME",
-            help="A required feature: pivot, batch, inverse-dynamics; repeatable.",
+    precision: Annotated[Text, option("P", "Floating-point precision: double or single.")] = None,
+    features: Annotated[
+        Texts,
+        option(
+            "NAME", "A required feature: pivot, batch, inverse-dynamics; repeatable.", "--feature"
         ),
     ] = None,
-    licence: Annotated[
-        list[str] | None,
-        typer.Option(metavar="SPDX", help="An allowed licence by its SPDX name; repeatable."),
+    licences: Annotated[
+        Texts, option("SPDX", "An allowed licence by its SPDX name; repeatable.", "--licence")
     ] = None,
-    python: Annotated[
-        str | None,
-        typer.Option(metavar="3.N", help="Python version that the package must support."),
+    python: Annotated[Text, option("3.N", "Python version that the package must support.")] = None,
+    engines: Annotated[
+        Texts, option("NAME[:INTEGRATOR]", "Consider only these engines; repeatable.", "--engine")
     ] = None,
-    engine: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME[:INTEGRATOR]", help="Consider only these engines; repeatable."),
-    ] = None,
-    adapter: Annotated[
-        list[str] | None,
-        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
-    ] = None,
+    adapters: options.Adapters = None,
     budget: Annotated[
-        float,
-        typer.Option(metavar="S", min=0.01, help="Time limit in s for one run of the search."),
+        float, option("S", "Time limit in s for one run of the search.", min=0.01)
     ] = 2.0,
-    timeout: Annotated[
-        float,
-        typer.Option(metavar="S", min=0.1, help="Time limit in s for one request to an engine."),
-    ] = 60.0,
-    jobs: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N",
-            min=1,
-            help="Number of engines that run at the same time. Default: all cores.",
-        ),
-    ] = None,
+    timeout: options.Timeout = 60.0,
+    jobs: options.Jobs = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            metavar="DIR",
-            help="Folder for the choice; in a run's folder it becomes part of its report.",
-        ),
+        option("DIR", "Folder for the choice; in a run's folder it becomes part of its report."),
     ] = None,
-    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
+    output: options.Output = options.Format.text,
 ) -> None:
     """Find the engines, integrators and largest steps that meet requirements, cheapest first.
 
     Exit codes: 0 something qualifies, 1 nothing does, 2 wrong usage or input, 3 an engine crashed,
     timed out or could not be started.
     """
+    arguments = options.given(locals())
+    named = [*arguments.pop("scenarios", []), *arguments.pop("scenario", [])]
     from omegadot.commands.choose.choose import choose as choose_engine
-    from omegadot.commands.choose.choose import exit_code
     from omegadot.reports.choice.tables import print_choice
     from omegadot.reports.record.run_json import dump_json
     from omegadot.reports.text.numbers import listed
 
-    found = choose_engine(
-        [*(scenarios or []), *(scenario or [])],
-        engine or [],
-        body=body,
-        allow_impossible_inertia=allow_impossible_inertia,
-        angular_velocity=angular_velocity,
-        orientation=orientation,
-        duration=duration,
-        requirements=requirements,
-        attitude=attitude,
-        omega=omega,
-        energy_drift=energy_drift,
-        momentum_drift=momentum_drift,
-        linear_momentum_drift=linear_momentum_drift,
-        flip_time=flip_time,
-        real_time_factor=real_time_factor,
-        precision=precision,
-        features=feature or [],
-        licences=licence or [],
-        python=python,
-        adapters=adapter or [],
-        budget=budget,
-        timeout=timeout,
-        jobs=jobs,
-        out=out,
-        command=command_line(),
-        progress=on_a_terminal(),
-    )
-    if output is Format.json:
+    found = choose_engine(named, **arguments, command=options.command_line())
+    if output is options.Format.json:
         typer.echo(dump_json(found.document), nl=False)
     else:
         print_choice(found.document)
         if found.written:
             typer.echo(f"Written to {listed([str(path) for path in found.written])}.")
-    raise typer.Exit(exit_code(found))
+    raise typer.Exit(found.document["exit_code"])

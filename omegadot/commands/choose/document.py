@@ -5,43 +5,27 @@ from __future__ import annotations
 from omegadot.commands.choose.case_document import CaseDocument
 from omegadot.commands.choose.chooser import Choice
 from omegadot.commands.choose.eligible import python_note
-from omegadot.commands.choose.ranking import ranked
-from omegadot.commands.choose.requirements import ACCURACY, Requirements
-from omegadot.commands.choose.spread import total
-from omegadot.commands.choose.trial_rows import Row, spread_row
+from omegadot.commands.choose.ranking import ranked, total
+from omegadot.commands.choose.requirements import ACCURACY
+from omegadot.commands.choose.trial import Row
 
 SCHEMA = 1
 
 
-def requirements_row(wanted: Requirements) -> Row:
-    """What was requested, limits in SI next to their text as given."""
-    limits = [
-        {
-            "requirement": key,
-            "limit": limit,
-            "unit": ACCURACY[key][1],
-            "requested": wanted.requested[key],
-        }
-        for key, limit in wanted.limits.items()
-    ]
-    rest = {k: v for k, v in vars(wanted).items() if k not in ("limits", "requested")}
-    return {"accuracy": limits, **rest}
-
-
-def engine_rows(choice: Choice, wanted: Requirements) -> list[Row]:
+def engine_rows(choice: Choice) -> list[Row]:
     """Every engine: what it is, or why it did not start."""
     rows: list[Row] = []
-    for engine in choice.engines:
+    for engine in choice.engines.started:
         own = engine.description
         rows.append(
             {"name": engine.name, "installed": True, "version": own.version}
             | {"licence": own.licence, "precision": own.precision, "reason": ""}
             | {"integrators": [vars(integrator) for integrator in own.integrators]}
             | {"refused": choice.refused.get(engine.name, [])}
-            | {"note": python_note(engine.name, wanted.python)}
+            | {"note": python_note(engine.name, choice.requirements.python)}
             | {"memory": choice.memory.get(engine.name)}
         )
-    for missing, answer in choice.missing:
+    for missing, answer in choice.engines.missing:
         rows.append(
             {"name": missing.name, "installed": False, "version": "", "integrators": []}
             | {"outcome": answer.outcome, "reason": answer.reason, "refused": [], "note": ""}
@@ -49,17 +33,24 @@ def engine_rows(choice: Choice, wanted: Requirements) -> list[Row]:
     return rows
 
 
-def document(choice: Choice, wanted: Requirements) -> Row:
+def document(choice: Choice) -> Row:
     """The whole choice: requirements, engines, cases, and what qualifies in every case."""
-    cases = [CaseDocument(choice, found, wanted) for found in choice.cases]
+    cases = [CaseDocument(choice, found) for found in choice.cases]
+    wanted = choice.requirements
+    accuracy = [  # limits in SI, next to their text as given
+        {"requirement": key, "limit": limit, "unit": ACCURACY[key][1]}
+        | {"requested": wanted.requested[key]}
+        for key, limit in wanted.limits.items()
+    ]
+    others = {k: v for k, v in vars(wanted).items() if k not in ("limits", "requested")}
     return {
         "schema": SCHEMA,
         "kind": "choice",
-        "requirements": requirements_row(wanted),
-        "engines": engine_rows(choice, wanted),
+        "requirements": {"accuracy": accuracy, **others},
+        "engines": engine_rows(choice),
         "scenarios": [case.row() for case in cases],
         "everywhere": _everywhere(cases),
-        "worker_deaths": [{"engine": name, "how": how} for name, how in choice.deaths],
+        "worker_deaths": [{"engine": name, "how": how} for name, how in choice.engines.deaths()],
     }
 
 
@@ -71,8 +62,7 @@ def _everywhere(cases: list[CaseDocument]) -> list[Row]:
     names = [name for name in costs[0] if all(name in own for own in costs)]
     totals = {name: total([own[name] for own in costs]) for name in names}
     return [
-        {"candidate": place.key, "rank": place.rank, "tied": place.tied}
-        | {"seconds": spread_row(totals[place.key])}
-        | {"timesteps": [case.timestep(place.key) for case in cases]}
+        {**vars(place), "seconds": totals[place.candidate].row()}
+        | {"timesteps": [case.timestep(place.candidate) for case in cases]}
         for place in ranked(totals)
     ]

@@ -20,22 +20,23 @@ MOST_RELEASES = 40
 
 def unmet(description: Description, wanted: Requirements) -> list[str]:
     """One clause for every requirement that the engine misses by what it is."""
-    return [clause for clause in _clauses(description, wanted) if clause]
+    return list(_clauses(description, wanted))
 
 
 def _clauses(description: Description, wanted: Requirements) -> Iterator[str]:
     own = PRECISION[description.precision]
     if wanted.precision not in (None, own):
         yield f"precision: it computes in {own} precision, {wanted.precision} is required"
-    lacking = [f for f in wanted.features if f.replace("-", "_") not in description.features]
-    for name in lacking:
-        yield f"feature: it has no {name.replace('-', ' ')}"
+    for name in wanted.features:
+        if name.replace("-", "_") not in description.features:
+            yield f"feature: it has no {name.replace('-', ' ')}"
     allowed = {name.casefold() for name in wanted.licences}
     if allowed and description.licence.casefold() not in allowed:
         text = description.licence or "not stated"
         yield f"licence: its own is {text}, allowed is {' or '.join(wanted.licences)}"
-    if wanted.python is not None:
-        yield _python_refused(description.name, wanted.python)
+    python, required = wanted.python, _required(description.name)
+    if python and required and python != _running() and not _admits(required, python):
+        yield f"python: its package requires {required}, {python} is required"
 
 
 def _running() -> str:
@@ -49,14 +50,6 @@ def _required(engine: str) -> str | None:
     except (PackageNotFoundError, KeyError):
         return None
     return found
-
-
-def _python_refused(engine: str, python: str) -> str:
-    """The clause that states the package refuses this Python; empty where it does not."""
-    required = _required(engine)
-    if required is None or python == _running() or _admits(required, python):
-        return ""
-    return f"python: its package requires {required}, {python} is required"
 
 
 def _admits(required: str, python: str) -> bool:

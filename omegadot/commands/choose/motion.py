@@ -36,17 +36,13 @@ class Motion:
 
 def cases_of(motion: Motion) -> list[Case]:
     """The cases to choose for. Raises UsageError and ScenarioError."""
-    return [case_of(scenario, ()) for scenario in _scenarios(motion)]
-
-
-def _scenarios(motion: Motion) -> list[Scenario]:
     if motion.scenarios:
         chosen = [scenario.to_dict() for scenario in scenarios_of(motion.scenarios)]
     elif motion.body is not None:
         chosen = [_bare(motion)]
     else:
         raise UsageError("nothing to simulate; give a SCENARIO or --body FILE#LINK.")
-    return [_changed(data, motion) for data in chosen]
+    return [case_of(_changed(data, motion), ()) for data in chosen]
 
 
 def _bare(motion: Motion) -> dict[str, Any]:
@@ -67,18 +63,15 @@ def _changed(data: dict[str, Any], motion: Motion) -> Scenario:
         where = motion.body
         named = body_of_argument(motion.body, bodies_of_mjcf)
         own = f"{named.name} in {data['name']}" if motion.scenarios else named.name
-        data = {**data, "body": named.body, "title": own, "shows": None, "source": None}
-        data = {key: value for key, value in data.items() if value is not None}
+        kept = {key: value for key, value in data.items() if key not in ("shows", "source")}
+        data = {**kept, "body": named.body, "title": own}
         if not motion.scenarios:
             data["name"] = named.kebab
     if motion.allow_impossible_inertia and "part" not in data["body"]:
         data = {**data, "body": {**data["body"], ALLOWED: True}}
-    if motion.angular_velocity is not None:
-        given = list(motion.angular_velocity)
-        data = {**data, "initial": {**data["initial"], "angular_velocity": given}}
-    if motion.orientation is not None:
-        given = list(motion.orientation)
-        data = {**data, "initial": {**data["initial"], "orientation": given}}
+    start = {"angular_velocity": motion.angular_velocity, "orientation": motion.orientation}
+    given = {key: list(values) for key, values in start.items() if values is not None}
+    data = {**data, "initial": {**data["initial"], **given}}
     if motion.duration is not None:
         data = {**data, "run": _run_of(data["run"], motion.duration)}
     return scenario_of(data, where)

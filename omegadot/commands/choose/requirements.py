@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any, Literal
 
 from omegadot.commands.units import quantity
 from omegadot.harness.usage import UsageError, nearest
+from omegadot.scenarios.errors import ScenarioError
+from omegadot.scenarios.toml_file import read_toml
 
 Precision = Literal["double", "single"]
 # Requirement: the kind of its quantity, and the unit in which it is kept and shown.
@@ -25,8 +28,6 @@ FEATURES = (
     *("free", "pivot", "gravity", "damping", "torque", "full-inertia", "offset-com"),
     *("forward-dynamics", "inverse-dynamics", "batch"),
 )
-OTHERS = ("real-time-factor", "precision", "feature", "licence", "python", "duration")
-KEYS = (*ACCURACY, *OTHERS)
 PRECISIONS: dict[str, Precision] = {
     "double": "double", "float64": "double", "single": "single", "float32": "single"
 }  # fmt: skip
@@ -47,10 +48,6 @@ class Requirements:
     licences: tuple[str, ...] = ()
     python: str | None = None
     duration: float | None = None
-
-    def scaled(self, key: str, factor: float) -> Requirements:
-        """The same with one limit multiplied."""
-        return replace(self, limits={**self.limits, key: self.limits[key] * factor})
 
 
 def _texts(value: object, where: str) -> list[str]:
@@ -88,38 +85,16 @@ def _licences(value: object, where: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(text.strip() for text in found))
 
 
-def requirements_of(given: Mapping[str, Any], places: Mapping[str, str]) -> Requirements:
-    """The requirements of keys and values as they were written.
-
-    places: where each key stands, for errors.  Raises UsageError, also where no accuracy is
-    required: without one every step is good enough.
-    """
-    limits, requested = {}, {}
-    for key, (kind, _) in ACCURACY.items():
-        if key in given:
-            limits[key] = quantity(given[key], kind, places[key])
-            requested[key] = str(given[key])
-    if not limits:
-        named = ", ".join(f"--{key}" for key in ACCURACY)
-        raise UsageError(f"no accuracy is required; give at least one of {named}.")
-    read: dict[str, tuple[str, Callable[[Any, str], Any]]] = {
-        "real_time_factor": ("real-time-factor", partial(_quantity, "factor")),
-        "precision": ("precision", _precision),
-        "features": ("feature", _features),
-        "licences": ("licence", _licences),
-        "python": ("python", _python),
-        "duration": ("duration", partial(_quantity, "time")),
-    }
-    rest: dict[str, Any] = {
-        field: reader(given[key], places[key])
-        for field, (key, reader) in read.items()
-        if key in given
-    }
-    return Requirements(limits, requested, **rest)
-
-
-def _quantity(kind: str, value: object, where: str) -> float:
-    return quantity(value, kind, where)
+# By key: the field of Requirements, and what reads its value.
+READERS: dict[str, tuple[str, Callable[..., Any]]] = {
+    "real-time-factor": ("real_time_factor", partial(quantity, kind="factor")),
+    "precision": ("precision", _precision),
+    "feature": ("features", _features),
+    "licence": ("licences", _licences),
+    "python": ("python", _python),
+    "duration": ("duration", partial(quantity, kind="time")),
+}
+KEYS = (*ACCURACY, *READERS)
 
 
 def known_key(name: str, where: str) -> str:
@@ -133,11 +108,36 @@ def known_key(name: str, where: str) -> str:
 
 
 def merged(file: Mapping[str, Any], line: Mapping[str, Any], path: str) -> Requirements:
-    """The file's requirements with those of the command line over them. Raises UsageError."""
-    given = {key: value for key, value in line.items() if not _is_empty(value)}
-    places = {key: f"{path}: {key}" for key in file} | {key: f"--{key}" for key in given}
-    return requirements_of({**file, **given}, places)
+    """The file's requirements with those of the command line over them, values as written.
+
+    Raises UsageError, also where no accuracy is required: without one every step is good enough.
+    """
+    typed = {key: value for key, value in line.items() if value not in (None, "", [])}
+    given = {**file, **typed}
+    places = {key: f"--{key}" if key in typed else f"{path}: {key}" for key in given}
+    accuracy = [key for key in ACCURACY if key in given]
+    limits = {key: quantity(given[key], ACCURACY[key][0], places[key]) for key in accuracy}
+    if not limits:
+        named = ", ".join(f"--{key}" for key in ACCURACY)
+        raise UsageError(f"no accuracy is required; give at least one of {named}.")
+    rest: dict[str, Any] = {
+        field: reader(given[key], where=places[key])
+        for key, (field, reader) in READERS.items()
+        if key in given
+    }
+    return Requirements(limits, {key: str(given[key]) for key in accuracy}, **rest)
 
 
-def _is_empty(value: object) -> bool:
-    return value is None or (isinstance(value, Sequence) and not value)
+def read_requirements(path: Path) -> dict[str, Any]:
+    """Keys and values of the file, values as written. Raises UsageError, one sentence."""
+    try:
+        data = read_toml(path, str(path))
+    except ScenarioError as error:
+        raise UsageError(str(error)) from None
+    found: dict[str, Any] = {}
+    for name, value in data.items():
+        key = known_key(name, str(path))
+        if key in found:
+            raise UsageError(f"{path}: {key} is given twice; give it once.")
+        found[key] = value
+    return found

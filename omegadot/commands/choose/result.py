@@ -50,7 +50,19 @@ class ChooseResult:
     def ranking(self) -> tuple[Ranked, ...]:
         """Those that qualify, scenario by scenario, the cheapest first."""
         return tuple(
-            _ranked(case["name"], row)
+            Ranked(
+                scenario=case["name"],
+                rank=row["rank"],
+                tied=row["tied"],
+                engine=row["engine"],
+                version=row["version"],
+                integrator=row["integrator"],
+                timestep=row["found"]["timestep"],
+                steps=row["found"]["steps"],
+                errors={name: error["value"] for name, error in row["found"]["errors"].items()},
+                real_time_factor=row["real_time_factor"]["median"],
+                memory=row["memory"],
+            )
             for case in self.document["scenarios"]
             for row in case["candidates"]
             if row["status"] == "qualifies"
@@ -94,20 +106,3 @@ class ChooseResult:
 
     def _repr_html_(self) -> str:
         return framed(self.page(), repr(self).strip("<>"))
-
-
-def _ranked(scenario: str, row: Mapping[str, Any]) -> Ranked:
-    found = row["found"]
-    return Ranked(
-        scenario=scenario,
-        rank=row["rank"],
-        tied=row["tied"],
-        engine=row["engine"],
-        version=row["version"],
-        integrator=row["integrator"],
-        timestep=found["timestep"],
-        steps=found["steps"],
-        errors={name: error["value"] for name, error in found["errors"].items()},
-        real_time_factor=row["real_time_factor"]["median"],
-        memory=row["memory"],
-    )

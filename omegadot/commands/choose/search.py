@@ -26,14 +26,6 @@ CONFIRMED = (1 / 1.1, 1.1, 1.5)  # steps a horizon, over those found, that are t
 
 
 @dataclass(frozen=True)
-class Range:
-    """Fewest and most steps a horizon that may be tried; the most may depend on the last run."""
-
-    fewest: int
-    most: Callable[[], int]
-
-
-@dataclass(frozen=True)
 class Edge:
     """passing: the run found, None where there is none.  failing: the next larger step tried.
 
@@ -47,7 +39,6 @@ class Edge:
 
 Trials = dict[int, Trial]
 Evaluate = Callable[[int], Trial]
-Seeking = Callable[[Trials, Evaluate, Mapping[str, float], Range, float], Edge]
 
 
 def edge_of(trials: Mapping[int, Trial], limits: Mapping[str, float]) -> Edge:
@@ -72,23 +63,6 @@ def order_between(one: Trial, other: Trial, limits: Mapping[str, float]) -> floa
     return None if order < SATURATED else min(order, STEEPEST)
 
 
-def _outward(trials: Trials, limits: Mapping[str, float], known: Trial, declared: float) -> int:
-    """Steps a horizon at which the limits are predicted to be just met, from one side only."""
-    others = sorted((t for t in trials.values() if t is not known), key=lambda t: t.steps)
-    near = min(others, key=lambda t: abs(math.log(t.steps / known.steps)), default=None)
-    ratio = known.ratio(limits)
-    order: float | None = declared
-    if near is not None:
-        coarse, fine = sorted((near, known), key=lambda t: t.steps)
-        order = order_between(coarse, fine, limits)
-    if order is None or not 0.0 < ratio < math.inf:
-        leap = BLIND if ratio > 1.0 else 1.0 / BLIND
-    else:
-        leap = min(max(ratio ** (1.0 / order), 1.0 / LEAP), LEAP)
-    aside = ASIDE if ratio > 1.0 else 1.0 / ASIDE
-    return round(known.steps * leap * aside)
-
-
 def _inward(edge: tuple[Trial, Trial], limits: Mapping[str, float], blindly: bool) -> int:
     """Steps between a failing and a passing run: next to the predicted edge, or in the middle."""
     failing, passing = edge
@@ -101,64 +75,82 @@ def _inward(edge: tuple[Trial, Trial], limits: Mapping[str, float], blindly: boo
     return math.floor(predicted / ASIDE)
 
 
-def _next(
-    trials: Trials, limits: Mapping[str, float], among: Range, declared: float, blindly: bool
-) -> int | None:
-    """Where to run next; None where the edge is known well enough or out of reach."""
-    edge = edge_of(trials, limits)
-    failing, passing = edge.failing, edge.passing
-    if failing is not None and passing is not None:
-        if passing.steps <= max(EDGE * failing.steps, failing.steps + 1):
+@dataclass(frozen=True)
+class Search:
+    """The search for one edge, from the runs in `trials`, of which there is one at least.
+
+    Every new run goes there.  fewest, most: steps a horizon that may be tried; the most may depend
+    on the last run.  declared: the order to begin with.
+    """
+
+    trials: Trials
+    evaluate: Evaluate
+    limits: Mapping[str, float]
+    fewest: int
+    most: Callable[[], int]
+    declared: float
+
+    def largest_step(self) -> Edge:
+        """Seek, until the edge is known well enough or out of reach."""
+        for count in range(MOST_RUNS):
+            wanted = self._next(blindly=count > MOST_RUNS // 4)
+            if wanted is None:
+                break
+            self.trials[wanted] = self.evaluate(wanted)
+        return edge_of(self.trials, self.limits)
+
+    def confirmed(self) -> Edge:
+        """As `largest_step`, and then runs next to the edge, until none proves it wrong.
+
+        A step of a tenth more is tried, and steps of a tenth and a third less.
+        """
+        edge = self.largest_step()
+        for _ in range(MOST_RUNS):
+            found = edge.passing
+            if found is None:
+                break
+            counts = [math.floor(found.steps * f) if f < 1 else math.ceil(found.steps * f)
+                      for f in CONFIRMED]  # fmt: skip
+            most = max(self.most(), found.steps)
+            for steps in [n for n in counts if self.fewest <= n <= most]:
+                if steps not in self.trials:
+                    self.trials[steps] = self.evaluate(steps)
+            edge = self.largest_step()
+            if edge.passing is not None and edge.passing.steps == found.steps:
+                break
+        return edge
+
+    def _next(self, blindly: bool) -> int | None:
+        """Where to run next; None where the edge is known well enough or out of reach."""
+        edge = edge_of(self.trials, self.limits)
+        failing, passing = edge.failing, edge.passing
+        if failing is not None and passing is not None:
+            if passing.steps <= max(EDGE * failing.steps, failing.steps + 1):
+                return None
+            wanted = _inward((failing, passing), self.limits, blindly)
+            return min(max(wanted, failing.steps + 1), passing.steps - 1)
+        if failing is not None:
+            wanted, most = max(self._outward(failing), failing.steps + 1), self.most()
+            if wanted <= most:
+                return wanted
+            return most if most > WORTH * failing.steps else None
+        assert passing is not None  # the first run has been made
+        if passing.steps <= self.fewest:
             return None
-        wanted = _inward((failing, passing), limits, blindly)
-        return min(max(wanted, failing.steps + 1), passing.steps - 1)
-    if failing is not None:
-        wanted = max(_outward(trials, limits, failing, declared), failing.steps + 1)
-        most = among.most()
-        if wanted <= most:
-            return wanted
-        return most if most > WORTH * failing.steps else None
-    assert passing is not None  # the first run has been made
-    if passing.steps <= among.fewest:
-        return None
-    wanted = _outward(trials, limits, passing, declared)
-    return max(min(wanted, passing.steps - 1), among.fewest)
+        return max(min(self._outward(passing), passing.steps - 1), self.fewest)
 
-
-def largest_step(
-    trials: Trials, evaluate: Evaluate, limits: Mapping[str, float], among: Range, declared: float
-) -> Edge:
-    """Seek from the runs in `trials`, of which there is one at least; every new one goes there.
-
-    declared: the order to begin with.
-    """
-    for count in range(MOST_RUNS):
-        wanted = _next(trials, limits, among, declared, blindly=count > MOST_RUNS // 4)
-        if wanted is None:
-            break
-        trials[wanted] = evaluate(wanted)
-    return edge_of(trials, limits)
-
-
-def confirmed(
-    trials: Trials, evaluate: Evaluate, limits: Mapping[str, float], among: Range, declared: float
-) -> Edge:
-    """As `largest_step`, and then runs next to the edge that could prove it wrong, until none does.
-
-    A step of a tenth more is tried, and steps of a tenth and a third less.
-    """
-    edge = largest_step(trials, evaluate, limits, among, declared)
-    for _ in range(MOST_RUNS):
-        found = edge.passing
-        if found is None:
-            break
-        counts = [math.floor(found.steps * f) if f < 1 else math.ceil(found.steps * f)
-                  for f in CONFIRMED]  # fmt: skip
-        inside = [n for n in counts if among.fewest <= n <= max(among.most(), found.steps)]
-        for steps in inside:
-            if steps not in trials:
-                trials[steps] = evaluate(steps)
-        edge = largest_step(trials, evaluate, limits, among, declared)
-        if edge.passing is not None and edge.passing.steps == found.steps:
-            break
-    return edge
+    def _outward(self, known: Trial) -> int:
+        """Steps a horizon at which the limits are predicted to be just met, from one side only."""
+        others = sorted((t for t in self.trials.values() if t is not known), key=lambda t: t.steps)
+        near = min(others, key=lambda t: abs(math.log(t.steps / known.steps)), default=None)
+        ratio = known.ratio(self.limits)
+        order: float | None = self.declared
+        if near is not None:
+            coarse, fine = sorted((near, known), key=lambda t: t.steps)
+            order = order_between(coarse, fine, self.limits)
+        if order is None or not 0.0 < ratio < math.inf:
+            leap = BLIND if ratio > 1.0 else 1.0 / BLIND
+        else:
+            leap = min(max(ratio ** (1.0 / order), 1.0 / LEAP), LEAP)
+        aside = ASIDE if ratio > 1.0 else 1.0 / ASIDE
+        return round(known.steps * leap * aside)

@@ -5,6 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
+
+from omegadot.commands.choose.requirements import ACCURACY
+
+Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -24,8 +29,8 @@ class Measured:
 class Trial:
     """A run over the whole horizon in `steps` steps of `timestep` s.
 
-    errors: by requirement; none where the run failed, for a `reason`.  samples: how many states
-    were held against the truth.
+    errors: by requirement; none where the run failed.  samples: how many states were held against
+    the truth.
     """
 
     steps: int
@@ -33,8 +38,6 @@ class Trial:
     errors: Mapping[str, Measured]
     seconds_per_step: float
     samples: int
-    outcome: str = "ok"
-    reason: str = ""
 
     def ratio(self, limits: Mapping[str, float]) -> float:
         """The greatest error over its limit; 1 or less meets them all."""
@@ -54,3 +57,22 @@ class Trial:
         far = {k: self.errors[k].most / limit for k, limit in limits.items()}
         over = [key for key, ratio in far.items() if not ratio <= 1.0]
         return sorted(over, key=lambda k: -far[k] if math.isfinite(far[k]) else -math.inf)
+
+    def row(self, limits: Mapping[str, float]) -> Row:
+        """Its step, its errors and by how much each limit exceeds them."""
+        errors = {
+            key: {**vars(found), "margin": limits[key] / found.most if found.most > 0.0 else None}
+            for key, found in self.errors.items()
+        }
+        judged = {"ratio": self.ratio(limits), "passes": self.passes(limits)}
+        return {**vars(self), "errors": errors, **judged}
+
+    def missed_rows(self, limits: Mapping[str, float]) -> list[Row]:
+        """The limits that it misses, the worst first, and by what factor."""
+        return [
+            {"requirement": key, "limit": limits[key], "unit": ACCURACY[key][1]}
+            | {"found": self.errors[key].most if self.errors else None}
+            | {"factor": self.errors[key].most / limits[key] if self.errors else None}
+            | {"timestep": self.timestep, "steps": self.steps}
+            for key in self.missed(limits)
+        ]

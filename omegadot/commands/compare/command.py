@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import PageFormat
+from omegadot.commands.options import PageFormat, PageOutput
 
 
 def compare(
@@ -15,9 +15,7 @@ def compare(
         Path, typer.Argument(metavar="EARLIER", help="The folder of the earlier run.")
     ],
     second: Annotated[Path, typer.Argument(metavar="LATER", help="The folder of the later run.")],
-    output: Annotated[
-        PageFormat, typer.Option("--format", help="Output format.")
-    ] = PageFormat.text,
+    output: PageOutput = PageFormat.text,
 ) -> None:
     """Compare two stored runs: what got better, got worse, appeared or vanished.
 

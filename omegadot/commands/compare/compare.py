@@ -17,12 +17,9 @@ def compare(was: RunLike, now: RunLike) -> Comparison:
 
     was, now: folders, or records. Raises RecordError.
     """
-    records = _record(was), _record(now)
-    return compare_records(*records, (_label(was, "A"), _label(now, "B")))
-
-
-def _record(run: RunLike) -> Record:
-    return run if isinstance(run, Record) else read_record(Path(run))
+    one, other = (run if isinstance(run, Record) else read_record(Path(run)) for run in (was, now))
+    labels = (_label(was, "A"), _label(now, "B"))
+    return compare_records(one, other, labels)
 
 
 def _label(run: RunLike, otherwise: str) -> str:

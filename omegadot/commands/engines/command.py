@@ -1,27 +1,76 @@
-"""The arguments of ``omegadot engines``."""
+"""The arguments of ``omegadot engines``, and what it prints."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import typer
 
-from omegadot.commands.options import Format
+from omegadot.commands.options import Adapters, Format, Output
+
+if TYPE_CHECKING:
+    from omegadot.adapters.protocol import Integrator
+    from omegadot.commands.engines.engines import EngineEntry
 
 
 def engines(
-    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
-    adapter: Annotated[
-        list[str] | None,
-        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
-    ] = None,
+    output: Output = Format.text,
+    adapters: Adapters = None,
 ) -> None:
     """List the engines: installed or not, versions, integrators, conventions, what is off."""
     from omegadot.commands.engines.engines import engines as installed_engines
-    from omegadot.commands.engines.print_engines import print_json, print_text
 
-    entries = installed_engines(adapter or [])
+    entries = installed_engines(adapters or ())
     if output is Format.json:
         print_json(entries)
     else:
         print_text(entries)
+
+
+def print_json(entries: Sequence[EngineEntry]) -> None:
+    """Everything, for machines."""
+    from omegadot.reports.record.run_json import dump_json
+
+    typer.echo(dump_json([_row(entry) for entry in entries]), nl=False)
+
+
+def _row(entry: EngineEntry) -> dict[str, object]:
+    own = entry.description
+    head = {"name": entry.name, "installed": entry.installed, "reason": entry.reason}
+    if own is None:
+        return head
+    return {**vars(own), "integrators": [vars(i) for i in own.integrators], **head}
+
+
+def print_text(entries: Sequence[EngineEntry]) -> None:
+    """A paragraph an engine."""
+    from rich.console import Console
+    from rich.markup import escape
+
+    console = Console(highlight=False, soft_wrap=True)
+    for entry in entries:
+        own = entry.description
+        if own is None:
+            console.print(f"[bold]{escape(entry.name)}[/]  not available: {escape(entry.reason)}")
+            continue
+        head = f"[bold]{escape(entry.name)}[/] {escape(own.version)}"
+        console.print(f"{head}  {own.precision}  {escape(own.licence)}")
+        for integrator in own.integrators:
+            console.print(f"  {escape(_integrator_line(integrator))}")
+        for title, clauses in (("keeps", own.conventions), ("switched off", own.switched_off)):
+            for clause in clauses:
+                console.print(f"  {title}: {escape(clause)}", style="dim")
+
+
+def _integrator_line(integrator: Integrator) -> str:
+    """Its name, the scheme that it is declared to equal, and its order, once where it is one."""
+    orders, scheme = integrator.orders, integrator.scheme
+    if not orders:
+        return f"{integrator.name}: {integrator.note}"
+    if len(set(orders.values())) == 1:
+        order = f"order {next(iter(orders.values()))}"
+    else:
+        order = "order " + ", ".join(f"{value} in {c}" for c, value in orders.items())
+    same = scheme == integrator.name
+    return f"{integrator.name}: {order}" + ("" if same or not scheme else f", {scheme}")

@@ -60,10 +60,8 @@ class ExactStates:
             for letter, (values, axes) in named.items()
             for place, axis in enumerate(axes)
         }
-        floors = {
-            "attitude_floor": self.attitude_floor,
-            "angular_velocity_floor": self.angular_velocity_floor,
-        }
+        names = ("attitude_floor", "angular_velocity_floor")
+        floors = {name: getattr(self, name) for name in names}
         return pl.DataFrame({"time": self.time, **columns, **floors})
 
 

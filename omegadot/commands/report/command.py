@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from omegadot.commands.options import option
+
 
 def report(
     runs: Annotated[
@@ -14,20 +16,37 @@ def report(
     ],
     out: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="File for the page. Default: report.html in the run's folder, or two-runs.html.",
+        option(
+            "FILE", "File for the page. Default: report.html in the run's folder, or two-runs.html."
         ),
     ] = None,
-    figures: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Folder for the charts as SVG and PNG."),
-    ] = None,
+    figures: Annotated[Path | None, option("DIR", "Folder for the charts as SVG and PNG.")] = None,
     markdown: Annotated[
         bool, typer.Option("--markdown", help="Print a summary in Markdown, for a pull request.")
     ] = False,
 ) -> None:
     """Draw the report of a stored run again, or of two runs side by side."""
-    from omegadot.commands.report.print_report import printed
-
     typer.echo(printed(runs, out, figures, markdown))
+
+
+def printed(runs: list[Path], out: Path | None, figures: Path | None, markdown: bool) -> str:
+    """The files that were written, or a summary in Markdown. Raises RecordError and UsageError."""
+    from omegadot.commands.compare.compare import compare
+    from omegadot.commands.report.report import report as draw
+    from omegadot.harness.usage import UsageError
+    from omegadot.reports.run_record import read_record
+    from omegadot.reports.two_runs.text import as_markdown
+
+    if len(runs) > 2:
+        raise UsageError(f"{len(runs)} runs are given; give one, or two to hold side by side.")
+    if markdown and (out is not None or figures is not None):
+        raise UsageError("--markdown prints and writes no file; leave out --out and --figures.")
+    if len(runs) == 2 and figures is not None:
+        raise UsageError("--figures draws one run; give one run alone.")
+    if markdown:
+        one = len(runs) == 1
+        return read_record(runs[0]).markdown() if one else as_markdown(compare(*runs)).rstrip("\n")
+    if figures is None:
+        return str(draw(*runs, out=out))
+    written = [draw(runs[0], out=out)] if out is not None else []
+    return "\n".join(map(str, [*written, *read_record(runs[0]).figures(figures)]))

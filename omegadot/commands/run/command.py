@@ -8,75 +8,58 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import Format, Setup, command_line, on_a_terminal
+from omegadot.commands import options
+from omegadot.commands.options import Texts, option
 
 
 def run(
     scenarios: Annotated[
-        list[str] | None,
+        Texts,
         typer.Argument(
             metavar="[SCENARIO]...",
             help="Built-in names or paths. Default: all built-in scenarios.",
         ),
     ] = None,
-    engine: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME[:INTEGRATOR]",
-            help="An engine, or one of its integrators; repeatable. Default: all installed.",
+    engines: Annotated[
+        Texts,
+        option(
+            "NAME[:INTEGRATOR]",
+            "An engine, or one of its integrators; repeatable. Default: all installed.",
+            "--engine",
         ),
     ] = None,
-    timestep: Annotated[
+    timesteps: Annotated[
         list[float] | None,
-        typer.Option(metavar="S", help="A time step in s instead of the scenario's; repeatable."),
+        option("S", "A time step in s instead of the scenario's; repeatable.", "--timestep"),
     ] = None,
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Folder for the record and its report.")
-    ] = Path("omegadot-run"),
+    out: Annotated[Path, option("DIR", "Folder for the record and its report.")] = Path(
+        "omegadot-run"
+    ),
     setup: Annotated[
-        Setup,
+        options.Setup,
         typer.Option(
             help="physics: defaults that disturb the motion are off; as-shipped: all defaults."
         ),
-    ] = Setup.physics,
-    adapter: Annotated[
-        list[str] | None,
-        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
-    ] = None,
-    exceptions: Annotated[
-        list[Path] | None,
-        typer.Option(metavar="FILE", help="Known failures, declared in TOML; repeatable."),
-    ] = None,
-    timeout: Annotated[
-        float,
-        typer.Option(metavar="S", min=0.1, help="Time limit in s for one request to an engine."),
-    ] = 60.0,
-    jobs: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N",
-            min=1,
-            help="Number of engines that run at the same time. Default: all cores.",
-        ),
-    ] = None,
+    ] = options.Setup.physics,
+    adapters: options.Adapters = None,
+    exceptions: options.Exceptions = None,
+    timeout: options.Timeout = 60.0,
+    jobs: options.Jobs = None,
     memory: Annotated[
         float | None,
-        typer.Option(
-            metavar="GIB",
-            min=0.1,
-            help="Memory limit for one engine, on Linux. Default: half of the machine's.",
+        option(
+            "GIB", "Memory limit for one engine, on Linux. Default: half of the machine's.", min=0.1
         ),
     ] = None,
-    seed: Annotated[
-        int, typer.Option(metavar="INTEGER", min=0, help="Seed of the random states.")
-    ] = 0,
-    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
+    seed: Annotated[int, option("INTEGER", "Seed of the random states.", min=0)] = 0,
+    output: options.Output = options.Format.text,
 ) -> None:
     """Run scenarios on engines, judge them, and write a record with its report.
 
     Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
     timed out or could not be started.
     """
+    arguments = options.given(locals())
     from omegadot.commands.run.print_run import exit_code, print_json, print_text
     from omegadot.commands.run.result import RunInterrupted
     from omegadot.commands.run.run import run as run_scenarios
@@ -84,24 +67,10 @@ def run(
     if memory is not None and not _memory_is_limited():
         typer.echo("omegadot: --memory is ignored: this system keeps no such limit.", err=True)
     try:
-        result = run_scenarios(
-            scenarios or [],
-            engine or [],
-            timesteps=timestep or [],
-            out=out,
-            setup=setup.value,
-            adapters=adapter or [],
-            exceptions=exceptions or [],
-            timeout=timeout,
-            jobs=jobs,
-            memory=memory,
-            seed=seed,
-            command=command_line(),
-            progress=on_a_terminal(),
-        )
+        result = run_scenarios(**arguments, command=options.command_line())
     except RunInterrupted as interrupted:
         result = interrupted.result
-    if output is Format.json:
+    if output is options.Format.json:
         print_json(result)
     else:
         print_text(result)

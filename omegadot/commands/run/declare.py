@@ -10,18 +10,19 @@ from omegadot.commands.check.exceptions import (
     DeclaredException,
     matches_nothing,
     no_longer_fails,
+    unmatched,
 )
-from omegadot.commands.check.registry import subject_of
-from omegadot.commands.check.result import Check
-from omegadot.commands.check.unmatched import unmatched
+from omegadot.commands.check.result import Check, subject_of
 from omegadot.gates.case import Case
-from omegadot.gates.rows import Row
-from omegadot.harness.outcome import EngineCase, JudgedCase, Outcome
+from omegadot.gates.rows import Row, worst
+from omegadot.harness.outcome import EngineCase, Outcome
 
 Stale = list[dict[str, Any]]
 
 
 def _declared(row: Row, exception: DeclaredException) -> Row:
+    if row.verdict != "fail":
+        return row
     note = f"{exception.reason} {exception.link}"
     return replace(row, verdict="declared", note=f"{note}; {row.note}" if row.note else note)
 
@@ -33,42 +34,26 @@ class _Ledger:
         self.exceptions = list(exceptions)
         self.passing: dict[DeclaredException, list[str]] = {}
 
-    def rows(self, check: Check, rows: Sequence[Row]) -> list[Row]:
-        """The rows of one check, its failures declared where an exception refers to it."""
-        exception = next((e for e in self.exceptions if e.matches(check)), None)
-        if exception is None:
-            return list(rows)
-        verdicts = {row.verdict for row in rows}
-        if "fail" not in verdicts and "pass" in verdicts:
-            self.passing.setdefault(exception, []).append(check.id)
-        return [_declared(row, exception) if row.verdict == "fail" else row for row in rows]
-
-    def by_gate(self, check: Check, rows: Sequence[Row]) -> list[Row]:
-        """The rows of several gates, in the order that they came in."""
+    def rows(self, whole: Check, rows: Sequence[Row]) -> list[Row]:
+        """The rows of all gates, failures declared where an exception refers to their check."""
         found: list[Row] = []
         for gate in dict.fromkeys(row.gate for row in rows):
-            own = [row for row in rows if row.gate == gate]
-            found += self.rows(replace(check, gate=gate), own)
+            own, check = [row for row in rows if row.gate == gate], replace(whole, gate=gate)
+            exception = next((e for e in self.exceptions if e.matches(check)), None)
+            if exception is not None:
+                if worst(row.verdict for row in own) == "pass":
+                    self.passing.setdefault(exception, []).append(check.id)
+                own = [_declared(row, exception) for row in own]
+            found += own
         return found
 
     def engine(self, case: Case, found: EngineCase) -> EngineCase:
         """One engine on one case."""
-        name = found.engine.name
-        shared = self.by_gate(Check(name, case.name, ""), found.shared)
-        runs = [
-            replace(
-                run,
-                rows=self.by_gate(
-                    Check(name, case.name, "", run.integrator.name, run.sweep.timestep), run.rows
-                ),
-            )
-            for run in found.runs
-        ]
-        return replace(found, shared=shared, runs=runs)
-
-    def case(self, judged: JudgedCase) -> JudgedCase:
-        """All engines on one case."""
-        return replace(judged, engines=[self.engine(judged.case, e) for e in judged.engines])
+        whole, runs = Check(found.engine.name, case.name, ""), []
+        for run in found.runs:
+            check = replace(whole, integrator=run.integrator.name, timestep=run.sweep.timestep)
+            runs.append(replace(run, rows=self.rows(check, run.rows)))
+        return replace(found, shared=self.rows(whole, found.shared), runs=runs)
 
 
 def with_declared(
@@ -81,7 +66,10 @@ def with_declared(
     if not exceptions:
         return outcome, []
     ledger = _Ledger(exceptions)
-    judged = replace(outcome, cases=[ledger.case(case) for case in outcome.cases])
+    judged = [
+        replace(judged, engines=[ledger.engine(judged.case, e) for e in judged.engines])
+        for judged in outcome.cases
+    ]
     stale = [
         {**vars(e), "checks": ids, "problem": f"{ids[0]} {no_longer_fails(e)}"}
         for e, ids in ledger.passing.items()
@@ -91,4 +79,4 @@ def with_declared(
             {**vars(e), "checks": [], "problem": matches_nothing(e)}
             for e in unmatched(exceptions, subject_of(engine), cases)
         ]
-    return judged, stale
+    return replace(outcome, cases=judged), stale

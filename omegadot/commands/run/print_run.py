@@ -7,12 +7,11 @@ from typing import Any
 
 import typer
 
+from omegadot.commands import options
 from omegadot.commands.run.result import RunResult
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.text.terminal import print_summary
-
-INTERRUPTED = 130  # as shells count: 128 + SIGINT
 
 
 def exit_code(result: RunResult) -> int:
@@ -22,10 +21,8 @@ def exit_code(result: RunResult) -> int:
     An engine that is not installed counts only where it was given by name.
     """
     if not result.complete:
-        return INTERRUPTED
-    if not result.answered:
-        return 3
-    return 0 if result.passed else 1
+        return options.INTERRUPTED
+    return options.exit_code(result.passed, result.answered)
 
 
 def print_text(result: RunResult) -> None:

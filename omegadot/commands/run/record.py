@@ -6,6 +6,8 @@ import datetime
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from omegadot import __version__
 from omegadot.diagnosis.clusters import clusters_of_run
 from omegadot.diagnosis.diagnose import causes_of
@@ -38,44 +40,30 @@ def record_of(
         "clusters": [vars(cluster) for cluster in clusters_of_run(outcome.cases)],
         "tasks": tasks_of_run(outcome, list(request.cases), request.setup, request.seed, causes_of),
     }
-    return Record(
-        run,
-        metrics_of_run(outcome, request.setup),
-        trajectories_of_run(outcome, request.setup),
-    )
+    setup = request.setup
+    return Record(run, metrics_of_run(outcome, setup), trajectories_of_run(outcome, setup))
 
 
 def _engines(outcome: Outcome) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
     for engine in outcome.engines:
-        fields = vars(engine.description)
-        integrators = [vars(integrator) for integrator in engine.description.integrators]
-        features = sorted(engine.description.features)
-        found.append(
-            {**fields, "installed": True, "reason": "", "integrators": integrators}
-            | {"features": features}
-        )
+        own = engine.description
+        integrators = [vars(integrator) for integrator in own.integrators]
+        parts = {"integrators": integrators, "features": sorted(own.features)}
+        found.append({**vars(own), "installed": True, "reason": "", **parts})
     for choice, answer in outcome.missing:
         found.append({"name": choice.name, "installed": False, "reason": answer.reason})
     return found
 
 
 def _scenario(case: Case) -> dict[str, Any]:
-    scenario, body, load = case.scenario, case.system.body, case.system.load
+    scenario = case.scenario
+    system = {**vars(case.system.body), **vars(case.system.load)}
     return {
         "name": scenario.name,
         "title": scenario.title,
         "shows": scenario.shows,
         "source": scenario.source,
         "definition": scenario.to_dict(),
-        "system": {
-            "mass": float(body.mass),
-            "center_of_mass": body.center_of_mass.tolist(),
-            "inertia": body.inertia.tolist(),
-            "gravity": load.gravity.tolist(),
-            "pivot": None if load.pivot is None else load.pivot.tolist(),
-            "damping": float(load.damping),
-            "torque_body": load.torque_body.tolist(),
-            "torque_world": load.torque_world.tolist(),
-        },
+        "system": {k: None if v is None else np.asarray(v).tolist() for k, v in system.items()},
     }

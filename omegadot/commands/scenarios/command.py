@@ -1,23 +1,29 @@
-"""The arguments of ``omegadot scenarios``."""
+"""The arguments of ``omegadot scenarios``, and what it prints."""
 
 from __future__ import annotations
 
-from typing import Annotated
+import json
 
-import typer
-
-from omegadot.commands.options import Format
+from omegadot.commands.options import Format, Output
 
 
-def scenarios(
-    output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
-) -> None:
+def scenarios(output: Output = Format.text) -> None:
     """List the built-in scenarios and what each shows."""
-    from omegadot.commands.scenarios.print_scenarios import print_json, print_text
+    from rich.console import Console
+    from rich.markup import escape
+
     from omegadot.scenarios import builtin_names, load_builtin
 
     found = [load_builtin(name) for name in builtin_names()]
     if output is Format.json:
-        print_json(found)
-    else:
-        print_text(found)
+        print(json.dumps([scenario.to_dict() for scenario in found], indent=2))
+        return
+    console = Console(highlight=False)
+    for scenario in found:
+        run = scenario.run
+        steps = ", ".join(f"{step:g}" for step in run.timesteps)
+        console.print(f"[bold]{scenario.name}[/]  {escape(scenario.title)}")
+        console.print(f"  {escape(scenario.shows or '')}")
+        console.print(f"  {run.duration:g} s at steps of {steps} s", style="dim")
+        if scenario.source:
+            console.print(f"  Source: {escape(scenario.source)}", style="dim")

@@ -6,47 +6,41 @@ from typing import Annotated
 
 import typer
 
-from omegadot.commands.options import PageFormat, on_a_terminal
+from omegadot.commands import options
+from omegadot.commands.options import Texts, option
 
 
 def schemes(
-    engine: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME[:INTEGRATOR]",
-            help="An engine; repeatable. Default: all but exact and reference.",
+    engines: Annotated[
+        Texts,
+        option(
+            "NAME[:INTEGRATOR]",
+            "An engine; repeatable. Default: all but exact and reference.",
+            "--engine",
         ),
     ] = None,
-    adapter: Annotated[
-        list[str] | None,
-        typer.Option(metavar="FILE.py:CLASS", help="An engine of your own; repeatable."),
-    ] = None,
+    adapters: options.Adapters = None,
     python: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME=PATH",
-            help="A Python interpreter for one engine: another version of it, installed there with "
+        Texts,
+        option(
+            "NAME=PATH",
+            "A Python interpreter for one engine: another version of it, installed there with "
             "NumPy and SciPy; repeatable.",
         ),
     ] = None,
-    output: Annotated[
-        PageFormat, typer.Option("--format", help="Output format.")
-    ] = PageFormat.text,
+    output: options.PageOutput = options.PageFormat.text,
 ) -> None:
     """Identify the scheme of every integrator by its steps, with its orders and defects.
 
     Exit codes: 0 all is as declared, 1 something is not, 2 wrong usage, 3 an engine crashed,
     timed out or could not be started.
     """
+    arguments = options.given(locals())
     from omegadot.commands.other_python import interpreters
-    from omegadot.commands.schemes.print_schemes import exit_code, print_schemes
+    from omegadot.commands.schemes.print_schemes import print_schemes
     from omegadot.commands.schemes.schemes import schemes as study_schemes
 
-    found = study_schemes(
-        engine or [],
-        adapters=adapter or [],
-        pythons=interpreters(python or []),
-        progress=on_a_terminal(),
-    )
+    pythons = interpreters(arguments.pop("python", []))
+    found = study_schemes(**arguments, pythons=pythons)
     print_schemes(found, output.value)
-    raise typer.Exit(exit_code(found))
+    raise typer.Exit(options.exit_code(found.passed, found.answered))

@@ -3,22 +3,80 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
-from omegadot.commands.schemes.cells import (
-    answered,
-    defects_cell,
-    kinds_text,
-    labelled,
-    largest_defect,
-    orders_cell,
-    orders_seen,
-    range_of,
-)
 from omegadot.diagnosis.scheme_study.record import Record
 from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reports.text.numbers import short
+
+# Kinds of which one stands for both: damping adds nothing to the name where they agree.
+PAIRS = (("free", "damped"), ("pivoted", "pivoted-damped"))
+
+
+def answered(integrator: Record) -> dict[str, Any]:
+    """The probes that an integrator answered, by kind."""
+    return {kind: p for kind, p in integrator["probes"].items() if p["outcome"] == "ok"}
+
+
+def kinds_text(kinds: list[str]) -> str:
+    """Kinds as text; a pair in full goes by the name of its first."""
+    second = {pair[1] for pair in PAIRS if set(pair) <= set(kinds)}
+    return ", ".join(kind for kind in kinds if kind not in second)
+
+
+def labelled(parts: list[tuple[list[str], str]]) -> str:
+    """Texts by kind; the first stands for the rest and goes without its kinds."""
+    texts = [
+        text if n == 0 else f"{kinds_text(kinds)}: {text}" for n, (kinds, text) in enumerate(parts)
+    ]
+    return "; ".join(texts) or "–"
+
+
+def range_of(orders: Iterable[float | None]) -> str:
+    """0.95–1.02 of the orders seen, or 1.00 where both ends are the same to two digits."""
+    seen = [order for order in orders if order is not None]
+    ends = [f"{end:.2f}" for end in (min(seen), max(seen))] if seen else ["–"]
+    return "–".join(dict.fromkeys(ends))
+
+
+def orders_cell(integrator: Record, channel: str) -> str:
+    """Declared and observed order, probes together that were declared and judged alike."""
+    groups: dict[tuple[int | None, str], dict[str, float | None]] = {}
+    for kind, probe in answered(integrator).items():
+        order = probe["orders"][channel]
+        groups.setdefault((order["declared"], order["verdict"]), {})[kind] = order["order"]
+    return labelled(
+        [(list(seen), _order(*judged, range_of(seen.values()))) for judged, seen in groups.items()]
+    )
+
+
+def _order(declared: int | None, verdict: str, figures: str) -> str:
+    if verdict == "conserved":
+        return "conserved"
+    promised = "conserved" if declared is None else str(declared)
+    if verdict == "floor":
+        return f"{promised} (rounding alone)"
+    return f"{promised} ({figures})" if verdict == "holds" else f"{promised} ({figures}, {verdict})"
+
+
+def largest_defect(integrator: Record, channel: str) -> Record | None:
+    """The defect largest above rounding over the probes."""
+    defects = [p["defects"][channel] for p in answered(integrator).values()]
+    above = [d for d in defects if d["value"] is not None and d["kind"] != "floor"]
+    return max(above, key=lambda defect: float(defect["value"]), default=None)
+
+
+def defects_cell(integrator: Record, channel: str) -> str:
+    """The largest over the probes, each a mean over its starts, with its order there."""
+    defect = largest_defect(integrator, channel)
+    if defect is None:
+        return "rounding alone" if answered(integrator) else "–"
+    order = "" if defect["order"] is None else f", {defect['order']:.2f}"
+    unsettled = "" if defect["kind"] == "settled" else " unresolved"
+    return f"{short(defect['value'])}{order}{unsettled}"
+
 
 HEADS = tuple(channel.replace("_", " ") for channel in CHANNELS)
 
@@ -34,59 +92,26 @@ class Table:
 
 def tables_of(record: Record) -> list[Table]:
     """Three tables, a row an integrator."""
+    who = ("engine", "integrator")
     angle = f"{record['defect_angle']:g}"
-    found = list(_integrators(record))
-    return [
-        Table(
-            "Schemes",
-            ("engine", "integrator", "scheme", "stepped in", "match", "declared"),
-            [(*label, *_scheme(record, integrator)) for label, integrator in found],
-        ),
-        Table(
-            "Orders: declared (observed)",
-            ("engine", "integrator", *HEADS),
-            [
-                (*label, *(orders_cell(integrator, c) for c in CHANNELS))
-                for label, integrator in found
-            ],
-        ),
-        Table(
-            f"One-step defect at a step of {angle} rad, and its order",
-            ("engine", "integrator", *HEADS),
-            [
-                (*label, *(defects_cell(integrator, c) for c in CHANNELS))
-                for label, integrator in found
-            ],
-        ),
-    ]
-
-
-def _integrators(record: Record) -> Iterator[tuple[tuple[str, str], Record]]:
+    schemes = Table("Schemes", (*who, "scheme", "stepped in", "match", "declared"), [])
+    orders = Table("Orders: declared (observed)", (*who, *HEADS), [])
+    title = f"One-step defect at a step of {angle} rad, and its order"
+    defects = Table(title, (*who, *HEADS), [])
     for engine in record["engines"]:
         for integrator in engine["integrators"]:
-            yield (f"{engine['name']} {engine['version']}", integrator["name"]), integrator
-
-
-def _scheme(record: Record, integrator: Record) -> tuple[str, str, str, str]:
-    namings = integrator["schemes"]
-    return (
-        labelled([(list(naming["kinds"]), _named(naming)) for naming in namings]),
-        _point(integrator),
-        _match(record, integrator),
-        _declared(integrator),
-    )
+            label = (f"{engine['name']} {engine['version']}", integrator["name"])
+            namings = [(list(n["kinds"]), _named(n)) for n in integrator["schemes"]]
+            found = (_point(integrator), _match(record, integrator), _declared(integrator))
+            schemes.rows.append((*label, labelled(namings), *found))
+            orders.rows.append((*label, *(orders_cell(integrator, c) for c in CHANNELS)))
+            defects.rows.append((*label, *(defects_cell(integrator, c) for c in CHANNELS)))
+    return [schemes, orders, defects]
 
 
 def _named(naming: Record) -> str:
     others = f" (or {', '.join(naming['others'])})" if naming["others"] else ""
     return f"{naming['scheme'] or 'unknown'}{others}"
-
-
-def _chosen(integrator: Record) -> list[Record]:
-    """The match of each probe under the name that it was given."""
-    names = {kind: n["scheme"] for n in integrator["schemes"] for kind in n["kinds"]}
-    matches = [(names[k], m) for k, p in answered(integrator).items() for m in p["matches"]]
-    return [match for name, match in matches if match["scheme"] == name]
 
 
 def _point(integrator: Record) -> str:
@@ -98,7 +123,10 @@ def _point(integrator: Record) -> str:
 
 def _match(record: Record, integrator: Record) -> str:
     """How closely, over how many steps; of an unknown scheme the order and the defect."""
-    chosen = _chosen(integrator)
+    names = {kind: n["scheme"] for n in integrator["schemes"] for kind in n["kinds"]}
+    matches = [(names[k], m) for k, p in answered(integrator).items() for m in p["matches"]]
+    # The match of each probe under the name that it was given.
+    chosen = [match for name, match in matches if match["scheme"] == name]
     texts = []
     if chosen:
         # Rounding differs from machine to machine, its decade hardly.
@@ -107,16 +135,12 @@ def _match(record: Record, integrator: Record) -> str:
         texts.append(f"to {decade_above(worst)} over {steps} steps")
     if any(naming["scheme"] is None for naming in integrator["schemes"]):
         angle = f"{record['defect_angle']:g}"
-        seen = ", ".join(
-            f"{c} {range_of(orders_seen(integrator, c))}" for c in ("omega", "attitude")
-        )
-        texts.append(f"unknown: order {seen}; one step of {angle} rad: {_attitude(integrator)}")
+        orders = [p["orders"] for p in answered(integrator).values()]
+        seen = [f"{c} {range_of(o[c]['order'] for o in orders)}" for c in ("omega", "attitude")]
+        defect = largest_defect(integrator, "attitude")
+        size = f"defect {short(defect['value'])} rad in attitude" if defect else "no defect"
+        texts.append(f"unknown: order {', '.join(seen)}; one step of {angle} rad: {size}")
     return "; ".join(texts) or "–"
-
-
-def _attitude(integrator: Record) -> str:
-    value, _ = largest_defect(integrator, "attitude")
-    return "no defect" if value is None else f"defect {short(value)} rad in attitude"
 
 
 def _declared(integrator: Record) -> str:

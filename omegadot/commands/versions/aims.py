@@ -1,20 +1,28 @@
-"""What is measured of every version: the metrics, by name, before any is measured."""
+"""What is measured of every version: metrics by name, and the exact solution of each case."""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+
+import numpy as np
 
 from omegadot.adapters.protocol import Description
 from omegadot.commands.versions.metric import RATIO, Name
 from omegadot.diagnosis.scheme_study.probes import PROBES
 from omegadot.gates.case import Case, Sweep
+from omegadot.gates.equation import random_acceleration, random_states
 from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.measures import Yardstick
 from omegadot.harness.arguments import case_of
 from omegadot.harness.usage import UsageError, nearest
+from omegadot.reference_impl.exact_solution import exact_states
+from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.system import Acceleration, Array, State
 from omegadot.reports.text.numbers import plain
-from omegadot.scenarios import Scenario, ScenarioLike, builtin_names, load_scenario, scenario
+from omegadot.scenarios import ScenarioLike, load_scenario, scenario
 
 # On a free body, one with an offset, with damping, on a pivot and under a torque that turns with
 # it, integrators may step different schemes; a flip multiplies what they differ by.
@@ -22,14 +30,39 @@ DEFAULT = ("box", "t-handle", "offset-com", "damped-tumble", "heavy-top", "drive
 BOX = "box"
 BOX_FILE = Path(__file__).with_name("box.toml")
 SAMPLES = 50
+STATES = 32  # random states that the equations are evaluated at
+SEED = (0, 1)
 
 
 @dataclass(frozen=True)
+class Exact:
+    """A case's exact states at its samples, and the measure of distances from them.
+
+    random, acceleration: where the equations are evaluated.
+    """
+
+    state: State
+    growth: Array
+    yardstick: Yardstick
+    random: State
+    acceleration: Acceleration
+
+
+@dataclass
 class Aims:
     """The cases that are run, each with a single step, and the integrators (all where none is)."""
 
     cases: tuple[Case, ...]
     integrators: tuple[str, ...] = ()
+    _known: dict[str, Exact] = field(default_factory=dict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def truth(self, case: Case) -> Exact:
+        """The truth of a case; versions that are measured side by side share it."""
+        with self._lock:
+            if case.name not in self._known:
+                self._known[case.name] = _exact(case)
+            return self._known[case.name]
 
     def chosen(self, description: Description) -> list[str]:
         """The integrators of a version that are looked at."""
@@ -37,17 +70,13 @@ class Aims:
         return [name for name in names if not self.integrators or name in self.integrators]
 
 
-def scenario_given(argument: ScenarioLike) -> Scenario:
-    """A scenario, or the box that is kept here. Raises ScenarioError."""
-    return load_scenario(BOX_FILE) if argument == BOX else scenario(argument)
-
-
 def case_for(argument: ScenarioLike, timestep: float | None) -> Case:
     """A scenario at one step, its own middle one where none is given, with samples enough.
 
     Raises ScenarioError and UsageError.
     """
-    case = case_of(scenario_given(argument), () if timestep is None else (timestep,))
+    chosen = load_scenario(BOX_FILE) if argument == BOX else scenario(argument)
+    case = case_of(chosen, () if timestep is None else (timestep,))
     sweep = case.sweeps[len(case.sweeps) // 2]
     thinned = Sweep(sweep.timestep, sweep.steps, max(1, sweep.steps // SAMPLES))
     return Case(case.scenario, case.system, case.initial, (thinned,))
@@ -79,14 +108,9 @@ def conserves_kinetic_energy(case: Case) -> bool:
     return not (load.gravity.any() or float(load.damping) or torques or load.pivot is not None)
 
 
-def step_name(case: Case) -> str:
-    """The step of a case as it stands in names."""
-    return plain(case.sweeps[0].timestep)
-
-
 def drift_names(case: Case, integrator: str) -> list[Name]:
     """One for each channel, and E/E0 at the end where that states something."""
-    start = ("drift", case.name, integrator, step_name(case))
+    start = ("drift", case.name, integrator, plain(case.sweeps[0].timestep))
     ratio: list[Name] = [(*start, RATIO)] if conserves_kinetic_energy(case) else []
     return ratio + [(*start, channel) for channel in CHANNELS]
 
@@ -97,14 +121,10 @@ def equation_names(case: Case) -> list[Name]:
     return [("equation", case.name, channel) for channel in channels]
 
 
-def scheme_name(integrator: str, kind: str) -> Name:
-    """Which scheme an integrator steps on a probe."""
-    return ("scheme", integrator, kind)
-
-
-def order_names(integrator: str, kind: str) -> list[Name]:
-    """The observed orders of an integrator on a probe."""
-    return [("order", integrator, kind, channel) for channel in CHANNELS]
+def probe_names(integrator: str, kind: str) -> list[Name]:
+    """Which scheme an integrator steps on a probe, and its observed orders there."""
+    orders: list[Name] = [("order", integrator, kind, channel) for channel in CHANNELS]
+    return [("scheme", integrator, kind), *orders]
 
 
 def names_of(aims: Aims, description: Description) -> Iterator[Name]:
@@ -113,12 +133,16 @@ def names_of(aims: Aims, description: Description) -> Iterator[Name]:
         yield from equation_names(case)
     for integrator in aims.chosen(description):
         for probe in PROBES:
-            yield scheme_name(integrator, probe.kind)
-            yield from order_names(integrator, probe.kind)
+            yield from probe_names(integrator, probe.kind)
         for case in aims.cases:
             yield from drift_names(case, integrator)
 
 
-def scenarios_known() -> list[str]:
-    """The names that a scenario may have on the command line, besides paths."""
-    return [BOX, *builtin_names()]
+def _exact(case: Case) -> Exact:
+    times = case.sweeps[0].times
+    _, state = exact_states(case.system, case.initial, times)
+    yardstick = Yardstick(case.system, times, state)
+    growth = growth_along(case.system, times, state, yardstick.rate)
+    random = random_states(case, STATES, SEED)
+    acceleration = random_acceleration(case.system, random, SEED)
+    return Exact(state, np.asarray(growth), yardstick, random, acceleration)

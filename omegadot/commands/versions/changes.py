@@ -1,18 +1,45 @@
-"""What changed between versions: metric by metric, and pace by pace."""
+"""What is found of a version, and what changed between two: metric by metric, and paces."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+import statistics
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
-from omegadot.commands.versions.measure import Portrait
 from omegadot.commands.versions.metric import KINDS, Figure, Name, differ
-from omegadot.commands.versions.speed import Ratio, pace_of, ratio_of
 
 # The place of the integrator in a metric's name, by the name's first term.
 _INTEGRATOR_AT = {"scheme": 1, "order": 1, "drift": 2}
+
+
+@dataclass
+class Portrait:
+    """One version. outcome: "ok", or why there is nothing of it, with the reason.
+
+    version: as requested.  reported_version: of the engine itself.  faults: where it is not as
+    its adapter declares, or wrong.  has: its integrators, those not looked at included.
+    troubles: requests that it failed to answer.  unreported: kinds of metric that it should report
+    and did not.
+    """
+
+    version: str
+    outcome: str = "ok"
+    reason: str = ""
+    origin: str = ""
+    reported_version: str = ""
+    integrators: list[str] = field(default_factory=list)
+    has: list[str] = field(default_factory=list)
+    figures: dict[Name, Figure] = field(default_factory=dict)
+    faults: list[str] = field(default_factory=list)
+    troubles: list[str] = field(default_factory=list)
+    unreported: frozenset[str] = frozenset()
+    speeds: dict[str, list[float]] = field(default_factory=dict)
+
+    @property
+    def ok(self) -> bool:
+        """Whether the version could be measured."""
+        return self.outcome == "ok"
 
 
 @dataclass(frozen=True)
@@ -62,10 +89,35 @@ def changes_between(
     return sorted(found, key=lambda change: KINDS.index(change.name[0]))
 
 
-def neighbours(portraits: Iterable[Portrait]) -> list[tuple[Portrait, Portrait]]:
-    """Each version that could be measured with the next one that could."""
-    known = [portrait for portrait in portraits if portrait.ok]
-    return list(pairwise(known))
+@dataclass(frozen=True)
+class Pace:
+    """Seconds a step: the median of some timings, the least and the greatest."""
+
+    median: float
+    least: float
+    most: float
+
+
+def pace_of(timings: list[float]) -> Pace | None:
+    """None of no timings."""
+    return Pace(statistics.median(timings), min(timings), max(timings)) if timings else None
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """Time a step over that of an earlier version. apart: the two spreads do not touch."""
+
+    value: float
+    least: float
+    most: float
+    apart: bool
+
+
+def ratio_of(earlier: Pace, later: Pace) -> Ratio:
+    """The ratio of the medians, and the range that the spreads allow."""
+    least, most = later.least / earlier.most, later.most / earlier.least
+    apart = later.least > earlier.most or later.most < earlier.least
+    return Ratio(later.median / earlier.median, least, most, apart)
 
 
 def pace_changes(one: Portrait, other: Portrait) -> dict[str, Ratio]:
@@ -76,8 +128,3 @@ def pace_changes(one: Portrait, other: Portrait) -> dict[str, Ratio]:
         if paces[0] and paces[1]:
             found[name] = ratio_of(paces[0], paces[1])
     return found
-
-
-def all_changes(portraits: Sequence[Portrait]) -> list[tuple[Portrait, Portrait, list[Change]]]:
-    """The changes from each version to the next."""
-    return [(one, other, changes_between(one, other)) for one, other in neighbours(portraits)]

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from omegadot.commands.options import PageFormat, Setup, on_a_terminal
+from omegadot.commands import options
+from omegadot.commands.options import Setup, Text, Texts, option
+
+if TYPE_CHECKING:
+    from omegadot.commands.versions.result import VersionsResult
 
 
 class With(StrEnum):
@@ -24,38 +29,24 @@ def versions(
         str, typer.Argument(metavar="ENGINE", help="mujoco, dart (dartpy) or pinocchio (pin).")
     ],
     releases: Annotated[
-        list[str] | None,
+        Texts,
         typer.Argument(
             metavar="VERSION...",
             help="1.2.3, a range 1.2.0..1.4.0 of published releases, or 1.2.3=PYTHON, an "
             "interpreter that has this version.",
         ),
     ] = None,
-    scenario: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="A built-in's name, or a path; repeatable."),
+    scenarios: Annotated[
+        Texts, option("NAME", "A built-in's name, or a path; repeatable.", "--scenario")
     ] = None,
-    integrator: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="An integrator; repeatable. Default: all."),
-    ] = None,
+    integrators: options.Integrators = None,
     timestep: Annotated[
-        float | None,
-        typer.Option(metavar="S", help="A time step in s instead of each scenario's middle one."),
+        float | None, option("S", "A time step in s instead of each scenario's middle one.")
     ] = None,
-    bisect: Annotated[
-        str | None,
-        typer.Option(metavar="METRIC", help="Find the release in which METRIC changed."),
-    ] = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write versions.json and versions.html.")
-    ] = None,
-    output: Annotated[
-        PageFormat, typer.Option("--format", help="Output format.")
-    ] = PageFormat.text,
-    cache: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Folder of the environments.")
-    ] = None,
+    bisect: Annotated[Text, option("METRIC", "Find the release in which METRIC changed.")] = None,
+    out: Annotated[Path | None, option("DIR", "Write versions.json and versions.html.")] = None,
+    output: options.PageOutput = options.PageFormat.text,
+    cache: Annotated[Path | None, option("DIR", "Folder of the environments.")] = None,
     offline: Annotated[
         bool, typer.Option("--offline", help="Use only environments in the cache.")
     ] = False,
@@ -63,28 +54,15 @@ def versions(
         With, typer.Option(help="Installer of the environments; auto: uv where it is installed.")
     ] = With.auto,
     setup: Annotated[Setup, typer.Option(help="How engines are configured.")] = Setup.physics,
-    adapter: Annotated[
-        str | None,
-        typer.Option(metavar="FILE.py:CLASS", help="The adapter of your own engine."),
-    ] = None,
+    adapter: Annotated[Text, option("FILE.py:CLASS", "The adapter of your own engine.")] = None,
     package: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME", help="With --adapter: the package whose releases are installed."
-        ),
+        Text, option("NAME", "With --adapter: the package whose releases are installed.")
     ] = None,
     speed: Annotated[bool, typer.Option(help="Measure the time per step.")] = True,
-    timeout: Annotated[
-        float,
-        typer.Option(metavar="S", min=0.1, help="Time limit in s for one request to an engine."),
-    ] = 60.0,
+    timeout: options.Timeout = 60.0,
     jobs: Annotated[
         int | None,
-        typer.Option(
-            metavar="N",
-            min=1,
-            help="Number of versions measured at the same time. Default: all cores.",
-        ),
+        option("N", "Number of versions measured at the same time. Default: all cores.", min=1),
     ] = None,
 ) -> None:
     """Find what changed between releases of an engine, each in an environment of its own.
@@ -92,27 +70,22 @@ def versions(
     Exit codes: 0 done, whatever changed, 1 some version is not as its adapter declares, or the
     ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be measured.
     """
-    from omegadot.commands.versions.print_versions import exit_code, print_versions
+    arguments = {"releases": [], **options.given(locals())}
     from omegadot.commands.versions.versions import versions as compare_versions
 
-    found = compare_versions(
-        engine,
-        releases or [],
-        scenarios=scenario or [],
-        integrators=integrator or [],
-        timestep=timestep,
-        bisect=bisect,
-        cache=cache,
-        offline=offline,
-        installer=installer.value,
-        setup=setup.value,
-        adapter=adapter,
-        package=package,
-        speed=speed,
-        timeout=timeout,
-        jobs=jobs,
-        out=out,
-        progress=on_a_terminal(),
-    )
-    print_versions(found, output.value)
-    raise typer.Exit(exit_code(found))
+    found = compare_versions(**arguments)
+    print_versions(found, output)
+    raise typer.Exit(options.exit_code(found.passed, found.comparable))
+
+
+def print_versions(found: VersionsResult, output: options.PageFormat) -> None:
+    """Print what was found, as text, JSON or Markdown."""
+    from omegadot.reports.versions.sheet import sheet_of
+    from omegadot.reports.versions.text import markdown_of, print_sheet
+
+    if output is options.PageFormat.json:
+        typer.echo(json.dumps(found.record, indent=2))
+    elif output is options.PageFormat.markdown:
+        typer.echo(markdown_of(sheet_of(found.record)), nl=False)
+    else:
+        print_sheet(sheet_of(found.record))

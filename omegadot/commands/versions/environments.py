@@ -8,7 +8,6 @@ for whole, and two that make the same one at the same time both get one.
 from __future__ import annotations
 
 import json
-import os
 import platform
 import secrets
 import shutil
@@ -21,9 +20,12 @@ from platformdirs import user_cache_path
 
 from omegadot.commands.other_python import worker_command
 from omegadot.commands.versions.installer import Installer, InstallError, python_of
-from omegadot.commands.versions.product import Product
-from omegadot.commands.versions.release import Span
+from omegadot.commands.versions.release import Product, Span
 from omegadot.harness.usage import UsageError
+from omegadot.reports.record.whole_file import write_whole
+
+# What an environment depends on besides its release: this Python and this machine's kind.
+_SUFFIX = f"-{sys.implementation.cache_tag}-{sys.platform}-{platform.machine()}.json"
 
 
 @dataclass(frozen=True)
@@ -46,11 +48,6 @@ def default_cache() -> Path:
     return user_cache_path("omegadot", appauthor=False, opinion=False) / "versions"
 
 
-def _suffix() -> str:
-    """What an environment depends on besides its release: this Python and this machine's kind."""
-    return f"-{sys.implementation.cache_tag}-{sys.platform}-{platform.machine()}"
-
-
 class Environments:
     """The cache, and the installer that fills it; none where nothing may be fetched."""
 
@@ -59,9 +56,9 @@ class Environments:
 
     def cached(self) -> list[str]:
         """The releases of the product whose environments are whole."""
-        start, end = f"{self._product.package}-", f"{_suffix()}.json"
-        names = [file.name for file in self._cache.glob(f"{start}*{end}")]
-        versions = [name.removeprefix(start).removesuffix(end) for name in names]
+        start = f"{self._product.package}-"
+        names = [file.name for file in self._cache.glob(f"{start}*{_SUFFIX}")]
+        versions = [name.removeprefix(start).removesuffix(_SUFFIX) for name in names]
         return [version for version in versions if self._known(version) is not None]
 
     def releases(self, span: Span) -> list[str]:
@@ -82,24 +79,23 @@ class Environments:
 
     def place(self, version: str) -> Place | Absent:
         """A whole environment with this release, made now where there is none yet."""
-        python = self._known(version)
-        if python is None and self._installer is None:
-            return Absent("not in the cache, and nothing may be fetched while offline")
+        python, installer = self._known(version), self._installer
         if python is not None:
             return Place(worker_command(str(python)), "the cache")
-        assert self._installer is not None
+        if installer is None:
+            return Absent("not in the cache, and nothing may be fetched while offline")
         try:
-            return Place(worker_command(str(self._made(version))), self._installer.name)
+            return Place(worker_command(str(self._made(version, installer))), installer.name)
         except InstallError as error:
             ours = ".".join(map(str, sys.version_info[:2]))
-            return Absent(f"{self._installer.name}, for Python {ours}: {error}")
+            return Absent(f"{installer.name}, for Python {ours}: {error}")
         except OSError as error:
             raise UsageError(
                 f"--cache {self._cache}: an environment cannot be made there ({error.strerror})."
             ) from error
 
     def _marker(self, version: str) -> Path:
-        return self._cache / f"{self._product.package}-{version}{_suffix()}.json"
+        return self._cache / f"{self._product.package}-{version}{_SUFFIX}"
 
     def _known(self, version: str) -> Path | None:
         """The interpreter of a whole environment; None where the Python it leads to is gone."""
@@ -111,20 +107,16 @@ class Environments:
             return None
         return python if same and python.exists() else None
 
-    def _made(self, version: str) -> Path:
-        assert self._installer is not None
+    def _made(self, version: str, installer: Installer) -> Path:
         requirements = self._product.requirements(version)
         marker = self._marker(version)
         folder = self._cache / f"{marker.stem}-{secrets.token_hex(4)}"
         self._cache.mkdir(parents=True, exist_ok=True)
         try:
-            self._installer.create(folder)
-            self._installer.install(folder, requirements)
+            installer.create(folder)
+            installer.install(folder, requirements)
         except BaseException:
             shutil.rmtree(folder, ignore_errors=True)
             raise
-        text = json.dumps({"folder": folder.name, "requirements": requirements})
-        fresh = self._cache / f".{folder.name}.json"
-        fresh.write_text(text, encoding="utf-8")
-        os.replace(fresh, marker)
+        write_whole(marker, json.dumps({"folder": folder.name, "requirements": requirements}))
         return python_of(folder)

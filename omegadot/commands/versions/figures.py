@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.commands.versions.aims import (
+    Exact,
     conserves_kinetic_energy,
     drift_names,
     equation_names,
-    order_names,
-    scheme_name,
+    probe_names,
 )
 from omegadot.commands.versions.metric import RATIO, Figure, Name
-from omegadot.commands.versions.truths import Exact
 from omegadot.diagnosis.scheme_study.fingerprint import fingerprint
-from omegadot.diagnosis.scheme_study.orders import Observed, global_errors, observe
+from omegadot.diagnosis.scheme_study.orders import global_errors, observe
 from omegadot.diagnosis.scheme_study.probes import Probe
 from omegadot.diagnosis.scheme_study.study import Order, ProbeStudy
 from omegadot.diagnosis.scheme_study.subject import Stepper, is_finite
@@ -85,49 +84,46 @@ def scheme_figures(
     Raises NoAnswerError.
     """
     found: Figures = {}
-    name, matches, orders = integrator.name, None, {}
+    matches, orders = None, {}
+    scheme, *order_names = probe_names(integrator.name, probe.kind)
     declared, key = orders_for(integrator, probe.system), scheme_key(integrator, probe.system)
-    if wanted(scheme_name(name, probe.kind)):
+    if wanted(scheme):
         matches = tuple(fingerprint(probe, step))
         schemes = dict.fromkeys(match.scheme for match in matches)
-        found[scheme_name(name, probe.kind)] = Figure(" or ".join(schemes) or "unknown")
-    if any(map(wanted, order_names(name, probe.kind))):
+        found[scheme] = Figure(" or ".join(schemes) or "unknown")
+    if any(map(wanted, order_names)):
         errors = global_errors(probe, step)
-        for channel, metric in zip(CHANNELS, order_names(name, probe.kind), strict=True):
+        for channel, metric in zip(CHANNELS, order_names, strict=True):
             seen = observe(errors[channel])
             orders[channel] = Order(declared.get(channel), seen)
-            found[metric] = _order_figure(seen)
+            order = seen.order if seen.kind == "settled" else None
+            rounded = seen.kind == "floor"
+            found[metric] = Figure(ROUNDING) if rounded else Figure(order, ORDER_TOLERANCE)
     fits = None if matches is None or key is None else any(m.key == key for m in matches)
     return found, ProbeStudy(Answer("ok"), integrator.scheme, fits, matches or (), orders)
 
 
-def _order_figure(seen: Observed) -> Figure:
-    if seen.kind == "floor":
-        return Figure(ROUNDING)
-    return Figure(seen.order if seen.kind == "settled" else None, ORDER_TOLERANCE)
+def equation_figures(
+    case: Case, exact: Exact, request: Callable[..., Answer]
+) -> tuple[Figures, list[Row]]:
+    """Omega-dot, acceleration and torque at random states, against their bounds.
 
-
-def equation_figures(case: Case, exact: Exact, forward: Answer, inverse: Answer) -> list[Row]:
-    """Omega-dot, acceleration and torque at random states, against their bounds."""
+    The rows are those of the equations, and those of the body and a state that are read back.
+    Raises NoAnswerError.
+    """
+    system, random = case.system, exact.random
+    first = State(*(values[0] for values in vars(random).values()))
+    model = request("model", state=first)
+    forward = request("forward", states=random)
+    inverse = request("inverse", states=random, acceleration=exact.acceleration)
     rows: list[Row] = []
     if forward.ok:
-        found = acceleration_from(forward.result)
-        rows += forward_rows(case.system, exact.random, found, "residual")
+        rows += forward_rows(system, random, acceleration_from(forward.result), "residual")
     if inverse.ok:
-        torque = inverse.result["torque"]
-        rows += inverse_rows(case.system, exact.random, exact.acceleration, torque)
-    return rows
-
-
-def figures_of_rows(case: Case, rows: Sequence[Row]) -> Figures:
-    """The rows of the equations as figures."""
+        rows += inverse_rows(system, random, exact.acceleration, inverse.result["torque"])
     names = {name[-1]: name for name in equation_names(case)}
-    return {names[row.channel]: Figure(row.value, row.bound or 0.0) for row in rows}
-
-
-def model_rows(case: Case, requested: State, answer: Answer) -> list[Row]:
-    """The body and a state read back, against what was requested."""
-    if not answer.ok:
-        return []
-    bodies, state = answer.result["bodies"], state_from(answer.result["state"])
-    return body_rows(case, body_from(bodies[0])) + state_rows(case, requested, state)
+    found = {names[row.channel]: Figure(row.value, row.bound or 0.0) for row in rows}
+    if model.ok:
+        bodies, state = model.result["bodies"], state_from(model.result["state"])
+        rows = body_rows(case, body_from(bodies[0])) + state_rows(case, first, state) + rows
+    return found, rows

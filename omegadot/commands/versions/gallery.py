@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 
 from omegadot.commands.other_python import worker_command
 from omegadot.commands.versions.aims import Aims
+from omegadot.commands.versions.changes import Portrait
 from omegadot.commands.versions.environments import Absent, Place
 from omegadot.commands.versions.figures import Wanted
-from omegadot.commands.versions.measure import Portrait, Sitting
+from omegadot.commands.versions.measure import Sitting
 from omegadot.commands.versions.metric import Name
-from omegadot.commands.versions.product import Product
-from omegadot.commands.versions.release import version_of
-from omegadot.commands.versions.speed import ROUNDS, time_steps
-from omegadot.commands.versions.truths import Truths
+from omegadot.commands.versions.release import Product, version_of
+from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load
+from omegadot.gates.case import Case
 from omegadot.workers.harness_end.pool import outcome_of
 from omegadot.workers.harness_end.process import WorkerProcess
 
 OWN = "given"
+# Of timings. A round goes over all versions, so that a machine's moods fall on them alike.
+ROUNDS, REPEATS = 3, 4
 
 
 def everything(_: Name) -> bool:
@@ -27,69 +31,61 @@ def everything(_: Name) -> bool:
     return True
 
 
+@dataclass
 class Gallery:
     """Where releases are looked at.
 
     place: finds or makes the environment of a release.  pythons: interpreters given by the user.
     """
 
-    def __init__(
-        self,
-        product: Product,
-        aims: Aims,
-        place: Callable[[str], Place | Absent],
-        pythons: Mapping[str, str],
-        setup: str = "physics",
-        timeout: float = 60.0,
-    ) -> None:
-        self._product, self._aims = product, aims
-        self._place, self._pythons = place, pythons
-        self._setup, self._timeout = setup, timeout
-        self._truths = Truths()
-        self._places: dict[str, Place] = {}
-        self._workers: set[WorkerProcess] = set()
-        self._stopping = threading.Event()
+    product: Product
+    aims: Aims
+    place: Callable[[str], Place | Absent]
+    pythons: Mapping[str, str]
+    setup: str
+    timeout: float
+    _places: dict[str, Place] = field(default_factory=dict)
+    _workers: list[WorkerProcess] = field(default_factory=list)
+    _stopping: threading.Event = field(default_factory=threading.Event)
 
-    def _placed(self, version: str) -> Place | Absent:
-        if version in self._pythons:
-            return Place(worker_command(self._pythons[version]), OWN)
-        return self._place(version)
-
-    def _worker(self, place: Place) -> WorkerProcess:
-        worker = WorkerProcess(self._product.target, self._setup, self._timeout, place.command)
-        self._workers.add(worker)
-        return worker
+    @contextmanager
+    def _worker(self, place: Place) -> Iterator[WorkerProcess]:
+        worker = WorkerProcess(self.product.target, self.setup, self.timeout, place.command)
+        self._workers.append(worker)
+        try:
+            yield worker
+        finally:
+            worker.finish()
 
     def look(self, version: str, choose: Callable[[list[Name]], Wanted] | None = None) -> Portrait:
         """One version. choose: from the names of its metrics, which are wanted; all without it."""
         portrait = Portrait(version)
-        place = Absent("interrupted") if self._stopping.is_set() else self._placed(version)
+        place: Place | Absent
+        if self._stopping.is_set():
+            place = Absent("interrupted")
+        elif version in self.pythons:
+            place = Place(worker_command(self.pythons[version]), OWN)
+        else:
+            place = self.place(version)
         if isinstance(place, Absent):
             portrait.outcome, portrait.reason = "not-installed", place.reason
             return portrait
         portrait.origin = place.origin
-        worker = self._worker(place)
-        try:
-            sitting = Sitting(portrait, worker, self._aims, self._stopping.is_set)
+        with self._worker(place) as worker:
+            sitting = Sitting(portrait, worker, self.aims, self._stopping.is_set)
             names = sitting.start()
             self._check_start(portrait, place)
             if portrait.ok:
                 self._places[version] = place
-                sitting.request(choose(names) if choose else everything, self._truths)
-        finally:
-            worker.finish()
+                sitting.request(choose(names) if choose else everything)
         return portrait
 
     def _check_start(self, portrait: Portrait, place: Place) -> None:
         if portrait.outcome == "not-installed" and place.origin != OWN:
             portrait.reason = f"installed, and it cannot be imported: {portrait.reason}"
         reported = version_of(portrait.reported_version)
-        if (
-            portrait.ok
-            and place.origin == OWN
-            and reported
-            and reported != version_of(portrait.version)
-        ):
+        other = reported and reported != version_of(portrait.version)
+        if portrait.ok and place.origin == OWN and other:
             portrait.outcome = "not-installed"
             portrait.reason = f"the interpreter given for it has {portrait.reported_version}"
 
@@ -108,7 +104,7 @@ class Gallery:
                 self._stopping.set()
                 for future in futures:
                     future.cancel()
-                for worker in list(self._workers):
+                for worker in self._workers[:]:
                     worker.stop()
                 raise
         return portraits
@@ -118,8 +114,21 @@ class Gallery:
         known = [portrait for portrait in portraits if portrait.ok]
         for turn in range(ROUNDS):
             for portrait in known if turn % 2 == 0 else reversed(known):
-                worker = self._worker(self._places[portrait.version])
-                try:
-                    time_steps(portrait, worker, self._aims.cases[0])
-                finally:
-                    worker.finish()
+                with self._worker(self._places[portrait.version]) as worker:
+                    _time_steps(portrait, worker, self.aims.cases[0])
+
+
+def _time_steps(portrait: Portrait, worker: WorkerProcess, case: Case) -> None:
+    """Several timings of each integrator on a case, added to those of earlier rounds, s a step."""
+    sweep = case.sweeps[0]
+    plan = {"timestep": sweep.timestep, "steps": sweep.steps, "every": sweep.steps}
+    try:
+        load(worker, case.system)
+    except NoAnswerError:
+        return
+    for name in portrait.integrators:
+        for _ in range(REPEATS):
+            answer = worker.request("run", initial=case.initial, integrator=name, **plan)
+            if not answer.ok:
+                break
+            portrait.speeds.setdefault(name, []).append(float(answer.result["seconds_per_step"]))

@@ -13,7 +13,6 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Protocol
 
 from omegadot.commands.versions.release import Span, version_of
 from omegadot.workers.plain_text import one_line
@@ -32,20 +31,24 @@ def python_of(folder: Path) -> Path:
     return windows if sys.platform == "win32" else folder / "bin" / "python"
 
 
-def _run(command: Sequence[str]) -> str:
+def _done(command: Sequence[str], given: str = "") -> subprocess.CompletedProcess[str]:
     try:
-        done = subprocess.run(
+        return subprocess.run(
             command,
+            input=given,
             capture_output=True,
             text=True,
             errors="replace",
-            stdin=subprocess.DEVNULL,
             timeout=SECONDS_TO_INSTALL,
         )
     except subprocess.TimeoutExpired as error:
         raise InstallError(f"not done within {SECONDS_TO_INSTALL:g} s") from error
     except OSError as error:
         raise InstallError(f"{command[0]} could not be started: {error.strerror}") from error
+
+
+def _run(command: Sequence[str]) -> str:
+    done = _done(command)
     if done.returncode != 0:
         raise InstallError(reason_of(done.stderr or done.stdout))
     return done.stdout
@@ -63,43 +66,25 @@ def reason_of(message: str) -> str:
     )
 
 
-class Installer(Protocol):
-    """What an installer can do. Every call raises InstallError."""
-
-    @property
-    def name(self) -> str:
-        """What it is called."""
-        ...
-
-    def create(self, folder: Path) -> None:
-        """An empty environment with this very Python."""
-        ...
-
-    def install(self, folder: Path, requirements: Sequence[str]) -> None:
-        """Put packages into an environment, from wheels alone: nothing is compiled."""
-        ...
-
-    def releases(self, package: str, span: Span) -> list[str]:
-        """The releases of a package within a span that this Python could have, rising."""
-        ...
-
-
 class Pip:
-    """``python -m venv`` and this Python's pip."""
+    """``python -m venv`` and this Python's pip. Every call raises InstallError."""
 
     name = "pip"
 
     def create(self, folder: Path) -> None:
-        """Without a pip of its own: this one fills it."""
+        """An empty environment with this very Python, without a pip: this one fills it."""
         _run([sys.executable, "-P", "-m", "venv", "--without-pip", str(folder)])
 
     def install(self, folder: Path, requirements: Sequence[str]) -> None:
-        """``pip --python``."""
+        """Put packages into an environment, from wheels alone: nothing is compiled."""
         to = [sys.executable, "-P", "-m", "pip", "--python", str(python_of(folder))]
         _run([*to, "install", "--no-input", "--only-binary=:all:", *requirements])
 
     def releases(self, package: str, span: Span) -> list[str]:
-        """``pip index versions``; its text is read where it cannot answer in JSON."""
+        """The releases of a package within a span that this Python could have, rising.
+
+        Of ``pip index versions``; its text is read where it cannot answer in JSON.
+        """
         command = [sys.executable, "-P", "-m", "pip", "index", "versions", package, "--no-input"]
         try:
             return span.of(json.loads(_run([*command, "--json"]))["versions"])
@@ -111,7 +96,7 @@ class Pip:
 
 
 class Uv:
-    """uv, by the command that starts it."""
+    """uv, by the command that starts it; what its calls do is what those of `Pip` do."""
 
     name = "uv"
 
@@ -141,22 +126,16 @@ class Uv:
         """None where no release lies within the bounds."""
         compile_ = ["pip", "compile", "--quiet", "--no-deps", "--no-header", "--no-annotate"]
         to = ["--python", sys.executable, "--only-binary", ":all:", "-"]
-        try:
-            done = subprocess.run(
-                [*self._command, *compile_, *to],
-                input=package + ",".join(bounds),
-                capture_output=True,
-                text=True,
-                timeout=SECONDS_TO_INSTALL,
-            )
-        except (OSError, subprocess.TimeoutExpired) as error:
-            raise InstallError(f"{self._command[0]} did not run: {error}") from error
+        done = _done([*self._command, *compile_, *to], package + ",".join(bounds))
         if done.returncode != 0:
             if bounds and "No solution found" in done.stderr:
                 return None
             raise InstallError(reason_of(done.stderr))
         pinned = re.search(rf"^{re.escape(package)}==(\S+)", done.stdout, re.MULTILINE)
         return pinned[1] if pinned and version_of(pinned[1]) else None
+
+
+Installer = Pip | Uv
 
 
 def installer_named(name: str) -> Installer:

@@ -71,20 +71,18 @@ def terms_of(text: str) -> set[str]:
     return {re.sub(r"(\.\d*?)0+$", r"\1", term).rstrip(".") for term in found}
 
 
-def _singular(terms: set[str]) -> set[str]:
+def _compared(text: str) -> set[str]:
     """Terms as they are compared: an s at the end, as of several, does not count."""
-    return {term.removesuffix("s") for term in terms}
+    return {term.removesuffix("s") for term in terms_of(text)}
 
 
-def unknown_metric(query: str, names: Iterable[Name], engine: str = "") -> list[str]:
+def unknown_metric(query: str, names: Iterable[Name]) -> list[str]:
     """The terms that are in no metric's name."""
-    there = _singular({term for name in names for term in terms_of(title((engine, *name)))})
-    return [term for term in sorted(terms_of(query)) if not _singular({term}) <= there]
+    there = set().union(*(_compared(title(name)) for name in names))
+    return [term for term in sorted(terms_of(query)) if term.removesuffix("s") not in there]
 
 
 def matching(query: str, names: Iterable[Name], engine: str = "") -> list[Name]:
     """The metrics whose names have all of the terms, in any order."""
-    wanted = _singular(terms_of(query))
-    return [
-        name for name in names if wanted and wanted <= _singular(terms_of(title((engine, *name))))
-    ]
+    wanted = _compared(query)
+    return [n for n in names if wanted and wanted <= _compared(title((engine, *n)))]

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 from omegadot import __version__
-from omegadot.commands.versions.aims import Aims, conserves_kinetic_energy
-from omegadot.commands.versions.bisection import Bisection, Step
+from omegadot.commands.versions.aims import conserves_kinetic_energy
+from omegadot.commands.versions.bisection import Bisection
 from omegadot.commands.versions.changes import (
     Change,
-    all_changes,
+    Portrait,
+    changes_between,
     integrator_of,
-    neighbours,
     pace_changes,
+    pace_of,
 )
-from omegadot.commands.versions.measure import Portrait
+from omegadot.commands.versions.gallery import Gallery
 from omegadot.commands.versions.metric import Figure, Name, shown, title
-from omegadot.commands.versions.product import Product
-from omegadot.commands.versions.speed import pace_of
 from omegadot.workers.machine import describe_machine
 
 SCHEMA = 1
@@ -27,20 +27,19 @@ Record = dict[str, Any]
 
 
 def record_of(
-    product: Product,
-    aims: Aims,
-    setup: str,
-    portraits: Sequence[Portrait],
-    bisection: Record | None,
+    gallery: Gallery, portraits: Sequence[Portrait], bisection: Bisection | None
 ) -> Record:
     """Versions, rising, with what changed from each to the next that could be measured."""
-    steps = [] if bisection else _steps(portraits)
+    steps = []
+    for one, other in pairwise(p for p in portraits if p.ok and bisection is None):
+        paces = {name: vars(ratio) for name, ratio in pace_changes(one, other).items()}
+        steps.append({**_step(one, other, changes_between(one, other)), "paces": paces})
     return {
         "schema": SCHEMA,
         "omegadot": __version__,
-        "engine": product.engine,
-        "package": product.package,
-        "setup": setup,
+        "engine": gallery.product.engine,
+        "package": gallery.product.package,
+        "setup": gallery.setup,
         "machine": describe_machine(),
         "cases": [
             {
@@ -50,38 +49,24 @@ def record_of(
                 "duration": case.sweeps[0].timestep * case.sweeps[0].steps,
                 "energy_ratio": conserves_kinetic_energy(case),
             }
-            for case in aims.cases
+            for case in gallery.aims.cases
         ],
         "versions": [_version(portrait) for portrait in portraits],
         "steps": steps,
-        "bisect": bisection,
+        "bisect": bisection and _bisection(bisection),
     }
 
 
-def _steps(portraits: Sequence[Portrait]) -> list[Record]:
-    paces = [pace_changes(one, other) for one, other in neighbours(portraits)]
-    return [
-        {
-            "from": one.version,
-            "to": other.version,
-            "changes": [change_record(change) for change in changes],
-            "paces": {name: vars(ratio) for name, ratio in pace.items()},
-        }
-        for (one, other, changes), pace in zip(all_changes(portraits), paces, strict=True)
-    ]
+def _step(before: Portrait, after: Portrait, changes: Sequence[Change]) -> Record:
+    changed = [_change(change) for change in changes]
+    return {"from": before.version, "to": after.version, "changes": changed}
 
 
 def _version(portrait: Portrait) -> Record:
     paces = {name: pace_of(times) for name, times in portrait.speeds.items()}
+    left_out = ("has", "unreported", "speeds")
     return {
-        "version": portrait.version,
-        "outcome": portrait.outcome,
-        "reason": portrait.reason,
-        "origin": portrait.origin,
-        "reported_version": portrait.reported_version,
-        "integrators": portrait.integrators,
-        "faults": portrait.faults,
-        "troubles": portrait.troubles,
+        **{name: value for name, value in vars(portrait).items() if name not in left_out},
         "figures": {title(name): _figure(name, f) for name, f in portrait.figures.items()},
         "seconds_per_step": {name: vars(pace) for name, pace in paces.items() if pace},
     }
@@ -99,7 +84,7 @@ def _figure(name: Name, figure: Figure | None) -> Record | None:
     }
 
 
-def change_record(change: Change) -> Record:
+def _change(change: Change) -> Record:
     """A change, with the parts of its name that identify it."""
     return {
         "metric": title(change.name),
@@ -112,22 +97,16 @@ def change_record(change: Change) -> Record:
     }
 
 
-def bisection_record(query: str, matched: Sequence[Name], found: Bisection) -> Record:
+def _bisection(found: Bisection) -> Record:
     """The releases found, and what was looked at on the way."""
     return {
-        "query": query,
-        "metrics": [title(name) for name in matched],
+        "query": found.query,
+        "metrics": [title(name) for name in found.metrics],
         "low": found.low.version if found.low else None,
         "high": found.high.version if found.high else None,
         "looked_at": [portrait.version for portrait in found.looked_at],
-        "found": [_found(step) for step in found.steps],
-    }
-
-
-def _found(step: Step) -> Record:
-    return {
-        "from": step.before.version,
-        "to": step.after.version,
-        "skipped": step.skipped,
-        "changes": [change_record(change) for change in step.changes],
+        "found": [
+            {**_step(step.before, step.after, step.changes), "skipped": step.skipped}
+            for step in found.steps
+        ],
     }

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+import shutil
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from packaging.version import InvalidVersion, Version
+
+from omegadot.adapters.registry import BUILT_IN
+from omegadot.harness.usage import UsageError, nearest
 
 
 def version_of(text: str) -> Version | None:
@@ -40,5 +44,107 @@ class Span:
             and (high is None or version <= high)
         ]
 
-    def __str__(self) -> str:
-        return f"{self.low}..{self.high}"
+
+FEWEST = 2
+
+
+def requested_releases(
+    arguments: Sequence[str], releases: Callable[[Span], Sequence[str]]
+) -> tuple[list[str], dict[str, str]]:
+    """The releases of ``VERSION``, ``LOW..HIGH`` and ``VERSION=PYTHON`` arguments, rising.
+
+    With them the interpreters that some of the releases have already.
+    releases: the published ones, looked up where a range needs them. Raises UsageError.
+    """
+    versions: list[str] = []
+    pythons: dict[str, str] = {}
+    for argument in arguments:
+        version, own, path = argument.partition("=")
+        low, dots, high = version.partition("..")
+        for number in filter(None, (low, high) if dots else (version,)):
+            if version_of(number) is None:
+                raise UsageError(
+                    f"{argument}: {number!r} is no version; write 1.2.3 or 1.2.0..1.4.0."
+                )
+        if own:
+            if dots:
+                raise UsageError(
+                    f"{argument}: a range has no single interpreter; give VERSION=PYTHON."
+                )
+            if shutil.which(path) is None:
+                named = path or "nothing"
+                raise UsageError(f"{argument}: {named} is no program; give a Python interpreter.")
+            versions.append(version)
+            pythons[version] = path
+        elif dots:
+            versions += _within(argument, Span(low, high), releases)
+        elif version:
+            versions.append(version)
+        else:
+            raise UsageError("an empty version; write 1.2.3 or 1.2.0..1.4.0.")
+    found = rising(versions)
+    if len(found) < FEWEST:
+        named = f"only {found[0]}" if found else "none"
+        raise UsageError(
+            f"at least two versions are needed to see a change, and {named} is named; "
+            "write two or more, or a range such as 1.2.0..1.4.0."
+        )
+    return found, pythons
+
+
+def _within(argument: str, span: Span, releases: Callable[[Span], Sequence[str]]) -> list[str]:
+    low, high = version_of(span.low), version_of(span.high)
+    if low is not None and high is not None and low > high:
+        raise UsageError(f"{argument}: it ends before it starts; write {span.high}..{span.low}.")
+    found = rising(releases(span))
+    if not found:
+        known = rising(releases(Span("", "")))
+        there = f"they go from {known[0]} to {known[-1]}" if known else "there are none"
+        raise UsageError(f"{argument}: no release for this Python lies there; {there}.")
+    return found
+
+
+ALWAYS = ("numpy", "scipy")  # what a worker needs besides its engine
+
+
+@dataclass(frozen=True)
+class Product:
+    """engine: its name here.  target: its adapter.  package: its name where it is installed from.
+
+    extras: what must be installed with some releases.
+    """
+
+    engine: str
+    target: str
+    package: str
+    extras: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def requirements(self, version: str) -> list[str]:
+        """What to install for a release."""
+        return [f"{self.package}=={version}", *ALWAYS, *self.extras.get(version, ())]
+
+
+# These releases accept any version of the two libraries, and are linked against older ones.
+_OLDER_LIBRARIES = ("cmeel-urdfdom<5", "cmeel-tinyxml2<11")
+_PINOCCHIO_EXTRAS = dict.fromkeys(("3.4.0", "3.7.0", "3.8.0", "3.9.0"), _OLDER_LIBRARIES)
+PRODUCTS = (
+    Product("mujoco", BUILT_IN["mujoco"], "mujoco"),
+    Product("dart", BUILT_IN["dart"], "dartpy"),
+    Product("pinocchio", BUILT_IN["pinocchio"], "pin", _PINOCCHIO_EXTRAS),
+)
+
+
+def product_of(argument: str, target: str = "", package: str = "") -> Product:
+    """The product that an engine's or a package's name stands for; with a target, one's own.
+
+    Raises UsageError.
+    """
+    if target:
+        return Product(argument, target, package or argument)
+    known = {name: product for product in PRODUCTS for name in (product.engine, product.package)}
+    if argument not in known:
+        raise UsageError(
+            f"{argument}: no such engine with releases; {nearest(argument, known)}, "
+            "or name an adapter of your own with --adapter FILE.py:Class."
+        )
+    return known[argument]

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from omegadot.commands.versions.release import FEWEST
 from omegadot.reports.notebook import framed
 from omegadot.reports.versions.page import draw_versions, write_versions
 
-FEWEST = 2
 Value = float | str | None
 
 
@@ -56,7 +56,19 @@ class VersionsResult:
         """What changed from each release to the next; of a bisection, where its metric changed."""
         bisected = self.record["bisect"]
         steps = self.record["steps"] if bisected is None else bisected["found"]
-        return tuple(change for step in steps for change in _changes(step))
+        return tuple(
+            VersionChange(
+                from_version=step["from"],
+                to_version=step["to"],
+                metric=change["metric"],
+                kind=change["kind"],
+                integrator=change["integrator"],
+                before=_value(change["before"]),
+                after=_value(change["after"]),
+            )
+            for step in steps
+            for change in step["changes"]
+        )
 
     @property
     def faults(self) -> Mapping[str, list[str]]:
@@ -90,19 +102,6 @@ class VersionsResult:
 
     def _repr_html_(self) -> str:
         return framed(self.page(), repr(self).strip("<>"))
-
-
-def _changes(step: Mapping[str, Any]) -> Iterator[VersionChange]:
-    for change in step["changes"]:
-        yield VersionChange(
-            from_version=step["from"],
-            to_version=step["to"],
-            metric=change["metric"],
-            kind=change["kind"],
-            integrator=change["integrator"],
-            before=_value(change["before"]),
-            after=_value(change["after"]),
-        )
 
 
 def _value(figure: Mapping[str, Any] | None) -> Value:

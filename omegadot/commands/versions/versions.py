@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
 from omegadot.adapters.protocol import Setup
-from omegadot.commands.progress import Count, Progress, Reporter, Reporting, reporting
-from omegadot.commands.versions.aims import Aims, aims_of, check_integrators
-from omegadot.commands.versions.arguments import RequestedReleases, requested_releases
-from omegadot.commands.versions.bisected import bisect_metric
+from omegadot.commands.progress import Count, Progress, Reporting, reporting
+from omegadot.commands.versions.aims import aims_of, check_integrators
+from omegadot.commands.versions.bisection import bisect_metric
+from omegadot.commands.versions.changes import Portrait
 from omegadot.commands.versions.environments import Environments, default_cache
 from omegadot.commands.versions.gallery import Gallery
-from omegadot.commands.versions.installer import Installer, InstallError, installer_named
-from omegadot.commands.versions.measure import Portrait
-from omegadot.commands.versions.product import Product, product_of
+from omegadot.commands.versions.installer import InstallError, installer_named
 from omegadot.commands.versions.record import record_of
+from omegadot.commands.versions.release import product_of, requested_releases
 from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import several
 from omegadot.harness.engine_target import EngineLike, target_of
@@ -67,50 +66,32 @@ def versions(
     aims = aims_of(several(scenarios), several(integrators), timestep)
     if out is not None:
         make_folder(Path(out))
-    fetching = None if offline else _installer(installer)
+    try:
+        fetching = None if offline else installer_named(installer)
+    except InstallError as error:
+        raise UsageError(f"--installer {installer}: {error}.") from error
     environments = Environments(Path(cache or default_cache()), product, fetching)
-    requested = requested_releases(several(releases), environments.releases)
-    gallery = Gallery(product, aims, environments.place, requested.pythons, setup, timeout)
+    wanted, pythons = requested_releases(several(releases), environments.releases)
+    gallery = Gallery(product, aims, environments.place, pythons, setup, timeout)
     with reporting(progress) as report:
+        total = len(wanted) if bisect is None else None
+        count = Count(report, "making environments and starting engines", total)
+
+        def seen(portrait: Portrait) -> None:
+            count.advance(1, f"{portrait.version} {portrait.outcome}")
+
         if bisect is not None:
-            seen = _seen(report, None)
-            portraits, found = bisect_metric(bisect, product, gallery, requested.versions, seen)
+            found = bisect_metric(bisect, gallery, wanted, seen)
+            portraits = found.portraits
         else:
-            cores = (os.cpu_count() or 1) if jobs is None else jobs
-            portraits = _measured(gallery, requested, aims, product, cores, report)
-            found = None
+            found, cores = None, (os.cpu_count() or 1) if jobs is None else jobs
+            portraits = gallery.measure_all(wanted, cores, seen)
+            there = dict.fromkeys(name for portrait in portraits for name in portrait.has)
+            check_integrators(aims, list(there), product.engine)
             if speed:
                 report(Progress("timing, release by release"))
                 gallery.time_all(portraits)
-    result = VersionsResult(record_of(product, aims, setup, portraits, found))
+    result = VersionsResult(record_of(gallery, portraits, found))
     if out is not None:
         result.save(out)
     return result
-
-
-def _installer(name: str) -> Installer:
-    try:
-        return installer_named(name)
-    except InstallError as error:
-        raise UsageError(f"--installer {name}: {error}.") from error
-
-
-def _measured(
-    gallery: Gallery,
-    requested: RequestedReleases,
-    aims: Aims,
-    product: Product,
-    jobs: int,
-    report: Reporter,
-) -> list[Portrait]:
-    """Every release. Raises UsageError where none has an integrator that was named."""
-    seen = _seen(report, len(requested.versions))
-    portraits = gallery.measure_all(requested.versions, jobs, seen)
-    there = dict.fromkeys(name for portrait in portraits for name in portrait.has)
-    check_integrators(aims, list(there), product.engine)
-    return portraits
-
-
-def _seen(report: Reporter, total: int | None) -> Callable[[Portrait], object]:
-    count = Count(report, "making environments and starting engines", total)
-    return lambda portrait: count.advance(1, f"{portrait.version} {portrait.outcome}")

@@ -163,7 +163,7 @@ def study_engine(
 
 def _study(worker: WorkerProcess, probe: Probe, name: str) -> ProbeStudy:
     try:
-        integrator = load(worker, probe)[name]
+        integrator = load(worker, probe.system)[name]
     except NoAnswerError as error:
         return ProbeStudy(error.answer)
     return study_probe(probe, integrator, stepper_of(worker, name))

@@ -7,8 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.scheme_study.probes import Probe
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import State, System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of, state_from
 
@@ -36,13 +35,16 @@ def _requested(worker: WorkerProcess, operation: str, **fields: object) -> Answe
     return answer
 
 
-def load(worker: WorkerProcess, probe: Probe) -> dict[str, Integrator]:
-    """Load a probe's system; the integrators as declared for it. Raises NoAnswerError."""
+def load(worker: WorkerProcess, system: System) -> dict[str, Integrator]:
+    """Load a system; the integrators as declared for it. A worker that died is started again.
+
+    Raises NoAnswerError.
+    """
     if not worker.started:
         started = worker.start()
         if not started.ok:
             raise NoAnswerError(started)
-    answer = _requested(worker, "load", system=probe.system)
+    answer = _requested(worker, "load", system=system)
     return {i.name: i for i in description_of(answer.result).integrators}
 
 
