@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -85,46 +86,53 @@ def scaled_terms(match: Match) -> str:
 
 def _gravity_vector(match: Match) -> str:
     """Another constant gravity than the one requested, by least squares."""
-    system, states = match.system, match.states
-    rest = _weighted(match, _difference(match.found, match.true))
-    lines = []
-    for unit in np.eye(3):
-        other = replace(system, load=replace(system.load, gravity=system.load.gravity + unit))
-        more = _difference(forward_dynamics(other, states), match.true)
-        lines.append(_weighted(match, more))
-    change = np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
-    requested = system.load.gravity
-    other = replace(system, load=replace(system.load, gravity=requested + change))
-    if not match.fits(forward_dynamics(other, states), SLACK):
+    requested = match.system.load.gravity
+
+    def there(gravity: Array) -> Acceleration:
+        return _under(match, gravity=gravity)
+
+    gravity = requested + _change(match, there, requested, 1.0)
+    if not match.fits(there(gravity), SLACK):
         return ""
-    return (
-        f"gravity is {_vector(requested + change)} m/s^2, where {_vector(requested)} was requested"
-    )
+    return f"gravity is {_vector(gravity)} m/s^2, where {_vector(requested)} was requested"
+
+
+def _under(match: Match, **load: Array) -> Acceleration:
+    """The equation under a load that is another in parts."""
+    other = replace(match.system, load=replace(match.system.load, **load))
+    return forward_dynamics(other, match.states)
+
+
+def _change(
+    match: Match, there: Callable[[Array], Acceleration], point: Array, delta: float
+) -> Array:
+    """By how much to change a vector (3,) that sets the equation: a step of Gauss-Newton."""
+    here = there(point)
+    rest = _weighted(match, _difference(match.found, here))
+    lines = [
+        _weighted(match, _difference(there(point + delta * unit), here)) / delta
+        for unit in np.eye(3)
+    ]
+    change: Array = np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
+    return change
 
 
 def other_pivot(match: Match) -> str:
     """Another pivot than the one requested, by Gauss-Newton."""
-    system, requested = match.system, match.system.load.pivot
+    requested = match.system.load.pivot
     if requested is None:
         return ""
 
     def there(pivot: Array) -> Acceleration:
-        load = replace(system.load, pivot=pivot)
-        return forward_dynamics(replace(system, load=load), match.states)
+        return _under(match, pivot=pivot)
 
-    delta = 1e-6 * float(norm(system.body.center_of_mass - requested))
+    delta = 1e-6 * float(norm(match.system.body.center_of_mass - requested))
     pivot = np.array(requested, dtype=float)
     for _ in range(MOST_TRIES):
-        here = there(pivot)
-        if match.fits(here, SLACK):
+        if match.fits(there(pivot), SLACK):
             off = _vector(pivot - requested)
             return f"the pivot lies at {_vector(pivot)} m, {off} m from where it was requested"
-        rest = _weighted(match, _difference(match.found, here))
-        lines = [
-            _weighted(match, _difference(there(pivot + delta * unit), here)) / delta
-            for unit in np.eye(3)
-        ]
-        pivot = pivot + np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
+        pivot = pivot + _change(match, there, pivot, delta)
     return ""
 
 

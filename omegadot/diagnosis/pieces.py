@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.diagnosis.conditions import only_where
-from omegadot.diagnosis.reported_run import ReportedRun, rows
+from omegadot.diagnosis.match import only_where
+from omegadot.diagnosis.reported_run import ReportedRun
 from omegadot.gates.measured_run import CHANNELS
 
 # One interval's rounding is within the bound of its end; its start is rounded, too.
@@ -26,21 +26,12 @@ ALONE = {
 }
 
 
-def causes(reported: ReportedRun) -> list[str]:
-    """One sentence, or none."""
-    for cause in (_intervals, _one_field):
-        text = cause(reported)
-        if text:
-            return [text]
-    return []
-
-
 def sound_intervals(reported: ReportedRun) -> NDArray[np.bool_]:
     """(n - 1,): whether the declared scheme leads from each sample to the next."""
     numbers = reported.sweep.sample_steps
     count = int(np.count_nonzero(np.diff(numbers) == reported.sweep.every))
-    ends = reported.stepped_on(rows(reported.state, slice(0, count)))
-    then, bounds = rows(reported.state, slice(1, count + 1)), reported.bounds
+    ends = reported.stepped_on(reported.state[:count])
+    then, bounds = reported.state[1 : count + 1], reported.bounds
     sound = np.ones(count, bool)
     with np.errstate(all="ignore"):
         for channel in CHANNELS:
@@ -49,7 +40,7 @@ def sound_intervals(reported: ReportedRun) -> NDArray[np.bool_]:
     return sound
 
 
-def _one_field(reported: ReportedRun) -> str:
+def one_field(reported: ReportedRun) -> str:
     """All but one quantity are sound, and so they are stepped with the right one."""
     for text, names in ALONE.items():
         right = {name: getattr(reported.own, name) for name in names}
@@ -61,7 +52,8 @@ def _one_field(reported: ReportedRun) -> str:
     return ""
 
 
-def _intervals(reported: ReportedRun) -> str:
+def intervals(reported: ReportedRun) -> str:
+    """From which sample to which the steps are wrong."""
     sound = sound_intervals(reported)
     wrong = np.flatnonzero(~sound)
     if len(sound) < 3 or not len(wrong) or not sound.any():
@@ -73,7 +65,7 @@ def _intervals(reported: ReportedRun) -> str:
         return _one_sample(reported, last)
     if first > 0 and len(wrong) == len(sound) - first:
         return f"the run is sound until t = {time[first]:.4g} s, and every step after it is wrong"
-    where = only_where(rows(reported.state, slice(0, len(sound))), sound)
+    where = only_where(reported.state[: len(sound)], sound)
     return f"steps are wrong only where {where}" if where else ""
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.gates.case import Sweep
-from omegadot.gates.measured_run import CHANNELS, SchemeKey
-from omegadot.gates.truth import Truth
+from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.truth import SchemeKey, Truth
 from omegadot.reference_impl.system import Array, State
 
 ROTATION = ("omega", "attitude")

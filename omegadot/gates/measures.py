@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from omegadot.gates.scales import (
@@ -22,7 +20,6 @@ from omegadot.reference_impl.system import Array, State, System
 
 TRAJECTORY_UNITS = {"omega": "1", "attitude": "rad", "position": "m"}
 INVARIANT_CHANNELS = ("energy", "angular_momentum", "linear_momentum")
-Distance = Callable[[State, State], Array]
 
 
 class Yardstick:
@@ -43,22 +40,17 @@ class Yardstick:
         self.speed = float(np.max(norm(exact.linear_velocity))) + self.rate * self.scale.lever
         self.reach = float(np.max(norm(exact.position))) + self.scale.lever
         self.gravity = float(norm(system.load.gravity))
-        moment = float(np.max(norm(angular_momentum(system, exact))))
+        kinetic = float(np.max(kinetic_energy(system, exact)))
+        turning = float(np.max(norm(angular_momentum(system, exact))))
+        moving = float(np.max(norm(linear_momentum(system, exact))))
+        smallest, mass = self.scale.smallest, self.scale.mass
+        gyration = float(np.sqrt(float(np.trace(system.body.inertia)) / mass))
         self.sizes = {
-            "energy": self._energy_size(),
-            "angular_momentum": moment or self.scale.smallest * self.rate,
-            "linear_momentum": self._linear_momentum_size(),
+            "energy": kinetic or 0.5 * smallest * self.rate**2,
+            "angular_momentum": turning or smallest * self.rate,
+            # a body that stays in place has that of its turning
+            "linear_momentum": moving or mass * self.rate * gyration,
         }
-
-    def _energy_size(self) -> float:
-        kinetic = float(np.max(kinetic_energy(self.system, self.exact)))
-        return kinetic or 0.5 * self.scale.smallest * self.rate**2
-
-    def _linear_momentum_size(self) -> float:
-        """Its greatest value; for a body that stays in place, that of its turning."""
-        greatest = float(np.max(norm(linear_momentum(self.system, self.exact))))
-        gyration = np.sqrt(float(np.trace(self.system.body.inertia)) / self.scale.mass)
-        return greatest or self.scale.mass * self.rate * float(gyration)
 
     def distance(self, channel: str, one: State, other: State) -> Array:
         """(n,): |one - other| in this channel.

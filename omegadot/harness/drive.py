@@ -14,7 +14,8 @@ from typing import Any
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.evaluation_states import EvaluationStates, Probe
+from omegadot.gates.equation import EvaluationStates
+from omegadot.gates.vanishing_step import Probe
 from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
@@ -142,7 +143,7 @@ class Driver:
         precision = self.engine.description.precision
         result = CaseResult(self.engine.name, case.name, precision=precision)
         features = self.engine.description.features
-        first = State(*(f[0] for f in vars(evaluation_states.random).values()))
+        first = evaluation_states.random[0]
         result.model = self.request(case, "model", state=first)
         result.integrators = self.integrators()
         lacking = Answer("unsupported", "the engine offers no such call")

@@ -8,38 +8,18 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import (
-    cost,
-    equation,
-    invariants,
-    model,
-    phase,
-    scheme,
-    trajectory,
-)
-from omegadot.gates import (
-    reported as reports_found,
-)
+from omegadot.gates import cost, equation, invariants, model, phase, reported, scheme, trajectory
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.evaluation_states import EvaluationStates
-from omegadot.gates.measured_run import (
-    Declared,
-    MeasuredRun,
-    findings_of,
-    measure,
-    orders_for,
-    scheme_key,
-)
-from omegadot.gates.rows import Row, worst
+from omegadot.gates.equation import EvaluationStates
+from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
+from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.unknown_schemes import rows_of_unknown
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import acceleration_from, body_from, state_from
-
-GATES = ("model", "equation", "scheme", "invariants", "trajectory", "cost")
+from omegadot.workers.wire import body_from
 
 
 @dataclass(frozen=True)
@@ -54,11 +34,6 @@ class JudgedRun:
     why: str = ""
     unresolved: bool = False
 
-    def verdicts(self) -> dict[str, str]:
-        """The worst verdict per gate that was reached."""
-        found = {gate: worst(r.verdict for r in self.rows if r.gate == gate) for gate in GATES}
-        return {gate: verdict for gate, verdict in found.items() if verdict is not None}
-
 
 def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[Row]:
     """The rows that belong to engine and scenario, whatever the integrator."""
@@ -67,13 +42,13 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
         answer = result.model.result
         for body in answer["bodies"]:
             rows += model.body_rows(case, body_from(body))
-        first = State(*(values[0] for values in vars(evaluation_states.random).values()))
-        rows += model.state_rows(case, first, state_from(answer["state"]))
+        first = evaluation_states.random[0]
+        rows += model.state_rows(case, first, State(**answer["state"]))
     named = {"residual": (result.forward, evaluation_states.random)}
     named["residual_on_path"] = (result.path, evaluation_states.path)
     for metric, (found, states) in named.items():
         if found.ok:
-            acceleration = acceleration_from(found.result)
+            acceleration = Acceleration(**found.result)
             rows += equation.forward_rows(case.system, states, acceleration, metric)
     if result.inverse.ok:
         torque = result.inverse.result["torque"]
@@ -83,7 +58,8 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
     return rows
 
 
-def _is_finite(state: State) -> bool:
+def is_finite(state: State) -> bool:
+    """Whether every number of a trajectory is finite."""
     return all(bool(np.all(np.isfinite(values))) for values in vars(state).values())
 
 
@@ -100,17 +76,15 @@ def _measured_runs(
     truth: Truth, integrator: Integrator, answers: dict[float, Answer], sweeps: list[Sweep]
 ) -> dict[float, MeasuredRun]:
     """The runs of one integrator that can be measured: finite, with the samples requested."""
-    measured_runs, key = {}, scheme_key(integrator, truth.yardstick.system)
+    measured_runs = {}
     for sweep in sweeps:
         answer = answers[sweep.timestep]
         if not answer.ok or len(answer.result["time"]) != len(sweep.times):
             continue
-        state = state_from(answer.result["state"])
-        if _is_finite(state):
-            companion = truth.companions.get((key, sweep.timestep)) if key else None
-            measured_runs[sweep.timestep] = measure(
-                truth.yardstick, sweep, truth.samples(sweep), state, companion
-            )
+        state = State(**answer.result["state"])
+        if is_finite(state):
+            own = truth.companion(integrator, sweep)
+            measured_runs[sweep.timestep] = measure(truth, sweep, state, own)
     return measured_runs
 
 
@@ -119,8 +93,8 @@ def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
     if not answer.ok:
         return JudgedRun(integrator, sweep, answer.outcome, answer.reason)
     rows = [trajectory.time_row(sweep, answer.result["time"])]
-    state = state_from(answer.result["state"])
-    if _is_finite(state):
+    state = State(**answer.result["state"])
+    if is_finite(state):
         return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
     finite = np.isfinite(state.orientation).all(-1) & np.isfinite(state.angular_velocity).all(-1)
     bad = np.flatnonzero(~finite & np.isfinite(answer.result["time"]))
@@ -156,14 +130,14 @@ def judge_integrator(
         if measured is None:
             yield _failed(integrator, sweep, answer)
             continue
-        state = state_from(answer.result["state"])
+        state = State(**answer.result["state"])
         findings = findings_of(measured, declared, known)
         match = scheme.match_row(truth, integrator, measured, state, known)
         system = truth.yardstick.system
         rows = [match, *scheme.order_rows(seen, declared, measured)]
-        unknown = rows_of_unknown(truth, system, integrator, sweep, result)
-        misreported = reports_found.rows(truth, measured, state, result.precision)
-        misreported += reports_found.omega_dot_rows(system, state, answer.result["omega_dot"])
+        unknown = rows_of_unknown(truth, integrator, sweep, result)
+        misreported = reported.rows(truth, measured, state, result.precision)
+        misreported += reported.omega_dot_rows(system, state, answer.result["omega_dot"])
         rows += unknown
         rows += invariants.rows(measured, findings, sweep.times)
         rows.append(trajectory.time_row(sweep, answer.result["time"]))

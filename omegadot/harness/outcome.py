@@ -8,9 +8,8 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 
 from omegadot.gates.case import Case
-from omegadot.gates.measured_run import Companion, SchemeKey
 from omegadot.gates.rows import Row
-from omegadot.gates.truth import Truth
+from omegadot.gates.truth import Companion, SchemeKey, Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.plan import Engine, EngineChoice

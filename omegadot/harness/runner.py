@@ -9,10 +9,9 @@ from functools import partial
 import numpy as np
 
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.evaluation_states import evaluation_states_of
-from omegadot.gates.measured_run import SchemeKey, scheme_key
+from omegadot.gates.equation import evaluation_states_of
 from omegadot.gates.scheme import comparison_keys
-from omegadot.gates.truth import Truth
+from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.engines import Engines
 from omegadot.harness.judge import JudgedRun, judge_case, shared_rows

@@ -73,10 +73,10 @@ def mean_squares(part: Part) -> tuple[float, float, float]:
             return 0.0, 0.0, 0.0
 
 
-def _axes(part: Part) -> NDArray[np.float64]:
-    """body_R_part, (3, 3)."""
-    w, v = part.orientation[0], np.array(part.orientation[1:])
-    x, y, z = v
+def rotation_of(quaternion: tuple[float, float, float, float]) -> NDArray[np.float64]:
+    """The matrix (3, 3) of a unit quaternion (w, x, y, z)."""
+    w, x, y, z = quaternion
+    v = np.array([x, y, z])
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     turned: NDArray[np.float64] = (w * w - v @ v) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * skew
     return turned
@@ -100,7 +100,7 @@ def check_body_of_parts(parts: tuple[Part, ...]) -> None:
     offsets = places - masses @ places / masses.sum()
     second_moment = np.einsum("n,ni,nj->ij", masses, offsets, offsets)
     for part, amount in zip(parts, masses, strict=True):
-        axes = _axes(part)
+        axes = rotation_of(part.orientation)
         second_moment += amount * (axes * mean_squares(part)) @ axes.T
     small, middle, large = np.linalg.eigvalsh(second_moment)
     # eigvalsh is good to a few ulps of the largest eigenvalue, an offset to a few of the farthest

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import replace
 from typing import Any
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.gates.case import Case
-from omegadot.gates.measured_run import SchemeKey
-from omegadot.gates.truth import Truth
+from omegadot.gates.truth import SchemeKey, Truth
+from omegadot.harness import in_process
 from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun, judge_integrator
@@ -19,28 +18,17 @@ from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.harness.truth_requests import case_companions, case_truth
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.scenarios import load_builtin
-from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import read_frame, write_frame
 
 
-def _sent(message: dict[str, Any]) -> dict[str, Any]:
-    stream = io.BytesIO()
-    write_frame(stream, message)
-    stream.seek(0)
-    return read_frame(stream)
+class Local(in_process.Local):
+    """An adapter that answers requests about a case as a worker would."""
 
-
-class Local:
-    """An adapter that answers requests as a worker would."""
-
-    def __init__(self, adapter: Any) -> None:
-        self.adapter = adapter
-
-    def request(self, case: Case, operation: str, **fields: Any) -> Answer:
+    def request(self, case: Case, operation: str, **fields: Any) -> Answer:  # type: ignore[override]
         self.adapter.load(case.system)
-        answer = OPERATIONS[operation](self.adapter, _sent(fields))
-        return Answer("ok", result=_sent({"result": answer})["result"])
+        answer = super().request(operation, **fields)
+        assert answer.ok, answer.reason
+        return answer
 
 
 def builtin(name: str, *timesteps: float) -> Case:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.reference_impl.system import Array, Body, System
+from omegadot.reference_impl.system import Array, System
 
 SWITCHED_OFF = (
     "deactivation of slow bodies (World.setDeactivationOptions, where the version has it)",
@@ -62,8 +62,3 @@ class DartModel:
     def transform(self, rotation: Array, translation: Array) -> Any:
         """An Isometry3 of DART's: (3, 3) and (3,)."""
         return self._isometry(rotation, translation)
-
-    def body(self) -> Body:
-        """Mass, centre of mass and inertia about it, as the body node holds them."""
-        inertia = self.node.getInertia()
-        return Body(np.array(inertia.getMass()), inertia.getLocalCOM(), inertia.getMoment())

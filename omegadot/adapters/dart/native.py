@@ -24,20 +24,14 @@ def _body(dart: Any, kind: str) -> tuple[Any, Any, Any]:
     return skeleton, joint, node
 
 
-def _turned(dart: Any, kind: str) -> tuple[Any, Any, Any]:
-    skeleton, joint, node = _body(dart, kind)
-    if kind == "FreeJoint":
-        joint.setPositions(joint.convertToPositions(dart.math.Isometry3(TURNED, np.zeros(3))))
-    else:
-        joint.setPositions(joint.convertToPositions(TURNED))
-    return skeleton, joint, node
-
-
 def _seen(dart: Any, kind: str, first: int) -> tuple[Array, Array]:
     """Angular and linear velocity in world axes where the joint's velocities from `first` on are
     ``GIVEN``.
     """
-    _skeleton, joint, node = _turned(dart, kind)  # the skeleton must outlive its parts
+    _skeleton, joint, node = _body(dart, kind)  # the skeleton must outlive its parts
+    free = kind == "FreeJoint"
+    place = dart.math.Isometry3(TURNED, np.zeros(3)) if free else TURNED
+    joint.setPositions(joint.convertToPositions(place))
     velocities = np.zeros(joint.getNumDofs())
     velocities[first : first + 3] = GIVEN
     joint.setVelocities(velocities)
@@ -45,16 +39,12 @@ def _seen(dart: Any, kind: str, first: int) -> tuple[Array, Array]:
     return node.getAngularVelocity(world, world), node.getLinearVelocity(world, world)
 
 
-def _order(dart: Any) -> str:
-    angular, linear = _seen(dart, "FreeJoint", 0)
-    return "angular, linear" if np.any(angular) and not np.any(linear) else "linear, angular"
-
-
 def _conventions(dart: Any) -> dict[str, str]:
-    order = _order(dart)
-    turning = 0 if order == "angular, linear" else 3
+    angular, linear = _seen(dart, "FreeJoint", 0)
+    angular_first = np.any(angular) and not np.any(linear)
+    turning = 0 if angular_first else 3
     return {
-        "FreeJoint velocity order": order,
+        "FreeJoint velocity order": "angular, linear" if angular_first else "linear, angular",
         "FreeJoint velocity frame": axes_observed(_seen(dart, "FreeJoint", turning)[0]),
         "FreeJoint linear velocity frame": axes_observed(_seen(dart, "FreeJoint", 3 - turning)[1]),
         "BallJoint velocity frame": axes_observed(_seen(dart, "BallJoint", 0)[0]),

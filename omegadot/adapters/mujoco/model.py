@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from itertools import permutations
 from typing import Any
 
@@ -21,6 +22,18 @@ _DISABLED = {
     "mjDSBL_CONSTRAINT": "the constraint solver",
     "mjDSBL_WARMSTART": "warm start of the constraint solver from the step before",
 }
+
+
+def import_mujoco() -> Any:
+    """MuJoCo, writing no MUJOCO_LOG.TXT into the current folder. Raises ImportError.
+
+    Its own handler of warnings prints them and appends them to that file. Where no other is set,
+    they are dropped: what they warn of is seen in the states.
+    """
+    mujoco = importlib.import_module("mujoco")
+    if mujoco.get_mju_user_warning() is None:
+        mujoco.set_mju_user_warning(lambda _: None)
+    return mujoco
 
 
 def switched_off(mujoco: Any) -> tuple[str, ...]:

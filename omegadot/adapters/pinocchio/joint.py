@@ -13,7 +13,7 @@ import numpy as np
 
 from omegadot.adapters.pinocchio.motion import joint_motion, joint_torque
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
-from omegadot.reference_impl.system import Array, Body, State, System
+from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 
 class PinocchioJoint:
@@ -73,12 +73,12 @@ class PinocchioJoint:
         # both are Pinocchio's own memory, which its next call writes over
         return a[-3:].copy(), self._data.acom[0].copy()
 
-    def inverse(self, state: State, angular: Array, linear: Array) -> Array:
+    def inverse(self, state: State, wanted: Acceleration) -> Array:
         """The torque (3,), body axes, by RNEA, about the centre of mass or about the pivot."""
         if self._free:
-            return self.wrench(state, angular, linear)[3:]
+            return self.wrench(state, wanted.angular, wanted.linear)[3:]
         q, v = self.coordinates(state)
-        torque: Array = self._pin.rnea(self._model, self._data, q, v, np.array(angular))
+        torque: Array = self._pin.rnea(self._model, self._data, q, v, np.array(wanted.angular))
         return torque.copy()
 
     def wrench(self, state: State, angular: Array, linear: Array) -> Array:

@@ -8,7 +8,7 @@ from functools import partial
 from omegadot.commands.check.generate import GATES_OF_A_RUN, GATES_OF_A_SCENARIO
 from omegadot.commands.check.message import failure
 from omegadot.commands.check.result import PASSED, Check, Result, error, skipped
-from omegadot.gates.exact_rows import exact_rows
+from omegadot.gates.exact import exact_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase

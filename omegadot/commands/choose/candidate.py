@@ -20,7 +20,7 @@ from omegadot.commands.choose.search import (
 from omegadot.commands.choose.trial import Trial
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine
-from omegadot.workers.wire import state_from
+from omegadot.reference_impl.system import State
 
 LARGEST_TURN = math.pi  # rad a step; beyond half a turn attitudes cannot be distinguished
 FEWEST_STEPS = 2
@@ -93,7 +93,7 @@ class Prober:
             return Trial(steps, sweep.timestep, {}, 0.0, 0, answer.outcome, answer.reason)
         if not answer.ok:
             raise BrokenError(answer.outcome, answer.reason)
-        state = state_from(answer.result["state"])
+        state = State(**answer.result["state"])
         errors = self._ruler.errors(sweep, state)
         seconds = float(answer.result["seconds_per_step"])
         return Trial(steps, sweep.timestep, errors, seconds, len(sweep.times))

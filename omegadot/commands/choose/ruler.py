@@ -17,7 +17,6 @@ from omegadot.gates.measures import Yardstick
 from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.system import Array, State
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import state_from
 
 CHANNELS = {
     "attitude": "attitude",
@@ -89,7 +88,7 @@ class Ruler:
         if not answer.ok:
             raise NoTruthError(f"no exact solution to measure by: {answer.reason}")
         found: dict[str, Any] = answer.result
-        state = state_from(found["state"])
+        state = State(**found["state"])
         return Exact(found["source"], state, found["omega_dot"], found["floor"])
 
     def _at(self, sweep: Sweep) -> Exact:

@@ -20,18 +20,20 @@ from omegadot.diagnosis.scheme_study.fingerprint import fingerprint
 from omegadot.diagnosis.scheme_study.orders import Observed, global_errors, observe
 from omegadot.diagnosis.scheme_study.probes import Probe
 from omegadot.diagnosis.scheme_study.study import Order, ProbeStudy
-from omegadot.diagnosis.scheme_study.subject import Stepper, is_finite
+from omegadot.diagnosis.scheme_study.subject import Stepper
 from omegadot.gates.case import Case
 from omegadot.gates.equation import forward_rows, inverse_rows
-from omegadot.gates.measured_run import CHANNELS, orders_for, scheme_key
+from omegadot.gates.measured_run import CHANNELS, orders_for
 from omegadot.gates.model import body_rows, state_rows
 from omegadot.gates.rows import Row
+from omegadot.gates.truth import scheme_key
 from omegadot.gates.verdicts import ORDER_TOLERANCE
+from omegadot.harness.judge import is_finite
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.growth import growth_along
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import acceleration_from, body_from, state_from
+from omegadot.workers.wire import body_from
 
 Figures = dict[Name, Figure]
 Wanted = Callable[[Name], bool]
@@ -111,7 +113,7 @@ def equation_figures(case: Case, exact: Exact, forward: Answer, inverse: Answer)
     """Omega-dot, acceleration and torque at random states, against their bounds."""
     rows: list[Row] = []
     if forward.ok:
-        found = acceleration_from(forward.result)
+        found = Acceleration(**forward.result)
         rows += forward_rows(case.system, exact.random, found, "residual")
     if inverse.ok:
         torque = inverse.result["torque"]
@@ -129,5 +131,5 @@ def model_rows(case: Case, requested: State, answer: Answer) -> list[Row]:
     """The body and a state read back, against what was requested."""
     if not answer.ok:
         return []
-    bodies, state = answer.result["bodies"], state_from(answer.result["state"])
+    bodies, state = answer.result["bodies"], State(**answer.result["state"])
     return body_rows(case, body_from(bodies[0])) + state_rows(case, requested, state)

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Protocol
 
 from omegadot.commands.versions.release import Span, version_of
-from omegadot.workers.plain_text import one_line
+from omegadot.workers.wire import one_line
 
 SECONDS_TO_INSTALL = 900.0
 LONGEST_REASON = 300

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Protocol
 
-import numpy as np
-
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.scheme_study.probes import Probe
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
-from omegadot.workers.wire import description_of, state_from
+from omegadot.workers.wire import description_of
 
 
 class NoAnswerError(Exception):
@@ -52,15 +50,10 @@ def stepper_of(worker: WorkerProcess, integrator: str) -> Stepper:
     def step(initial: State, timestep: float, steps: int, every: int) -> State:
         plan = {"timestep": timestep, "steps": steps, "every": every}
         answer = _requested(worker, "run", initial=initial, integrator=integrator, **plan)
-        state, kept = state_from(answer.result["state"]), -(-steps // every) + 1
+        state, kept = State(**answer.result["state"]), -(-steps // every) + 1
         if len(state.orientation) != kept:
             came = f"{len(state.orientation)} samples came back, {kept} were requested"
             raise NoAnswerError(Answer("raised", came))
         return state
 
     return step
-
-
-def is_finite(state: State) -> bool:
-    """Whether every number of a trajectory is finite."""
-    return all(bool(np.all(np.isfinite(values))) for values in vars(state).values())

@@ -12,11 +12,8 @@ from xml.etree.ElementTree import Element
 
 from omegadot.scenarios.links.link import Link
 from omegadot.scenarios.links.place import Place, numbers_in
-from omegadot.scenarios.links.sdf_pose import flag, pose_of
+from omegadot.scenarios.links.poses import MOMENTS, flag, pose_of, turned_tensor
 from omegadot.scenarios.links.sdf_shapes import body_of_shapes
-from omegadot.scenarios.links.turns import symmetric, turned_tensor
-
-MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def links(root: Element) -> list[Link]:
@@ -58,7 +55,7 @@ def _body(link: Element, place: Place) -> dict[str, Any]:
     return {
         "mass": own.inner("mass").number(own.text(inertial, "mass"), "a mass in kg"),
         "center_of_mass": center,
-        "inertia": turned_tensor(rotation, symmetric(*moments)),
+        "inertia": turned_tensor(rotation, moments),
     }
 
 

@@ -14,7 +14,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from omegadot.scenarios.links.place import Place
-from omegadot.scenarios.links.sdf_pose import pose_of
+from omegadot.scenarios.links.poses import pose_of
 from omegadot.scenarios.parts import SHAPES
 from omegadot.scenarios.solids import mean_squares, volume
 

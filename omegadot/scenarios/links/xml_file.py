@@ -18,7 +18,7 @@ from defusedxml import DefusedXmlException
 from defusedxml.sax import parseString
 
 from omegadot.scenarios.errors import ScenarioError, printable
-from omegadot.scenarios.regular_file import read_bytes
+from omegadot.scenarios.files import read_bytes
 
 LARGEST_FILE = 20_000_000  # bytes; robots are described in a few hundred thousand
 DEEPEST = 500

@@ -10,18 +10,12 @@ import contextlib
 import os
 import signal
 import subprocess
-import uuid
 
 import psutil
 
 VARIABLE = "OMEGADOT_WORKER_MARKS"
 # A family that starts new members while it is ended is searched again, so many times.
 MOST_SEARCHES = 8
-
-
-def new_mark() -> str:
-    """A mark that no other worker has."""
-    return uuid.uuid4().hex
 
 
 def marked(environment: dict[str, str], mark: str) -> dict[str, str]:

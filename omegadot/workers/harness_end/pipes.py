@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from omegadot.workers.harness_end.family import end_family
-from omegadot.workers.plain_text import one_line
-from omegadot.workers.wire import encode_frame, read_frame
+from omegadot.workers.wire import encode_frame, one_line, read_frame
 
 STDERR_BYTES_KEPT = 4000
 SECONDS_TO_DRAIN = 1.0
@@ -32,11 +31,11 @@ class Pipes:
     """The streams of one process, from its start to its end. mark: what its family bears."""
 
     def __init__(self, process: subprocess.Popen[bytes], mark: str) -> None:
-        self._process, self._mark = process, mark
+        self.process, self._mark = process, mark
         self._tail = b""
         self._requests: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
         self.answers: queue.Queue[dict[str, Any] | Lost] = queue.Queue()
-        self._feeder = self._start(self._feed)
+        self._start(self._feed)
         self._collector = self._start(self._collect)
         self._listener = self._start(self._listen)
         self._start(self._watch)
@@ -62,7 +61,7 @@ class Pipes:
         return one_line(" | ".join(line.strip() for line in lines), 400)
 
     def _feed(self) -> None:
-        stream = self._process.stdin
+        stream = self.process.stdin
         assert stream is not None
         with contextlib.suppress(OSError, ValueError):  # a dead worker reads nothing more
             while (frame := self._requests.get()) is not None:
@@ -73,14 +72,14 @@ class Pipes:
 
     def _collect(self) -> None:
         """Move answers from the pipe to the queue; what is no answer ends it."""
-        stream = self._process.stdout
+        stream = self.process.stdout
         assert stream is not None
         try:
             while True:
                 self.answers.put(read_frame(stream))  # type: ignore[arg-type]
         except (EOFError, OSError):
             with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(SECONDS_TO_DRAIN)
+                self.process.wait(SECONDS_TO_DRAIN)
                 return  # it died, which `_watch` reports when all answers are in
             self.answers.put(Lost("it closed the channel of its answers"))
         except Exception as error:  # garbage can fail to be read in many ways
@@ -88,16 +87,21 @@ class Pipes:
 
     def _listen(self) -> None:
         """Keep the last lines of standard error and drop the rest, however much comes."""
-        stream = self._process.stderr
+        stream = self.process.stderr
         assert stream is not None
         with contextlib.suppress(OSError, ValueError):
             while chunk := stream.read1(1 << 16):  # type: ignore[attr-defined]
                 self._tail = (self._tail + chunk)[-STDERR_BYTES_KEPT:]
 
+    def end(self) -> None:
+        """End the process and everything it started, at once."""
+        end_family(self.process, self._mark)
+        self.process.wait()
+
     def _watch(self) -> None:
         """See the process's end even where a child of it still holds the pipe open."""
-        self._process.wait()
-        end_family(self._process, self._mark)
+        self.process.wait()
+        end_family(self.process, self._mark)
         self.close_requests()
         self._collector.join(SECONDS_TO_DRAIN)
         self.answers.put(Lost())

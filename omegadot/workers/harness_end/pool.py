@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass
 from typing import TypeVar
 
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
@@ -25,29 +24,25 @@ def outcome_of(future: Future[Result]) -> Result:
     return future.result()
 
 
-@dataclass(frozen=True)
-class Limits:
-    """timeout: s, for one request.  jobs: requests at the same time.  memory: bytes, or None."""
-
-    timeout: float
-    jobs: int
-    memory: int | None = None
-
-
 class WorkerPool:
-    """Processes by name. Calls for one of them run on its own thread, in the order submitted."""
+    """Processes by name. Calls for one of them run on its own thread, in the order submitted.
 
-    def __init__(self, targets: Mapping[str, str], setup: str, limits: Limits) -> None:
+    timeout: s, for one request.  jobs: requests at the same time.  memory: bytes, or None.
+    """
+
+    def __init__(
+        self, targets: Mapping[str, str], setup: str, timeout: float, jobs: int, memory: int | None
+    ) -> None:
         self.stopping = threading.Event()
         # First come, first served: where workers wait for a free processor, none waits for long.
-        self._turns = ThreadPoolExecutor(limits.jobs, "turn")
+        self._turns = ThreadPoolExecutor(jobs, "turn")
         self.processes = {
-            name: WorkerProcess(target, setup, limits.timeout, memory=limits.memory)
+            name: WorkerProcess(target, setup, timeout, memory=memory)
             for name, target in targets.items()
         }
         self._threads = {name: ThreadPoolExecutor(1, name) for name in targets}
 
-    def start(self) -> dict[str, Answer]:
+    def start_all(self) -> dict[str, Answer]:
         """Start every process; each answers with its engine's description, or why it has none."""
         # By turns: many engines that start together would only be late together.
         started = {name: self._turns.submit(p.start) for name, p in self.processes.items()}
