@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import cost, equation, invariants, model, phase, reported, scheme, trajectory
+from omegadot.gates import cost, equation, invariants, model, phase, scheme, trajectory
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
@@ -136,8 +136,8 @@ def judge_integrator(
         system = truth.yardstick.system
         rows = [match, *scheme.order_rows(seen, declared, measured)]
         unknown = rows_of_unknown(truth, integrator, sweep, result)
-        misreported = reported.rows(truth, measured, state, result.precision)
-        misreported += reported.omega_dot_rows(system, state, answer.result["omega_dot"])
+        misreported = trajectory.reported_rows(truth, measured, state, result.precision)
+        misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
         rows += unknown
         rows += invariants.rows(measured, findings, sweep.times)
         rows.append(trajectory.time_row(sweep, answer.result["time"]))

@@ -17,9 +17,9 @@ from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.case import Sweep
 from omegadot.gates.measured_run import CHANNELS, MeasuredRun
-from omegadot.gates.reported import _length, _start
 from omegadot.gates.rows import Row
 from omegadot.gates.scales import EPS
+from omegadot.gates.trajectory import _length, _start
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, State
 

@@ -5,8 +5,8 @@ inertia for what is left out; here that is refused, as it is hardly ever meant.
 
 With ``<inertial auto="true">`` the body follows from the link's plain shapes. A collision's density
 is its own, else the inertial's, else 1000 kg/m^3; a mass in the inertial scales the sum. The
-inertial's own pose and inertia are overwritten (sdformat 15, Link and Collision). Meshes, planes and
-the like are refused.
+inertial's own pose and inertia are overwritten (sdformat 15, Link and Collision). Meshes, planes
+and the like are refused.
 """
 
 from __future__ import annotations

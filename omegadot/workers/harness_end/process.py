@@ -16,8 +16,7 @@ from typing import Any
 import psutil
 
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE
-from omegadot.workers.harness_end.family import marked
-from omegadot.workers.harness_end.pipes import Lost, Pipes
+from omegadot.workers.harness_end.pipes import Lost, Pipes, marked
 from omegadot.workers.machine import memory_of_machine
 from omegadot.workers.wire import one_line
 
