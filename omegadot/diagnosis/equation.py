@@ -7,12 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.fits import (
-    constant_inertia,
-    difference_quotient,
-    other_pivot,
-    scaled_terms,
-)
+from omegadot.diagnosis.fits import constant_inertia, difference_quotient, other_pivot, scaled_terms
 from omegadot.diagnosis.match import Match, only_where
 from omegadot.diagnosis.misreadings import OF_ANY_STATE
 from omegadot.diagnosis.model import mistaken_inertias

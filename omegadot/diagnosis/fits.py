@@ -12,16 +12,8 @@ from omegadot.gates.scales import norm
 from omegadot.reference_impl.body_motion import attitude_motion
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.loads import (
-    applied_torque,
-    damping_torque,
-    gravity_torque,
-    torque,
-)
-from omegadot.reference_impl.motion import (
-    center_of_mass_acceleration,
-    forward_dynamics,
-)
+from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque, torque
+from omegadot.reference_impl.motion import center_of_mass_acceleration, forward_dynamics
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array

@@ -39,10 +39,7 @@ OF_ANY_STATE = (
         "omega looks like world axes: it matches after R^T",
         _turned("angular_velocity", rotate_inverse),
     ),
-    Misreading(
-        "omega looks turned twice: it matches after R",
-        _turned("angular_velocity", rotate),
-    ),
+    Misreading("omega looks turned twice: it matches after R", _turned("angular_velocity", rotate)),
     Misreading(
         "omega looks like degrees per second: it matches after pi/180",
         _changed("angular_velocity", lambda w: w * (np.pi / 180)),

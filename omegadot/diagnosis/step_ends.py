@@ -8,12 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.gates.scales import norm
-from omegadot.reference_impl.rotations import (
-    conjugate,
-    normalize,
-    quaternion_product,
-    turn_in_body,
-)
+from omegadot.reference_impl.rotations import conjugate, normalize, quaternion_product, turn_in_body
 from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array, State
 

@@ -4,14 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from omegadot.gates.scales import (
-    EPS,
-    ROUNDINGS_PER_STEP,
-    BodyScale,
-    angular_size,
-    body_scale,
-    norm,
-)
+from omegadot.gates.scales import EPS, ROUNDINGS_PER_STEP, BodyScale, angular_size, body_scale, norm
 from omegadot.reference_impl.energy import kinetic_energy, total_energy
 from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
 from omegadot.reference_impl.motion import forward_dynamics

@@ -26,12 +26,7 @@ from omegadot.harness.outcome import (
 )
 from omegadot.harness.plan import Engine
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine, refined_sweeps
-from omegadot.harness.truth_requests import (
-    Companions,
-    case_companions,
-    case_truth,
-    reference_runs,
-)
+from omegadot.harness.truth_requests import Companions, case_companions, case_truth, reference_runs
 from omegadot.harness.unknown_schemes import probe_unknown_schemes
 from omegadot.workers.harness_end.pool import outcome_of
 

@@ -28,10 +28,7 @@ def case_truth(exact: Driver, case: Case) -> Truth | str:
     state = State(**answer.result["state"])
     yardstick = Yardstick(case.system, times, state)
     found, floor = answer.result, answer.result["floor"]
-    relative = {
-        "omega": floor["angular_velocity"] / yardstick.rate,
-        "attitude": floor["attitude"],
-    }
+    relative = {"omega": floor["angular_velocity"] / yardstick.rate, "attitude": floor["attitude"]}
     growth = growth_along(case.system, times, state, yardstick.rate)
     return Truth(found["source"], times, state, found["omega_dot"], growth, relative, yardstick)
 

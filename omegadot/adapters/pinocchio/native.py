@@ -7,13 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.adapters.native_axes import (
-    GIVEN,
-    TURNED,
-    TURNED_QUATERNION,
-    axes_observed,
-    described,
-)
+from omegadot.adapters.native_axes import GIVEN, TURNED, TURNED_QUATERNION, axes_observed, described
 from omegadot.reference_impl.system import Array
 
 

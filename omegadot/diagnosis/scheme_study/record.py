@@ -8,11 +8,7 @@ from typing import Any
 from omegadot.diagnosis.scheme_study.one_step import NAMED
 from omegadot.diagnosis.scheme_study.orders import Observed
 from omegadot.diagnosis.scheme_study.probes import PROBES
-from omegadot.diagnosis.scheme_study.study import (
-    EngineStudy,
-    IntegratorStudy,
-    ProbeStudy,
-)
+from omegadot.diagnosis.scheme_study.study import EngineStudy, IntegratorStudy, ProbeStudy
 
 SCHEMA = 1
 Record = dict[str, Any]

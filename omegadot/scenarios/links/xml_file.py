@@ -24,9 +24,7 @@ LARGEST_FILE = 20_000_000  # bytes; robots are described in a few hundred thousa
 DEEPEST = 500
 
 _DECLARATION = re.compile(r"\A\s*<\?xml\b(?:[^?]|\?(?!>))*\?>")
-_MARKUP = re.compile(
-    r"""<!--|<!\[CDATA\[|<[^!"'<>]*+(?:"[^"]*+"[^"'<>]*+|'[^']*+'[^"'<>]*+)*+>""",
-)
+_MARKUP = re.compile(r"""<!--|<!\[CDATA\[|<[^!"'<>]*+(?:"[^"]*+"[^"'<>]*+|'[^']*+'[^"'<>]*+)*+>""")
 _ROOT = re.compile(r"\s*(?:<[?!][^>]*>\s*)*<([^\s<>/]+)")
 _CLOSING = {"<!--": "-->", "<![CDATA[": "]]>"}
 _MARKS = {b"\xef\xbb\xbf": "utf-8", b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
