@@ -21,6 +21,7 @@ from omegadot.reference_impl.system import Acceleration, Array
 # A fitted number has rounding of its own, of about as many terms as there are components.
 SLACK = 4.0
 MOST_TRIES = 6
+NOTHING = Acceleration(np.zeros(3), np.zeros(3))
 
 
 def _term(match: Match, moment: Array, gravity: float) -> Acceleration:
@@ -36,7 +37,7 @@ def _term(match: Match, moment: Array, gravity: float) -> Acceleration:
 def _fit(match: Match, term: Acceleration) -> float | None:
     """The k with ``found = true + k term``, each state weighted by its bound; None if none fits."""
     true = match.true
-    rest, line = _weighted(match, _difference(match.found, true)), _weighted(match, term)
+    rest, line = _apart(match, match.found, true), _apart(match, term, NOTHING)
     if not np.any(line):
         return None
     k = float(rest @ line / (line @ line))
@@ -100,11 +101,8 @@ def _change(
 ) -> Array:
     """By how much to change a vector (3,) that sets the equation: a step of Gauss-Newton."""
     here = there(point)
-    rest = _weighted(match, _difference(match.found, here))
-    lines = [
-        _weighted(match, _difference(there(point + delta * unit), here)) / delta
-        for unit in np.eye(3)
-    ]
+    rest = _apart(match, match.found, here)
+    lines = [_apart(match, there(point + delta * unit), here) / delta for unit in np.eye(3)]
     change: Array = np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
     return change
 
@@ -128,17 +126,11 @@ def other_pivot(match: Match) -> str:
     return ""
 
 
-def _difference(one: Acceleration, other: Acceleration) -> Acceleration:
-    return Acceleration(one.angular - other.angular, one.linear - other.linear)
-
-
-def _weighted(match: Match, acceleration: Acceleration) -> Array:
-    """All components in one row, each state's in parts of its bound."""
-    parts = (
-        acceleration.angular / match.angular_bound[:, None],
-        acceleration.linear / match.linear_bound[:, None],
-    )
-    return np.concatenate([np.ravel(part) for part in parts])
+def _apart(match: Match, one: Acceleration, other: Acceleration) -> Array:
+    """All components of a difference in one row, each state's in parts of its bound."""
+    angular = (one.angular - other.angular) / match.angular_bound[:, None]
+    linear = (one.linear - other.linear) / match.linear_bound[:, None]
+    return np.concatenate([np.ravel(angular), np.ravel(linear)])
 
 
 def _vector(values: Array) -> str:

@@ -36,8 +36,6 @@ class CaseResult:
     steps from several states, and the sample from which a run was restarted with the rest of it.
     """
 
-    engine: str
-    case: str
     integrators: tuple[Integrator, ...] = ()
     model: Answer = INTERRUPTED
     forward: Answer = INTERRUPTED
@@ -140,8 +138,7 @@ class Driver:
 
     def evaluate_equations(self, case: Case, evaluation_states: EvaluationStates) -> CaseResult:
         """The model read back, and the engine's equations at the states in question."""
-        precision = self.engine.description.precision
-        result = CaseResult(self.engine.name, case.name, precision=precision)
+        result = CaseResult(precision=self.engine.description.precision)
         features = self.engine.description.features
         first = evaluation_states.random[0]
         result.model = self.request(case, "model", state=first)

@@ -118,7 +118,7 @@ def judge_integrator(
 
     result: what else the engine answered, where its scheme is unknown.
     """
-    result = result or CaseResult("", "")
+    result = result or CaseResult()
     finer = {step: answer for step, (_, answer) in refinements.items()}
     every = [*sweeps, *(sweep for sweep, _ in refinements.values())]
     measured_runs = _measured_runs(truth, integrator, {**answers, **finer}, every)

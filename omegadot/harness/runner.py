@@ -90,7 +90,7 @@ class Runner:
         truth, driver = pending.truth.result(), self.engines.drivers[engine.name]
         if isinstance(truth, str):
             self.on_advance(tasks_of(engine, case))
-            return CaseResult(engine.name, case.name)
+            return CaseResult()
         evaluation_states = evaluation_states_of(case, truth, self.request.seed)
         result = driver.evaluate_equations(case, evaluation_states)
         if engine.name == "exact":
@@ -199,8 +199,5 @@ class Runner:
 
     def _leftover(self, pending: PendingCase) -> JudgedCase:
         """A case that the interruption caught: none of it is judged, and it states so."""
-        engines = [
-            EngineCase(engine, CaseResult(engine.name, pending.case.name), [], [])
-            for engine in self.engines.started
-        ]
+        engines = [EngineCase(engine, CaseResult(), [], []) for engine in self.engines.started]
         return JudgedCase(pending.case, None, INTERRUPTED.reason, engines)

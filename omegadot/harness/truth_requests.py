@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.measures import Yardstick
@@ -19,10 +20,7 @@ Companions = dict[tuple[SchemeKey, float], Companion]
 def case_truth(exact: Driver, case: Case) -> Truth | str:
     """The exact trajectory of a case, or the sentence that states why there is none."""
     times = case.sample_times
-    fields = {"system": case.system, "initial": case.initial, "times": times}
-    answer = exact.request(case, "solve", **fields)
-    if answer.outcome == "crashed":  # every engine is judged by this: it is worth a second try
-        answer = exact.request(case, "solve", **fields)
+    answer = _requested(exact, case, "solve", times=times)
     if not answer.ok:
         return f"no exact solution to compare with: {answer.reason}"
     state = State(**answer.result["state"])
@@ -31,6 +29,13 @@ def case_truth(exact: Driver, case: Case) -> Truth | str:
     relative = {"omega": floor["angular_velocity"] / yardstick.rate, "attitude": floor["attitude"]}
     growth = growth_along(case.system, times, state, yardstick.rate)
     return Truth(found["source"], times, state, found["omega_dot"], growth, relative, yardstick)
+
+
+def _requested(driver: Driver, case: Case, operation: str, **fields: Any) -> Answer:
+    """An answer by which every engine is judged: a crash is worth a second try."""
+    fields |= {"system": case.system, "initial": case.initial}
+    answer = driver.request(case, operation, **fields)
+    return driver.request(case, operation, **fields) if answer.outcome == "crashed" else answer
 
 
 def case_companions(
@@ -45,15 +50,8 @@ def case_companions(
         return {}
     found: Companions = {}
     for key in keys:
-        fields = {"system": case.system, "initial": case.initial, "plan": list(sweeps)}
-        fields |= {
-            "scheme": key.scheme,
-            "coordinates": key.coordinates,
-            "rate": truth.yardstick.rate,
-        }
-        answer = reference.request(case, "companion", **fields)
-        if answer.outcome == "crashed":
-            answer = reference.request(case, "companion", **fields)
+        fields = {**vars(key), "plan": list(sweeps), "rate": truth.yardstick.rate}
+        answer = _requested(reference, case, "companion", **fields)
         if answer.ok:
             for sweep, run in zip(sweeps, answer.result, strict=True):
                 companion = Companion(State(**run["state"]), run["growth"], run["omega_dot"])

@@ -76,7 +76,7 @@ def engine_case(
     case: Case, truth: Truth, name: str, *integrators: tuple[Integrator, str]
 ) -> EngineCase:
     """An engine of several integrators, each with the scheme that it really takes."""
-    result, runs = CaseResult(name, case.name), []
+    result, runs = CaseResult(), []
     adapter = ReferenceAdapter()
     for integrator, steps in integrators:
         answers = answers_of(case, adapter, steps)
