@@ -23,7 +23,7 @@ class Yardstick:
     """
 
     def __init__(self, system: System, times: Array, exact: State) -> None:
-        self.system, self.times, self.exact = system, times, exact
+        self.system = system
         self.scale: BodyScale = body_scale(system)
         acceleration = forward_dynamics(system, exact)
         self.acceleration = float(np.max(angular_size(system, exact, acceleration)))

@@ -25,7 +25,6 @@ class Engines(WorkerPool):
     """
 
     def __init__(self, request: RunRequest) -> None:
-        self.request = request
         requested = {choice.name: choice for choice in request.choices}
         added = {n: EngineChoice(n, BUILT_IN[n]) for n in TRUTH if n not in requested}
         self._choices = {**requested, **added}

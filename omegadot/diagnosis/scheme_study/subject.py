@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.scheme_study.probes import Probe
@@ -19,12 +19,11 @@ class NoAnswerError(Exception):
         self.answer = answer
 
 
-class Stepper(Protocol):
-    """How an integrator is stepped."""
+Stepper = Callable[[State, float, int, int], State]
+"""Of initial, timestep, steps and every: the states at step 0, each `every`-th and the last.
 
-    def __call__(self, initial: State, timestep: float, steps: int, every: int) -> State:
-        """The states at step 0, each `every`-th and the last. Raises NoAnswerError."""
-        ...
+Raises NoAnswerError.
+"""
 
 
 def _requested(worker: WorkerProcess, operation: str, **fields: object) -> Answer:
