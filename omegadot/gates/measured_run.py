@@ -119,8 +119,7 @@ def findings_of(
     measured: MeasuredRun, declared: Declared, measured_runs: list[MeasuredRun]
 ) -> dict[str, Finding]:
     """Judge every channel of one run; the other runs of its sweep show the orders."""
-    found = {}
-    for channel in CHANNELS:
-        evidence = evidence_of(measured, measured_runs, channel)
-        found[channel] = judge(evidence, declared.scheme, declared.orders[channel])
-    return found
+    return {
+        c: judge(evidence_of(measured, measured_runs, c), declared.scheme, declared.orders[c])
+        for c in CHANNELS
+    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -73,12 +73,11 @@ def _why(findings: dict[str, Finding]) -> str:
 
 
 def _measured_runs(
-    truth: Truth, integrator: Integrator, answers: dict[float, Answer], sweeps: list[Sweep]
+    truth: Truth, integrator: Integrator, answers: Iterable[tuple[Sweep, Answer]]
 ) -> dict[float, MeasuredRun]:
     """The runs of one integrator that can be measured: finite, with the samples requested."""
     measured_runs = {}
-    for sweep in sweeps:
-        answer = answers[sweep.timestep]
+    for sweep, answer in answers:
         if not answer.ok or len(answer.result["time"]) != len(sweep.times):
             continue
         state = State(**answer.result["state"])
@@ -106,39 +105,32 @@ def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
     return JudgedRun(integrator, sweep, "diverged", note, rows, why=note)
 
 
-def judge_integrator(
+def _judge_integrator(
     truth: Truth,
     integrator: Integrator,
-    sweeps: list[Sweep],
-    answers: dict[float, Answer],
-    refinements: dict[float, tuple[Sweep, Answer]],
-    result: CaseResult | None = None,
+    sweeps: Iterable[Sweep],
+    result: CaseResult,
+    finer: Iterable[tuple[Sweep, Answer]],
 ) -> Iterator[JudgedRun]:
-    """Judge every step size of one integrator; refinements only serve to see its order.
-
-    result: what else the engine answered, where its scheme is unknown.
-    """
-    result = result or CaseResult()
-    finer = {step: answer for step, (_, answer) in refinements.items()}
-    every = [*sweeps, *(sweep for sweep, _ in refinements.values())]
-    measured_runs = _measured_runs(truth, integrator, {**answers, **finer}, every)
-    declared = Declared(integrator.scheme, orders_for(integrator, truth.yardstick.system))
+    """Judge every step size of one integrator; finer ones only serve to see its order."""
+    answers = [(sweep, result.runs[integrator.name, sweep.timestep]) for sweep in sweeps]
+    measured_runs = _measured_runs(truth, integrator, [*answers, *finer])
+    system = truth.yardstick.system
+    declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
     seen = scheme.orders_seen(known)
-    for sweep in sweeps:
-        answer, measured = answers[sweep.timestep], measured_runs.get(sweep.timestep)
+    for sweep, answer in answers:
+        measured = measured_runs.get(sweep.timestep)
         if measured is None:
             yield _failed(integrator, sweep, answer)
             continue
         state = State(**answer.result["state"])
         findings = findings_of(measured, declared, known)
         match = scheme.match_row(truth, integrator, measured, state, known)
-        system = truth.yardstick.system
-        rows = [match, *scheme.order_rows(seen, declared, measured)]
         unknown = rows_of_unknown(truth, integrator, sweep, result)
+        rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
         misreported = trajectory.reported_rows(truth, measured, state, result.precision)
         misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
-        rows += unknown
         rows += invariants.rows(measured, findings, sweep.times)
         rows.append(trajectory.time_row(sweep, answer.result["time"]))
         rows += [*misreported, *trajectory.rows(measured, findings)]
@@ -157,9 +149,10 @@ def judge_case(
     refinements: dict[str, dict[float, tuple[Sweep, Answer]]],
 ) -> list[JudgedRun]:
     """Judge every task of one engine on one scenario."""
-    sweeps, judged = list(case.sweeps), []
-    for integrator in result.integrators:
-        answers = {s.timestep: result.runs[integrator.name, s.timestep] for s in sweeps}
-        finer = refinements.get(integrator.name, {})
-        judged += list(judge_integrator(truth, integrator, sweeps, answers, finer, result))
-    return judged
+    return [
+        judged
+        for integrator in result.integrators
+        for judged in _judge_integrator(
+            truth, integrator, case.sweeps, result, refinements.get(integrator.name, {}).values()
+        )
+    ]

@@ -12,7 +12,7 @@ from omegadot.gates.scales import norm
 from omegadot.harness.arguments import case_of
 from omegadot.reference_impl.rotations import normalize, rotation_matrix
 from omegadot.reference_impl.schemes.scheme import kinds_of
-from omegadot.reference_impl.system import Array, System
+from omegadot.reference_impl.system import Array
 from omegadot.scenarios import scenario
 
 SLEEPY = 0.05  # rad/s, below which engines may put a body to sleep
@@ -101,17 +101,6 @@ def random_case(seed: int, index: int) -> Case:
     return case_of(scenario(data), [])
 
 
-def _tensor_features(system: System) -> set[str]:
-    tensor = np.asarray(system.body.inertia)
-    moments = np.linalg.eigvalsh(tensor)
-    found = set()
-    if np.max(np.abs(tensor - np.diag(np.diag(tensor)))) > LEAST_SPREAD * moments[-1]:
-        found.add("full-inertia")
-    if np.min(np.diff(moments)) > LEAST_SPREAD * moments[-1]:
-        found.add("asymmetric")
-    return found
-
-
 def features_of(case: Case) -> frozenset[str]:
     """What a case has in it for a fault to show.
 
@@ -123,7 +112,12 @@ def features_of(case: Case) -> frozenset[str]:
     system, load = case.system, case.system.load
     rate = float(norm(case.initial.angular_velocity))
     held = load.pivot is not None
+    tensor = np.asarray(system.body.inertia)
+    moments = np.linalg.eigvalsh(tensor)
+    products = tensor - np.diag(np.diag(tensor))
     named = {
+        "full-inertia": np.max(np.abs(products)) > LEAST_SPREAD * moments[-1],
+        "asymmetric": np.min(np.diff(moments)) > LEAST_SPREAD * moments[-1],
         "offset": np.any(system.body.center_of_mass),
         "free": not held,
         "pivot": held,
@@ -135,4 +129,4 @@ def features_of(case: Case) -> frozenset[str]:
         "slow": rate < SLEEPY,
         "fast": rate > FASTEST,
     }
-    return frozenset({name for name, holds in named.items() if holds} | _tensor_features(system))
+    return frozenset(name for name, holds in named.items() if holds)

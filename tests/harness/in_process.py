@@ -12,7 +12,7 @@ from omegadot.gates.truth import SchemeKey, Truth
 from omegadot.harness import in_process
 from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun, judge_integrator
+from omegadot.harness.judge import JudgedRun, judge_case
 from omegadot.harness.outcome import EngineCase
 from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.harness.truth_requests import case_companions, case_truth
@@ -69,20 +69,19 @@ def judged(
 ) -> list[JudgedRun]:
     """An integrator sent through the gates. steps: the reference's scheme that it really takes."""
     answers = answers_of(case, adapter or ReferenceAdapter(), steps or integrator.name)
-    return list(judge_integrator(truth, integrator, list(case.sweeps), answers, {}))
+    runs = {(integrator.name, step): answer for step, answer in answers.items()}
+    return judge_case(truth, case, CaseResult((integrator,), runs=runs), {})
 
 
 def engine_case(
     case: Case, truth: Truth, name: str, *integrators: tuple[Integrator, str]
 ) -> EngineCase:
     """An engine of several integrators, each with the scheme that it really takes."""
-    result, runs = CaseResult(), []
-    adapter = ReferenceAdapter()
+    adapter, own = ReferenceAdapter(), tuple(integrator for integrator, _ in integrators)
+    result = CaseResult(own)
     for integrator, steps in integrators:
         answers = answers_of(case, adapter, steps)
         result.runs.update({(integrator.name, step): a for step, a in answers.items()})
-        runs += list(judge_integrator(truth, integrator, list(case.sweeps), answers, {}))
-    own = tuple(integrator for integrator, _ in integrators)
     description = replace(adapter.description, name=name, integrators=own)
     engine = Engine(EngineChoice(name, ""), description, own)
-    return EngineCase(engine, result, [], runs)
+    return EngineCase(engine, result, [], judge_case(truth, case, result, {}))
