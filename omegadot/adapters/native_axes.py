@@ -1,7 +1,5 @@
 """In whose axes an engine keeps a vector, found from what the engine makes of one it is given."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from omegadot.reference_impl.system import Array

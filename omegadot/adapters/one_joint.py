@@ -1,7 +1,5 @@
 """What adapters share whose engine holds its one body on one joint: calls that go to the joint."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What an engine must answer: one small protocol, the same for the reference and for MuJoCo."""
 
-from __future__ import annotations
-
 from dataclasses import InitVar, dataclass, field
 from typing import Literal, Protocol, runtime_checkable
 

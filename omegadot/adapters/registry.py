@@ -1,7 +1,5 @@
 """Which engines there are: the built-in ones, those of entry points, those named by a file."""
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 import sys

@@ -6,8 +6,6 @@ Translation is left aside: engines that step one scheme at different points of t
 or its centre of mass, turn alike.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

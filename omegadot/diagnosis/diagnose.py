@@ -8,8 +8,6 @@ those answers and explains them within the gates' own bounds. Where nothing does
 the list is empty: no guess is better than a wrong one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Causes of a wrong equation: what the engine's accelerations and torques match instead."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

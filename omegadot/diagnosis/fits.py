@@ -1,7 +1,5 @@
 """Causes with a number in them, fitted to an engine's accelerations and then held to its bounds."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

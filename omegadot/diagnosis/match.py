@@ -1,7 +1,5 @@
 """Whether an engine's accelerations are those of a candidate equation, and at which states."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Ways to misread a state, and what undoes each."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Causes of a model that does not read back: another body, or states in another convention."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import permutations, product
 

@@ -4,8 +4,6 @@ The last resort, where no single cause explains a whole run: every sample is ste
 declared scheme to the next, so that what is wrong at one place does not spoil the rest.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One run as it was reported, next to the same run stepped by the reference."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Causes in what is reported of a run: frames, orders, samples, clocks; the stepping is sound."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

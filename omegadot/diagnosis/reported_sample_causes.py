@@ -1,7 +1,5 @@
 """Causes in the samples of a sound run: rounded to digits, or of half a step before."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

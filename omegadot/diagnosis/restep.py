@@ -1,7 +1,5 @@
 """Step an engine's own dynamics by a scheme of the reference, whatever the engine itself steps."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What wrong steppers make of the end of a step: ``end(before, after, h) -> state``."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Causes in the stepping: another scheme, another step, another force, a limit on omega."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

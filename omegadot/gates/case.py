@@ -1,7 +1,5 @@
 """A case: a scenario prepared for running, and the samples that each of its steps keeps."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +13,7 @@ from omegadot.scenarios import Scenario
 class Sweep(Steps):
     """One step size of a scenario."""
 
-    def refined(self, factor: int) -> Sweep:
+    def refined(self, factor: int) -> "Sweep":
         """The same samples at a step `factor` times smaller."""
         return Sweep(self.timestep / factor, self.steps * factor, self.every * factor)
 

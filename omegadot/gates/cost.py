@@ -1,7 +1,5 @@
 """Gate 6, cost: what a step and a simulated second take. Measured, not judged."""
 
-from __future__ import annotations
-
 from omegadot.gates.rows import Row
 
 GATE = "cost"

@@ -1,7 +1,5 @@
 """Gate 2, equation: omega-dot, acceleration and torque of the engine at identical states."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

@@ -3,8 +3,6 @@
 The resolvable floor is how far a perfect answer in double may be off.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Between samples: the cubic that has the values and the slopes at both ends, and its zeros."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

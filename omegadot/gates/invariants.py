@@ -1,7 +1,5 @@
 """Gate 4, invariants: energy and momenta against their exact trajectory, over three horizons."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How alike two motions are, in parts of what rounding may make of the difference."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A run measured in each channel: its distance from the exact solution and from its scheme."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

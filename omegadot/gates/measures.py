@@ -1,7 +1,5 @@
 """How far two motions are apart, channel by channel, and how far rounding alone may take them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from omegadot.gates.scales import EPS, ROUNDINGS_PER_STEP, BodyScale, angular_size, body_scale, norm

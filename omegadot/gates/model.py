@@ -1,7 +1,5 @@
 """Gate 1, model: the engine holds the body and the state that it was given."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from omegadot.gates.case import Case

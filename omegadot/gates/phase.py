@@ -1,7 +1,5 @@
 """Right but late, or wrong: the time shift that fits omega best, what is left, and the flips."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

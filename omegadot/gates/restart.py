@@ -6,8 +6,6 @@ samples after it. It does not where a sample is not the state that was stepped (
 made up afterwards), where something acts for a while only, and where there is noise.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator

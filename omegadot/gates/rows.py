@@ -1,7 +1,5 @@
 """One measured value: what a gate writes and `metrics.parquet` holds."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

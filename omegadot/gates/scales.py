@@ -4,8 +4,6 @@ Every bound here is floating point and physics: a count of roundings times eps t
 the terms that were added to make the answer. Nothing is tuned.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Gate 3, scheme: an engine's steps against those it declares, and the order of its errors."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

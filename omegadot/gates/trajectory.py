@@ -5,8 +5,6 @@ state that it was given, its quaternions are of unit length, and an engine that 
 precision reports numbers of double precision. No step size excuses any of these.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The exact trajectory of a case at its sample times, and the reference's companions."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

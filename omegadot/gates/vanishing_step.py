@@ -5,8 +5,6 @@ One step from a state x leads to ``Phi_h(x)``, and for every consistent scheme, 
 steps (Richardson 1911); what a scheme adds vanishes in it, and what a fault adds does not.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,8 +6,6 @@ round-off growth, that of the reference stepping the declared scheme), or *consi
 with the step at the declared order). Otherwise it fails.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

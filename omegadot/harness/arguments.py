@@ -1,7 +1,5 @@
 """What is made of a command's arguments, typed or passed by a script: engines and cases."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Real

@@ -1,7 +1,5 @@
 """From a finished run to the record that reports read: tasks, metrics, trajectories."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from functools import partial

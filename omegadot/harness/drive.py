@@ -4,8 +4,6 @@ A request that crashes the worker, or that gets no answer in time, costs its own
 is started again and the next request goes on.
 """
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

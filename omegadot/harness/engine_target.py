@@ -1,7 +1,5 @@
 """Which class an engine of one's own is: a file, a module, or the class itself."""
 
-from __future__ import annotations
-
 import ast
 import importlib.util
 import sys

@@ -1,7 +1,5 @@
 """The engines of a run: those that were requested, and the two that every judgement needs."""
 
-from __future__ import annotations
-
 from omegadot.adapters.registry import BUILT_IN
 from omegadot.harness.arguments import integrators_chosen
 from omegadot.harness.drive import Driver

@@ -1,7 +1,5 @@
 """An engine in this very process, called as in a worker: the same operations, the same wire."""
 
-from __future__ import annotations
-
 import io
 import threading
 from typing import Any, cast

@@ -1,7 +1,5 @@
 """Send one engine's answers for one scenario through the gates."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 

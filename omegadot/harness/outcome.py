@@ -1,7 +1,5 @@
 """What is measured of a run, what is on its way, and what comes of it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future

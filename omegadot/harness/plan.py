@@ -1,7 +1,5 @@
 """What is run: the engines requested, and the engines that started."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from omegadot.adapters.protocol import Description, Integrator

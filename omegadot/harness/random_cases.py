@@ -1,7 +1,5 @@
 """Random bodies, states and loads, drawn from a seed: the same seed gives the same scenarios."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

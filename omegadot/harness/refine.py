@@ -1,7 +1,5 @@
 """Finer steps where a sweep is too coarse to show the order of an error."""
 
-from __future__ import annotations
-
 from omegadot.gates.case import Case, Sweep
 from omegadot.harness.drive import Driver
 from omegadot.harness.judge import JudgedRun

@@ -1,7 +1,5 @@
 """A run: every engine over every case, judged case by case as the answers come in."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from functools import partial

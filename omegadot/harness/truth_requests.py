@@ -1,7 +1,5 @@
 """Requests to the workers of the exact solution and of the reference's companions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 

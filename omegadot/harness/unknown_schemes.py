@@ -1,7 +1,5 @@
 """Further requests to an integrator whose declared scheme is unknown to the reference."""
 
-from __future__ import annotations
-
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates import restart, vanishing_step
 from omegadot.gates.case import Case, Sweep

@@ -1,7 +1,5 @@
 """Wrong usage: the error of a command's arguments, and the nearest valid name."""
 
-from __future__ import annotations
-
 import difflib
 import math
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """The one error of this room, and how a value that a user wrote is shown in it."""
 
-from __future__ import annotations
-
 import datetime
 
 SHOWN = 60  # characters of a value that a sentence can carry

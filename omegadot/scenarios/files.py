@@ -1,7 +1,5 @@
 """Files from anybody: the bytes of a regular one, the tables of a TOML one, or one sentence."""
 
-from __future__ import annotations
-
 import re
 import stat
 import tomllib

@@ -1,7 +1,5 @@
 """From whatever names or describes a scenario to a Scenario, or to one sentence."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Mapping

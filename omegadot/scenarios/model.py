@@ -4,8 +4,6 @@ The attributes are the keys of the file. Every model is frozen and hashable, hol
 and refuses keys it does not know. SI units; quaternions are (w, x, y, z), world-from-body.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, PlainValidator, model_validator

@@ -16,8 +16,6 @@ point       none
 ==========  =====================================================================
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator

@@ -5,8 +5,6 @@ Magnitudes lie between 1e-50 and 1e50 in SI units. That spans the inertia of a h
 (``omega x I omega``, its square, the parallel axis) inside a double.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import sys

@@ -1,7 +1,5 @@
 """One sentence out of the list of faults that pydantic finds in a scenario."""
 
-from __future__ import annotations
-
 import difflib
 from typing import Any
 

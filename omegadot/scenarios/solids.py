@@ -7,8 +7,6 @@ exactly when all mass lies on one line. That is what is looked for here; the ine
 reference's business.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

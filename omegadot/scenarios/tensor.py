@@ -1,7 +1,5 @@
 """An inertia as a scenario gives it: three principal moments or a symmetric 3x3 tensor."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import numpy as np

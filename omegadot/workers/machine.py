@@ -1,7 +1,5 @@
 """What a record states of the machine and the packages that made it."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import platform

@@ -5,8 +5,6 @@ stands as ``{"$array": i}``; then the arrays in order, as little-endian float64.
 pickled, so an old worker and a new harness understand each other.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import struct

@@ -4,8 +4,6 @@
 Euler: accelerations, then velocities, then positions with the new velocities.
 """
 
-from __future__ import annotations
-
 from time import perf_counter
 
 import numpy as np

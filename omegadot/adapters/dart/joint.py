@@ -8,8 +8,6 @@ spatial acceleration of a point, ``a_spatial = a - omega x v``, see Featherstone
 Dynamics Algorithms (2008), section 2.11.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from omegadot.adapters.dart.model import DartModel

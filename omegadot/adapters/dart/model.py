@@ -1,7 +1,5 @@
 """The DART world of one body: a FreeJoint at the body origin, or a BallJoint at the pivot."""
 
-from __future__ import annotations
-
 from types import ModuleType
 from typing import Any
 

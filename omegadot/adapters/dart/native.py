@@ -1,7 +1,5 @@
 """Conventions and defaults of the installed DART, measured on it, not read in its documents."""
 
-from __future__ import annotations
-
 from types import ModuleType
 from typing import Any
 

@@ -4,8 +4,6 @@ A step costs what `World.step` costs in a loop of one's own: a torque that is co
 is set once, for a step without a reset keeps it; samples become states after the run.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from itertools import repeat

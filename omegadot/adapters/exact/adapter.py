@@ -1,7 +1,5 @@
 """The exact solution as an engine: it is not stepped, so its samples do not depend on the step."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

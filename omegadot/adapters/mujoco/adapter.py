@@ -1,7 +1,5 @@
 """MuJoCo behind the protocol: one body on a free joint or pivoted on a ball joint."""
 
-from __future__ import annotations
-
 from time import perf_counter
 from typing import Any
 

@@ -6,8 +6,6 @@ comes out the same with both does not depend on them, whatever the file's settin
 refused.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -5,8 +5,6 @@ velocity in body axes: qpos = (p, q), qvel = (v, Ï‰). A ball joint keeps q and Ï
 are (w, x, y, z), world-from-body, as here.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,8 +5,6 @@ schemes to rounding. A body without jointed children on a free joint ("standalon
 apart by some versions; a body on a ball joint never is.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from typing import Any

@@ -1,7 +1,5 @@
 """A system as a MuJoCo model: one body on a free joint, or on a ball joint at its pivot."""
 
-from __future__ import annotations
-
 import importlib
 from itertools import permutations
 from typing import Any

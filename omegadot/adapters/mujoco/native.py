@@ -1,7 +1,5 @@
 """Conventions and defaults of the installed MuJoCo, measured on it, not read in its documents."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Many steps in native code, with memory that does not grow with their number."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

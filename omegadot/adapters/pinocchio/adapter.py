@@ -4,8 +4,6 @@ Pinocchio computes dynamics and has no stepper, so every integrator here is name
 ``aba+<scheme of the reference>``. `pinocchio_joint` holds the model and the joint coordinates.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from omegadot.adapters.one_joint import OneJointAdapter

@@ -4,8 +4,6 @@ Spatial vectors are (linear, angular). See Featherstone, Rigid Body Dynamics Alg
 section 2.11, for the spatial acceleration of a point: ``a_spatial = a - omega x v``.
 """
 
-from __future__ import annotations
-
 from types import ModuleType
 from typing import Any
 

@@ -5,8 +5,6 @@ Pinocchio's: a free flyer's q is (position, x, y, z, w) and its v the spatial ve
 angular) in body axes; a spherical joint's are (x, y, z, w) and omega.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """Conventions and defaults of the installed Pinocchio, measured on it, not read in documents."""
 
-from __future__ import annotations
-
 from types import ModuleType
 from typing import Any
 

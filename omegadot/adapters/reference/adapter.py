@@ -1,7 +1,5 @@
 """The reference as an engine like any other: equation (8), stepped by every scheme there is."""
 
-from __future__ import annotations
-
 from omegadot import __version__
 from omegadot.adapters.protocol import (
     ONE_BODY,

@@ -1,7 +1,5 @@
 """Name the schemes that an integrator's steps equal to rounding, whatever it declares."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """One name for an integrator out of what it matched on each probe."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

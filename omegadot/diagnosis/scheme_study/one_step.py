@@ -1,7 +1,5 @@
 """The one-step defect: what a single step from an exact state does wrong."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

@@ -1,7 +1,5 @@
 """The observed order of an error: a sweep that refines itself until the slope has settled."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 

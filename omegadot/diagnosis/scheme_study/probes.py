@@ -4,8 +4,6 @@ Their tensors are full, their axes turned and their loads askew, so that no two 
 symmetry. Steps are reported by the angle that the body turns in one, ``|omega_0| h``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """A study as plain data: what is printed as JSON, and what the tables are made of."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

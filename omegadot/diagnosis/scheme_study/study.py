@@ -1,7 +1,5 @@
 """The study of an engine: every integrator on every probe."""
 
-from __future__ import annotations
-
 import threading
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """The integrator under study: something that steps a probe, wherever it runs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from omegadot.adapters.protocol import Integrator

@@ -1,7 +1,5 @@
 """``FILE#LINK`` to a body: which format the file is in, and which link is meant."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """One link of a file, and the one that is meant by a name."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

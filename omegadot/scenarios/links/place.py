@@ -1,7 +1,5 @@
 """Where in a file a value stands, its numbers read, and the sentence when it cannot be read."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,7 +21,7 @@ class Place:
     file: str
     path: str
 
-    def inner(self, name: str) -> Place:
+    def inner(self, name: str) -> "Place":
         """A place within this one."""
         return Place(self.file, f"{self.path} {name}".strip())
 

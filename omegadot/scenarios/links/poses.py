@@ -3,8 +3,6 @@
 Poses and flags are SDF's: sdformat.org/tutorials, specify pose.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from xml.etree.ElementTree import Element

@@ -9,8 +9,6 @@ inertial's own pose and inertia are overwritten (sdformat 15, Link and Collision
 and the like are refused.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from typing import Any

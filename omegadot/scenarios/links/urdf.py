@@ -4,8 +4,6 @@ The link's frame is the body's: `origin` places the inertial frame in it, `rpy` 
 from version 1.1 on, `quat_xyzw`.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 from xml.etree.ElementTree import Element

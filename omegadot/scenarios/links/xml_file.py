@@ -5,8 +5,6 @@ a namespace, and bytes in whatever encoding, all of which strict XML refuses. Nu
 ASCII in all of them; what is not UTF-8 is taken as Latin-1, whatever the file declares.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from xml.etree.ElementTree import Element, TreeBuilder

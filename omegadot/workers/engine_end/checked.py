@@ -1,7 +1,5 @@
 """An adapter's answers, held to the protocol's types and shapes before they leave the worker."""
 
-from __future__ import annotations
-
 from typing import Any, TypeVar, get_args
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How much memory a worker may hold, and how much it has held at most."""
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path

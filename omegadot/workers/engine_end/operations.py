@@ -1,7 +1,5 @@
 """The requests that a worker answers: each operation takes the adapter and the request's fields."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any

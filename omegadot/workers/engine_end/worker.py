@@ -6,8 +6,6 @@ answer. A request that raises, whatever it raises, is answered with the exceptio
 on. After running out of memory it states so and leaves, for what is left of it cannot be relied on.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import time

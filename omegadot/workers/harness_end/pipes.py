@@ -8,8 +8,6 @@ that has made itself a session of its own is out of the group's reach; it is fou
 environment that it has inherited.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import queue

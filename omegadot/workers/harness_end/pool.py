@@ -1,7 +1,5 @@
 """The worker processes of a run: a process and a thread an engine, started and ended together."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, wait

@@ -1,7 +1,5 @@
 """The harness's side of one worker: start it, send requests, and report how it ended."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import queue
