@@ -29,16 +29,11 @@ def _samples(reported: ReportedRun) -> str:
     if came == len(expected):
         return ""
     missing = len(expected) - came
-    if missing > 0 and np.allclose(reported.time, expected[missing:], rtol=1e-12, atol=0.0):
-        return _counted(missing, "first")
-    if missing > 0 and np.allclose(reported.time, expected[:-missing], rtol=1e-12, atol=0.0):
-        return _counted(missing, "last")
-    return f"{came} samples came back, {len(expected)} were requested"
-
-
-def _counted(missing: int, which: str) -> str:
     counted = "sample is" if missing == 1 else f"{missing} samples are"
-    return f"the {which} {counted} missing"
+    for which, left in (("first", expected[missing:]), ("last", expected[:-missing])):
+        if missing > 0 and np.allclose(reported.time, left, rtol=1e-12, atol=0.0):
+            return f"the {which} {counted} missing"
+    return f"{came} samples came back, {len(expected)} were requested"
 
 
 def _clock(reported: ReportedRun) -> str:

@@ -11,7 +11,7 @@ from omegadot.gates.equation import evaluation_states_of
 from omegadot.gates.scheme import comparison_keys
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.harness.drive import INTERRUPTED, CaseResult
-from omegadot.harness.engines import Engines
+from omegadot.harness.engines import Engines, outcome_of
 from omegadot.harness.judge import JudgedRun, judge_case, shared_rows
 from omegadot.harness.outcome import (
     EngineCase,
@@ -26,7 +26,6 @@ from omegadot.harness.plan import Engine
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine, refined_sweeps
 from omegadot.harness.truth_requests import Companions, case_companions, case_truth, reference_runs
 from omegadot.harness.unknown_schemes import probe_unknown_schemes
-from omegadot.workers.harness_end.pool import outcome_of
 
 
 class Runner:

@@ -19,21 +19,40 @@ from omegadot.scenarios.quantities import LARGEST, SMALLEST, refuse
 EPS = float(np.finfo(float).eps)
 
 
-def volume(part: Part) -> float:
-    """The volume in m^3; zero for a point."""
+def _volume_and_squares(part: Part) -> tuple[float, tuple[float, float, float]]:
     match part:
         case Box():
-            return math.prod(part.size)
+            x, y, z = part.size
+            return x * y * z, (x * x / 12, y * y / 12, z * z / 12)
         case Cylinder():
-            return math.pi * part.radius**2 * part.length
+            r, h = part.radius, part.length
+            return math.pi * r**2 * h, (r**2 / 4, r**2 / 4, h**2 / 12)
         case Sphere():
-            return 4 / 3 * math.pi * part.radius**3
+            across = part.radius**2 / 5
+            return 4 / 3 * math.pi * part.radius**3, (across, across, across)
         case Ellipsoid():
-            return 4 / 3 * math.pi * math.prod(part.semi_axes)
+            x, y, z = part.semi_axes
+            return 4 / 3 * math.pi * (x * y * z), (x * x / 5, y * y / 5, z * z / 5)
         case Capsule():
-            return math.pi * part.radius**2 * (part.length + 4 / 3 * part.radius)
+            r, h = part.radius, part.length
+            middle = h / (h + 4 / 3 * r)  # the cylinder's share of the mass
+            caps = 1 - middle
+            across = (middle / 4 + caps / 5) * r * r
+            # the centre of a half ball lies 3/8 r beyond its flat face
+            along = middle * h * h / 12 + caps * (h * h / 4 + 3 / 8 * h * r + r * r / 5)
+            return math.pi * r**2 * (h + 4 / 3 * r), (across, across, along)
         case Point():
-            return 0.0
+            return 0.0, (0.0, 0.0, 0.0)
+
+
+def volume(part: Part) -> float:
+    """The volume in m^3; zero for a point."""
+    return _volume_and_squares(part)[0]
+
+
+def mean_squares(part: Part) -> tuple[float, float, float]:
+    """Mean x^2, y^2 and z^2 over the solid in m^2, part axes, about the part's centre."""
+    return _volume_and_squares(part)[1]
 
 
 def mass(part: Part) -> float:
@@ -42,33 +61,6 @@ def mass(part: Part) -> float:
         assert part.mass is not None  # the part was validated: one of the two is given
         return part.mass
     return part.density * volume(part)
-
-
-def mean_squares(part: Part) -> tuple[float, float, float]:
-    """Mean x^2, y^2 and z^2 over the solid in m^2, part axes, about the part's centre."""
-    match part:
-        case Box():
-            x, y, z = part.size
-            return x * x / 12, y * y / 12, z * z / 12
-        case Cylinder():
-            across = part.radius**2 / 4
-            return across, across, part.length**2 / 12
-        case Sphere():
-            across = part.radius**2 / 5
-            return across, across, across
-        case Ellipsoid():
-            x, y, z = part.semi_axes
-            return x * x / 5, y * y / 5, z * z / 5
-        case Capsule():
-            r, h = part.radius, part.length
-            middle = h / (h + 4 / 3 * r)  # the cylinder's share of the mass
-            caps = 1 - middle
-            across = (middle / 4 + caps / 5) * r * r
-            # the centre of a half ball lies 3/8 r beyond its flat face
-            along = middle * h * h / 12 + caps * (h * h / 4 + 3 / 8 * h * r + r * r / 5)
-            return across, across, along
-        case Point():
-            return 0.0, 0.0, 0.0
 
 
 def rotation_of(quaternion: tuple[float, float, float, float]) -> NDArray[np.float64]:

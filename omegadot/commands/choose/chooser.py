@@ -16,11 +16,10 @@ from omegadot.commands.choose.ruler import NoTruthError, Ruler
 from omegadot.commands.choose.spread import Spread
 from omegadot.commands.choose.timing import Timed, time_all
 from omegadot.gates.case import Case
-from omegadot.harness.engines import Engines
+from omegadot.harness.engines import Engines, outcome_of
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.reference_impl.system import Array
-from omegadot.workers.harness_end.pool import outcome_of
 from omegadot.workers.harness_end.process import Answer
 
 FACTORS = (0.5, 2.0)

@@ -16,7 +16,7 @@ from omegadot.commands.versions.product import Product
 from omegadot.commands.versions.release import version_of
 from omegadot.commands.versions.speed import ROUNDS, time_steps
 from omegadot.commands.versions.truths import Truths
-from omegadot.workers.harness_end.pool import outcome_of
+from omegadot.harness.engines import outcome_of
 from omegadot.workers.harness_end.process import WorkerProcess
 
 OWN = "given"
