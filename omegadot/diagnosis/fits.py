@@ -141,7 +141,8 @@ def constant_inertia(match: Match) -> str:
     Without any torque its size stays open, and is taken to be the requested one's.
     """
     w, w_dot = match.states.angular_velocity, match.found.angular
-    basis = _symmetric_basis()
+    (i, j), basis, six = np.triu_indices(3), np.zeros((6, 3, 3)), range(6)
+    basis[six, i, j] = basis[six, j, i] = 1.0  # of the symmetric tensors
     columns = [apply(one, w_dot) + cross(w, apply(one, w)) for one in basis]
     weight = 1.0 / match.angular_bound[:, None]
     lines = np.stack([np.ravel(column * weight) for column in columns], axis=-1)
@@ -164,14 +165,6 @@ def constant_inertia(match: Match) -> str:
     off = float(np.linalg.norm(tensor - requested, 2) / np.linalg.norm(requested, 2))
     text = f"the dynamics are those of another inertia, {100 * off:.2g} % off"
     return f"{text}: its moments are {_vector(moments)} kg m^2"
-
-
-def _symmetric_basis() -> Array:
-    pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-    basis = np.zeros((6, 3, 3))
-    for n, (i, j) in enumerate(pairs):
-        basis[n, i, j] = basis[n, j, i] = 1.0
-    return basis
 
 
 def difference_quotient(match: Match) -> str:

@@ -55,8 +55,7 @@ def engine_choices(
     added = adapters_named([*extra, *(engine for engine in wanted if engine not in names)])
     known |= added
     if not wanted:
-        chosen = added or known
-        return [EngineChoice(name, target) for name, target in {**known, **chosen}.items()]
+        return [EngineChoice(name, target) for name, target in known.items()]
     picked: dict[str, list[str]] = {}
     for given in names:
         name, _, integrator = given.partition(":")
