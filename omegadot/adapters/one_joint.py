@@ -1,5 +1,7 @@
 """What adapters share whose engine holds its one body on one joint: calls that go to the joint."""
 
+from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ class OneJointAdapter:
     """
 
     name: str
+    _engine: ModuleType
     _joint: Any = None
 
     def load(self, system: System) -> None:
@@ -42,6 +45,12 @@ class OneJointAdapter:
     def get_state(self) -> State:
         """The state by the engine's own kinematics, in the project's frames."""
         found: State = self._loaded().get_state()
+        return found
+
+    def native(self) -> dict[str, dict[str, str]]:
+        """Conventions as measured of the engine itself, and its defaults."""
+        found: dict[str, dict[str, str]]
+        found = import_module(f"omegadot.adapters.{self.name}.native").native(self._engine)
         return found
 
     def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:

@@ -25,8 +25,7 @@ def probe_unknown_schemes(
         if not any(run is not None and run.ok for run in runs.values()):
             continue
         probe = vanishing_step.probe_of(case.system, evaluation_states)
-        fields = {"states": probe.states, "timesteps": probe.timesteps}
-        answer = driver.request(case, "first_steps", integrator=integrator.name, **fields)
+        answer = driver.request(case, "first_steps", integrator=integrator.name, **vars(probe))
         result.first_steps[integrator.name] = (probe, answer)
         for sweep, run in runs.items():
             found = restart.restart_of(sweep)

@@ -80,13 +80,9 @@ class DartAdapter(OneJointAdapter):
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """`Skeleton.computeForwardDynamics` at n states."""
-        joint = self._loaded()
-        angular = np.empty_like(states.angular_velocity, dtype=float)
-        linear = np.empty_like(angular)
-        for n in range(len(angular)):
-            joint.set_state(states[n])
-            angular[n], linear[n] = joint.forward()
-        return Acceleration(angular, linear)
+        joint, count = self._loaded(), len(states.angular_velocity)
+        answers = np.array([joint.forward(states[n]) for n in range(count)])
+        return Acceleration(answers[:, 0], answers[:, 1])
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
@@ -105,9 +101,3 @@ class DartAdapter(OneJointAdapter):
         logged = joint.stepper.run(counts)
         seconds = perf_counter() - began
         return Trajectory(np.multiply(kept, timestep), joint.states(logged, len(kept)), seconds)
-
-    def native(self) -> dict[str, dict[str, str]]:
-        """Conventions as measured of the engine itself, and its defaults."""
-        from omegadot.adapters.dart.native import native
-
-        return native(self._engine)

@@ -40,7 +40,7 @@ class DartJoint:
             joint.setVelocities(np.linalg.solve(joint.getRelativeJacobian()[:3], omega))
             return
         origin = state.position - world_R_body @ self._com
-        joint.setTransform(self.model.transform(world_R_body, origin))
+        joint.setTransform(self.model.isometry(world_R_body, origin))
         velocity = state.linear_velocity @ world_R_body - cross(omega, self._com)
         joint.setSpatialVelocity(np.concatenate([omega, velocity]), self._frame, self._node)
 
@@ -73,8 +73,9 @@ class DartJoint:
         """Whether the joint's own coordinates are finite, and the squares of its velocities."""
         return bool(are_finite(self._joint.getPositions(), self._joint.getVelocities()))
 
-    def forward(self) -> tuple[Array, Array]:
+    def forward(self, state: State) -> tuple[Array, Array]:
         """omega-dot (3,), body, and the acceleration of the centre of mass (3,), world."""
+        self.set_state(state)
         if not self.is_finite():
             return np.full(3, np.nan), np.full(3, np.nan)
         self.stepper.push()

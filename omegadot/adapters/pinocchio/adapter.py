@@ -16,7 +16,7 @@ from omegadot.adapters.protocol import (
     Trajectory,
     UnsupportedError,
 )
-from omegadot.reference_impl.schemes import SCHEMES, Scheme
+from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, State, System
 
@@ -49,16 +49,6 @@ LOOPED = (
 )
 
 
-def _integrator(scheme: Scheme) -> Integrator:
-    return Integrator(
-        PREFIX + scheme.name,
-        scheme.name,
-        dict(scheme.orders),
-        note=NOTE,
-        coordinates="body-spatial",
-    )
-
-
 class PinocchioAdapter(OneJointAdapter):
     """Pinocchio 3.4 and later. Nothing in it spoils physics, so both setups are the same."""
 
@@ -72,10 +62,20 @@ class PinocchioAdapter(OneJointAdapter):
     @property
     def description(self) -> Description:
         """Pinocchio as it is installed."""
+        integrators = tuple(
+            Integrator(
+                PREFIX + name,
+                name,
+                dict(SCHEMES[name].orders),
+                note=NOTE,
+                coordinates="body-spatial",
+            )
+            for name in LOOPED
+        )
         return Description(
             name=self.name,
             version=str(self._engine.__version__),
-            integrators=tuple(_integrator(SCHEMES[name]) for name in LOOPED),
+            integrators=integrators,
             conventions=CONVENTIONS,
             features=ONE_BODY,
             licence="BSD-2-Clause",
@@ -104,9 +104,3 @@ class PinocchioAdapter(OneJointAdapter):
         q, v = joint.coordinates(initial)
         found = step_through(scheme, joint.motion, q, v, timestep, steps, every)
         return Trajectory(found.time, joint.states(found.q, found.v), found.seconds)
-
-    def native(self) -> dict[str, dict[str, str]]:
-        """Conventions as measured of the engine itself, and its defaults."""
-        from omegadot.adapters.pinocchio.native import native
-
-        return native(self._engine)
