@@ -5,7 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.fits import constant_inertia, difference_quotient, other_pivot, scaled_terms
+from omegadot.diagnosis.fits import (
+    constant_inertia,
+    difference_quotient,
+    other_pivot,
+    scaled_terms,
+    term_of,
+    with_term,
+)
 from omegadot.diagnosis.match import Match, only_where
 from omegadot.diagnosis.misreadings import OF_ANY_STATE
 from omegadot.diagnosis.model import mistaken_inertias
@@ -18,12 +25,11 @@ from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.loads import damping_torque, gravity_torque, weight
 from omegadot.reference_impl.motion import (
-    center_of_mass_acceleration,
     forward_dynamics,
     inverse_dynamics,
 )
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
-from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 
@@ -107,7 +113,7 @@ def _other_systems(match: Match) -> Iterator[tuple[str, Acceleration]]:
     for text, other in loads.items():
         yield text, forward_dynamics(replace(system, load=other), states)
     force = rotate_inverse(states.orientation, weight(system))
-    weight_moved = _with_torque(match, cross(-body.center_of_mass, force))
+    weight_moved = with_term(match, term_of(match, cross(-body.center_of_mass, force)))
     yield "gravity acts at the body's origin instead of the centre of mass", weight_moved
     yield "gravity is fixed to the body instead of the world", _gravity_in_body(match)
     centers = {
@@ -123,22 +129,14 @@ def _other_systems(match: Match) -> Iterator[tuple[str, Acceleration]]:
             yield f"in the dynamics, {text}", forward_dynamics(other_body, states)
 
 
-def _with_torque(match: Match, torque: Array) -> Acceleration:
-    """The true acceleration with one more torque, (n, 3) N m, body axes."""
-    angular = match.true.angular + apply(inverse(moving_inertia(match.system)), torque)
-    if match.system.load.pivot is None:
-        return Acceleration(angular, match.true.linear)
-    linear = center_of_mass_acceleration(match.system, match.states, angular)
-    return Acceleration(angular, linear)
-
-
 def _gravity_in_body(match: Match) -> Acceleration:
     system, q = match.system, match.states.orientation
     g = system.load.gravity
     if system.load.pivot is None:
         return Acceleration(match.true.angular, match.true.linear - g + rotate(q, g))
     r = system.body.center_of_mass - system.load.pivot
-    return _with_torque(match, cross(r, system.body.mass * (g - rotate_inverse(q, g))))
+    moment = cross(r, system.body.mass * (g - rotate_inverse(q, g)))
+    return with_term(match, term_of(match, moment))
 
 
 def _inverse(system: System, states: State, requested: Acceleration, torque: Array) -> list[str]:

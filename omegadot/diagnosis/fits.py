@@ -1,6 +1,5 @@
 """Causes with a number in them, fitted to an engine's accelerations and then held to its bounds."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +21,7 @@ MOST_TRIES = 6
 NOTHING = Acceleration(np.zeros(3), np.zeros(3))
 
 
-def _term(match: Match, moment: Array, gravity: float) -> Acceleration:
+def term_of(match: Match, moment: Array, gravity: float = 0.0) -> Acceleration:
     """A torque's share of the acceleration, and that of a free body's weight."""
     angular = apply(inverse(moving_inertia(match.system)), moment)
     if match.system.load.pivot is None:
@@ -32,15 +31,19 @@ def _term(match: Match, moment: Array, gravity: float) -> Acceleration:
     return Acceleration(angular, turned - still)
 
 
+def with_term(match: Match, term: Acceleration, k: float = 1.0) -> Acceleration:
+    """The true acceleration with k times one more term."""
+    true = match.true
+    return Acceleration(true.angular + k * term.angular, true.linear + k * term.linear)
+
+
 def _fit(match: Match, term: Acceleration) -> float | None:
     """The k with ``found = true + k term``, each state weighted by its bound; None if none fits."""
-    true = match.true
-    rest, line = _apart(match, match.found, true), _apart(match, term, NOTHING)
+    rest, line = _apart(match, match.found, match.true), _apart(match, term, NOTHING)
     if not np.any(line):
         return None
     k = float(rest @ line / (line @ line))
-    added = Acceleration(true.angular + k * term.angular, true.linear + k * term.linear)
-    return k if match.fits(added, SLACK) else None
+    return k if match.fits(with_term(match, term, k), SLACK) else None
 
 
 def _as_text(what: str, factor: float, phrases: dict[int, str]) -> str:
@@ -64,12 +67,12 @@ def scaled_terms(match: Match) -> str:
     }
     phrases = {0: "is missing", -1: "has the wrong sign", 2: "counts twice"}
     for what, (moment, gravity) in terms.items():
-        k = _fit(match, _term(match, moment, gravity))
+        k = _fit(match, term_of(match, moment, gravity))
         if k is not None:
             over_mass = abs((1.0 + k) * float(system.body.mass) - 1.0) < 1e-9
             text = _as_text(what, 1.0 + k, phrases)
             return f"{text}: it is divided by the mass" if over_mass else text
-    k = _fit(match, _term(match, -w, 0.0))
+    k = _fit(match, term_of(match, -w))
     if k is not None:
         return f"a damping of {k:.3g} N m s/rad acts that was not requested"
     return _gravity_vector(match)
@@ -78,29 +81,23 @@ def scaled_terms(match: Match) -> str:
 def _gravity_vector(match: Match) -> str:
     """Another constant gravity than the one requested, by least squares."""
     requested = match.system.load.gravity
-
-    def there(gravity: Array) -> Acceleration:
-        return _under(match, gravity=gravity)
-
-    gravity = requested + _change(match, there, requested, 1.0)
-    if not match.fits(there(gravity), SLACK):
+    gravity = requested + _change(match, "gravity", requested, 1.0)
+    if not match.fits(_under(match, "gravity", gravity), SLACK):
         return ""
     return f"gravity is {_vector(gravity)} m/s^2, where {_vector(requested)} was requested"
 
 
-def _under(match: Match, **load: Array) -> Acceleration:
-    """The equation under a load that is another in parts."""
-    other = replace(match.system, load=replace(match.system.load, **load))
+def _under(match: Match, part: str, vector: Array) -> Acceleration:
+    """The equation under a load that is another in one part."""
+    other = replace(match.system, load=replace(match.system.load, **{part: vector}))
     return forward_dynamics(other, match.states)
 
 
-def _change(
-    match: Match, there: Callable[[Array], Acceleration], point: Array, delta: float
-) -> Array:
-    """By how much to change a vector (3,) that sets the equation: a step of Gauss-Newton."""
-    here = there(point)
+def _change(match: Match, part: str, vector: Array, delta: float) -> Array:
+    """By how much to change one part (3,) of the load: a step of Gauss-Newton."""
+    here, ends = _under(match, part, vector), vector + delta * np.eye(3)
     rest = _apart(match, match.found, here)
-    lines = [_apart(match, there(point + delta * unit), here) / delta for unit in np.eye(3)]
+    lines = [_apart(match, _under(match, part, end), here) / delta for end in ends]
     change: Array = np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
     return change
 
@@ -110,17 +107,13 @@ def other_pivot(match: Match) -> str:
     requested = match.system.load.pivot
     if requested is None:
         return ""
-
-    def there(pivot: Array) -> Acceleration:
-        return _under(match, pivot=pivot)
-
     delta = 1e-6 * float(norm(match.system.body.center_of_mass - requested))
     pivot = np.array(requested, dtype=float)
     for _ in range(MOST_TRIES):
-        if match.fits(there(pivot), SLACK):
+        if match.fits(_under(match, "pivot", pivot), SLACK):
             off = _vector(pivot - requested)
             return f"the pivot lies at {_vector(pivot)} m, {off} m from where it was requested"
-        pivot = pivot + _change(match, there, pivot, delta)
+        pivot = pivot + _change(match, "pivot", pivot, delta)
     return ""
 
 
