@@ -82,20 +82,13 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class PendingTruth:
-    """What a case is judged by. The truth is a string where there is none: the reason."""
-
-    truth: Future[Truth | str]
-    companions: Future[dict[tuple[SchemeKey, float], Companion]]
-
-
-@dataclass(frozen=True)
 class PendingCase:
-    """The futures of one case."""
+    """The futures of one case. The truth is a string where there is none: the reason."""
 
     case: Case
-    known: PendingTruth
-    results: dict[str, Future[CaseResult]]
+    truth: Future[Truth | str]
+    companions: Future[dict[tuple[SchemeKey, float], Companion]]
+    results: dict[str, Future[CaseResult]] = field(default_factory=dict)
 
 
 def tasks_of(engine: Engine, case: Case) -> int:

@@ -18,12 +18,11 @@ from omegadot.harness.outcome import (
     JudgedCase,
     Outcome,
     PendingCase,
-    PendingTruth,
     RunRequest,
     tasks_of,
 )
 from omegadot.harness.plan import Engine
-from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine, refined_sweeps
+from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
 from omegadot.harness.truth_requests import Companions, case_companions, case_truth, reference_runs
 from omegadot.harness.unknown_schemes import probe_unknown_schemes
 
@@ -83,8 +82,9 @@ class Runner:
             found: Companions = outcome_of(companions)
             truth.companions.update(found)
 
-    def _examine(self, engine: Engine, case: Case, pending: PendingTruth) -> CaseResult:
-        truth, driver = pending.truth.result(), self.engines.drivers[engine.name]
+    def _examine(self, engine: Engine, pending: PendingCase) -> CaseResult:
+        case, truth = pending.case, pending.truth.result()
+        driver = self.engines.drivers[engine.name]
         if isinstance(truth, str):
             self.on_advance(tasks_of(engine, case))
             return CaseResult()
@@ -104,47 +104,41 @@ class Runner:
         exact = self.engines.drivers["exact"]
         truth = self.engines.submit("exact", lambda: case_truth(exact, case))
         companions = self._submit_companions(case, truth.result, self._keys(case), case.sweeps)
-        known = PendingTruth(truth, companions)
-        results = {
-            engine.name: self.engines.submit(
-                engine.name, partial(self._examine, engine, case, known)
-            )
-            for engine in self.engines.started
-        }
-        return PendingCase(case, known, results)
+        pending = PendingCase(case, truth, companions)
+        for engine in self.engines.started:
+            call = partial(self._examine, engine, pending)
+            pending.results[engine.name] = self.engines.submit(engine.name, call)
+        return pending
 
     def judge(self, pending: PendingCase, finer: dict[str, Refinements]) -> JudgedCase:
         """Wait for one case and send it through the gates. finer: refinements, by engine."""
-        case, truth = pending.case, outcome_of(pending.known.truth)
+        case, truth = pending.case, outcome_of(pending.truth)
         results = {name: outcome_of(future) for name, future in pending.results.items()}
         if isinstance(truth, str):
             unjudged = [EngineCase(e, results[e.name], [], []) for e in self.engines.started]
             return JudgedCase(case, None, truth, unjudged)
-        companions = outcome_of(pending.known.companions)
+        companions = outcome_of(pending.companions)
         truth.companions.update(companions)
-        refined = [sweep for known in finer.values() for sweep in refined_sweeps(known)]
+        refined = [
+            sweep for own in finer.values() for runs in own.values() for sweep, _ in runs.values()
+        ]
         unique = {sweep.timestep: sweep for sweep in (*case.sweeps, *refined)}
         self._add_companions(case, truth, list(results.values()), list(unique.values()))
         judged = [
-            self._judge_engine(case, truth, engine, results[engine.name], finer)
-            for engine in self.engines.started
+            self._judge_engine(case, truth, e, results[e.name], finer.get(e.name, {}))
+            for e in self.engines.started
         ]
         return JudgedCase(case, truth, "", judged)
 
     def _judge_engine(
-        self,
-        case: Case,
-        truth: Truth,
-        engine: Engine,
-        result: CaseResult,
-        finer: dict[str, Refinements],
+        self, case: Case, truth: Truth, engine: Engine, result: CaseResult, finer: Refinements
     ) -> EngineCase:
         runs: list[JudgedRun] = []
         # A run that blew up is measured like any other: what overflows is infinitely far off.
         with np.errstate(over="ignore", invalid="ignore"):
             shared = shared_rows(case, evaluation_states_of(case, truth, self.request.seed), result)
             if engine.name != "exact":
-                runs = judge_case(truth, case, result, finer.get(engine.name, {}))
+                runs = judge_case(truth, case, result, finer)
         return EngineCase(engine, result, shared, runs)
 
     def _resolve(self, pending: PendingCase, judged: JudgedCase) -> JudgedCase:
