@@ -4,7 +4,6 @@ from omegadot.scenarios.errors import ScenarioError
 from omegadot.scenarios.loader import (
     ScenarioLike,
     builtin_names,
-    find_scenario,
     load_builtin,
     load_scenario,
     scenario,
@@ -17,7 +16,6 @@ __all__ = [
     "ScenarioError",
     "ScenarioLike",
     "builtin_names",
-    "find_scenario",
     "load_builtin",
     "load_scenario",
     "scenario",

@@ -45,20 +45,6 @@ def load_builtin(name: str) -> Scenario:
     return load_scenario(BUILTIN / f"{name}.toml")
 
 
-def find_scenario(name_or_path: str) -> Scenario:
-    """The built-in of this name; failing that, the scenario in the file of this path.
-
-    A name without a slash, a dot or a file of its name is taken for a mistyped built-in.
-    Raises ScenarioError.
-    """
-    if name_or_path in builtin_names():
-        return load_builtin(name_or_path)
-    if re.search(r"[/\\.]", name_or_path) or os.path.lexists(name_or_path):
-        return load_scenario(name_or_path)
-    found = "neither a built-in scenario nor a file"
-    raise ScenarioError(describe(name_or_path), None, found, _other_name(name_or_path))
-
-
 def scenario_of(data: Mapping[str, Any], file: str) -> Scenario:
     """The scenario in a dict as `Scenario.to_dict` or a TOML parser gives it.
 
@@ -88,18 +74,24 @@ def scenario(given: ScenarioLike | None = None, /, **changes: Any) -> Scenario:
     """
     if isinstance(given, Scenario) and not changes:
         return given
-    if given is None:
-        return _built({}, changes)
-    if isinstance(given, Mapping):
-        return _built(given, changes)
+    if given is None or isinstance(given, Mapping):
+        return _built(given or {}, changes)
     found = given if isinstance(given, Scenario) else _named(given)
     return _built(found.to_dict(), changes) if changes else found
 
 
 def _named(given: object) -> Scenario:
+    """The built-in of a name; failing that, the scenario in the file of a path.
+
+    A name without a slash, a dot or a file of its name is taken for a mistyped built-in.
+    """
     if isinstance(given, str):
-        return find_scenario(given)
-    if isinstance(given, os.PathLike):
+        if given in builtin_names():
+            return load_builtin(given)
+        if not re.search(r"[/\\.]", given) and not os.path.lexists(given):
+            found = "neither a built-in scenario nor a file"
+            raise ScenarioError(describe(given), None, found, _other_name(given))
+    if isinstance(given, str | os.PathLike):
         return load_scenario(given)
     found = Phrase(f"of type {type(given).__name__}")
     advice = "give a built-in's name, a path, a Scenario or a mapping of its tables"
