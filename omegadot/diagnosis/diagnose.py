@@ -46,7 +46,6 @@ def causes_of(judged: JudgedCase, found: EngineCase, seed: int) -> Cause:
     return cause
 
 
-@np.errstate(all="ignore")  # a wrong engine may answer with any numbers
 def diagnose(
     case: Case,
     truth: Truth,
@@ -59,20 +58,23 @@ def diagnose(
     A wrong model or equation is looked for first, and explains the runs after it: these are looked
     at by themselves only where neither gate failed.
     """
-    failed = {
-        row.gate for row in shared_rows(case, evaluation_states, result) if row.verdict == "fail"
-    }
-    found: list[str] = []
-    if "model" in failed:
-        found += model.causes(case, evaluation_states, result)
-    if "equation" in failed and not found:
-        found += equation.causes(case, evaluation_states, result)
-    if not failed:
-        for run in _shortest_failed(runs):
-            found = _of_run(case, truth, result, run)
-            if found:
-                break
-    return list(dict.fromkeys(found))
+    with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+        failed = {
+            row.gate
+            for row in shared_rows(case, evaluation_states, result)
+            if row.verdict == "fail"
+        }
+        found: list[str] = []
+        if "model" in failed:
+            found += model.causes(case, evaluation_states, result)
+        if "equation" in failed and not found:
+            found += equation.causes(case, evaluation_states, result)
+        if not failed:
+            for run in _shortest_failed(runs):
+                found = _of_run(case, truth, result, run)
+                if found:
+                    break
+        return list(dict.fromkeys(found))
 
 
 def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list[str]:

@@ -46,13 +46,6 @@ def _fit(match: Match, term: Acceleration) -> float | None:
     return k if match.fits(with_term(match, term, k), SLACK) else None
 
 
-def _as_text(what: str, factor: float, phrases: dict[int, str]) -> str:
-    nearest = round(factor)
-    if abs(factor - nearest) < 1e-9 and nearest in phrases:
-        return f"{what} {phrases[nearest]}"
-    return f"{what} is scaled by {factor:.6g}"
-
-
 def scaled_terms(match: Match) -> str:
     """One of the equation's terms times a number, or a damping that was not requested."""
     system, states = match.system, match.states
@@ -69,9 +62,11 @@ def scaled_terms(match: Match) -> str:
     for what, (moment, gravity) in terms.items():
         k = _fit(match, term_of(match, moment, gravity))
         if k is not None:
-            over_mass = abs((1.0 + k) * float(system.body.mass) - 1.0) < 1e-9
-            text = _as_text(what, 1.0 + k, phrases)
-            return f"{text}: it is divided by the mass" if over_mass else text
+            factor, whole = 1.0 + k, round(1.0 + k)
+            scaled = f"is scaled by {factor:.6g}"
+            text = phrases.get(whole, scaled) if abs(factor - whole) < 1e-9 else scaled
+            over_mass = abs(factor * float(system.body.mass) - 1.0) < 1e-9
+            return f"{what} {text}" + ": it is divided by the mass" * over_mass
     k = _fit(match, term_of(match, -w))
     if k is not None:
         return f"a damping of {k:.3g} N m s/rad acts that was not requested"

@@ -31,10 +31,9 @@ def sound_intervals(reported: ReportedRun) -> NDArray[np.bool_]:
     ends = reported.stepped_on(reported.state[:count])
     then, bounds = reported.state[1 : count + 1], reported.bounds
     sound = np.ones(count, bool)
-    with np.errstate(all="ignore"):
-        for channel in CHANNELS:
-            apart = reported.truth.yardstick.distance(channel, then, ends)
-            sound &= apart <= SLACK * bounds[channel][1 : count + 1]
+    for channel in CHANNELS:
+        apart = reported.truth.yardstick.distance(channel, then, ends)
+        sound &= apart <= SLACK * bounds[channel][1 : count + 1]
     return sound
 
 
@@ -60,15 +59,11 @@ def intervals(reported: ReportedRun) -> str:
     if len(wrong) == 1 and first == 0:
         return f"only the first steps are wrong: from t = {time[1]:.4g} s on, the run is sound"
     if len(wrong) <= 2 and last - first <= 1 and last + 1 < len(sound):
-        return _one_sample(reported, last)
+        pairs = (values[last] == values[last - 1] for values in vars(reported.state).values())
+        twice = last > 0 and all(bool(np.all(pair)) for pair in pairs)
+        what = "is the one before, reported twice" if twice else "alone does not belong to the run"
+        return f"the sample at t = {time[last]:.4g} s {what}"
     if first > 0 and len(wrong) == len(sound) - first:
         return f"the run is sound until t = {time[first]:.4g} s, and every step after it is wrong"
     where = only_where(reported.state[: len(sound)], sound)
     return f"steps are wrong only where {where}" if where else ""
-
-
-def _one_sample(reported: ReportedRun, sample: int) -> str:
-    pairs = (values[sample] == values[sample - 1] for values in vars(reported.state).values())
-    if sample > 0 and all(bool(np.all(pair)) for pair in pairs):
-        return f"the sample at t = {reported.time[sample]:.4g} s is the one before, reported twice"
-    return f"the sample at t = {reported.time[sample]:.4g} s alone does not belong to the run"

@@ -53,11 +53,10 @@ class ReportedRun:
     ) -> bool:
         """Whether two trajectories are the same within rounding, at these samples."""
         bounds, yardstick = self.bounds, self.truth.yardstick
-        with np.errstate(all="ignore"):
-            return all(
-                bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))
-                for c in CHANNELS
-            )
+        return all(
+            bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))
+            for c in CHANNELS
+        )
 
     def stepped(
         self,

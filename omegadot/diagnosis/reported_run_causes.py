@@ -112,8 +112,7 @@ def _start(reported: ReportedRun) -> str:
 def _rescaled(reported: ReportedRun) -> str:
     """Omega of the right direction and of a size that keeps something constant."""
     w, own = reported.state.angular_velocity, reported.own.angular_velocity
-    with np.errstate(all="ignore"):
-        sized = w * (norm(own) / norm(w))[:, None]
+    sized = w * (norm(own) / norm(w))[:, None]
     if not reported.agrees(replace(reported.state, angular_velocity=sized), reported.own):
         return ""
     system = reported.case.system

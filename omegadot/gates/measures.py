@@ -51,22 +51,19 @@ class Yardstick:
         """
         # An engine that has gone astray may be where squares overflow: that far away is infinite.
         with np.errstate(over="ignore", invalid="ignore"):
-            return self._distance(channel, one, other)
-
-    def _distance(self, channel: str, one: State, other: State) -> Array:
-        if channel == "omega":
-            return np.asarray(norm(one.angular_velocity - other.angular_velocity) / self.rate)
-        if channel == "attitude":
-            length = np.abs(norm(one.orientation) - norm(other.orientation))
-            return np.maximum(attitude_angle(one.orientation, other.orientation), length)
-        if channel == "position":
-            return norm(one.position - other.position)
-        if channel == "energy":
-            gap = np.abs(total_energy(self.system, one) - total_energy(self.system, other))
-        else:
-            momentum = angular_momentum if channel == "angular_momentum" else linear_momentum
-            gap = norm(momentum(self.system, one) - momentum(self.system, other))
-        return np.asarray(gap / self.sizes[channel])
+            if channel == "omega":
+                return np.asarray(norm(one.angular_velocity - other.angular_velocity) / self.rate)
+            if channel == "attitude":
+                length = np.abs(norm(one.orientation) - norm(other.orientation))
+                return np.maximum(attitude_angle(one.orientation, other.orientation), length)
+            if channel == "position":
+                return norm(one.position - other.position)
+            if channel == "energy":
+                gap = np.abs(total_energy(self.system, one) - total_energy(self.system, other))
+            else:
+                momentum = angular_momentum if channel == "angular_momentum" else linear_momentum
+                gap = norm(momentum(self.system, one) - momentum(self.system, other))
+            return np.asarray(gap / self.sizes[channel])
 
     def round_off(self, timestep: float, steps: Array, growth: Array) -> dict[str, Array]:
         """(n,) per channel: how far rounding may take a sound engine after so many steps.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.likeness import Likeness, like_schemes, likeness
+from omegadot.gates.likeness import ROTATION, Likeness, like_schemes, likeness
 from omegadot.gates.measured_run import CHANNELS, Declared, MeasuredRun, evidence_of, order_of
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
@@ -32,10 +32,6 @@ class Seen:
     reason: str
 
 
-def _saturated(measured: MeasuredRun) -> bool:
-    return any(not np.max(measured.error[c]) <= SATURATED for c in ("omega", "attitude"))
-
-
 def _clear(measured: MeasuredRun, channel: str) -> bool:
     """Whether an error stands clear of rounding, the engine's and that of the exact answer."""
     floor = float(np.max(measured.floor.get(channel, 0.0)))
@@ -49,7 +45,9 @@ def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, Seen]:
     It can be judged where the two finest slopes agree, of errors that stand clear of rounding and
     come from runs that do not saturate.
     """
-    unsaturated = [measured for measured in measured_runs if not _saturated(measured)]
+    unsaturated = [
+        m for m in measured_runs if all(np.max(m.error[c]) <= SATURATED for c in ROTATION)
+    ]
     saturate = len(unsaturated) < len(measured_runs)
     found = {}
     for channel in CHANNELS:

@@ -96,17 +96,10 @@ class PinocchioJoint:
     def coordinates(self, state: State) -> tuple[Array, Array]:
         """Q and v of the joint, (..., 7) and (..., 6) of a free flyer, (..., 4) and (..., 3)."""
         q, v = to_coordinates(self.system, state, "body-spatial")
-        return _scalar_last(q), np.array(v, float)
+        scalar_last = (q[..., :-4], q[..., -3:], q[..., -4:-3])
+        return np.concatenate(scalar_last, axis=-1, dtype=float), np.array(v, float)
 
     def states(self, q: Array, v: Array) -> State:
         """The states of joint coordinates: the inverse of `coordinates`."""
-        return from_coordinates(self.system, _scalar_first(q), v, "body-spatial")
-
-
-def _scalar_last(q: Array) -> Array:
-    """(position, w, x, y, z) to Pinocchio's (position, x, y, z, w)."""
-    return np.concatenate((q[..., :-4], q[..., -3:], q[..., -4:-3]), axis=-1, dtype=float)
-
-
-def _scalar_first(q: Array) -> Array:
-    return np.concatenate((q[..., :-4], q[..., -1:], q[..., -4:-1]), axis=-1)
+        scalar_first = np.concatenate((q[..., :-4], q[..., -1:], q[..., -4:-1]), axis=-1)
+        return from_coordinates(self.system, scalar_first, v, "body-spatial")
