@@ -49,9 +49,9 @@ class OneJointAdapter:
 
     def native(self) -> dict[str, dict[str, str]]:
         """Conventions as measured of the engine itself, and its defaults."""
-        found: dict[str, dict[str, str]]
-        found = import_module(f"omegadot.adapters.{self.name}.native").native(self._engine)
-        return found
+        native = import_module(f"omegadot.adapters.{self.name}.native")
+        conventions, defaults = native.conventions(self._engine), native.defaults(self._engine)
+        return {"conventions": conventions, "defaults": defaults}
 
     def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
         """The engine's own inverse dynamics at n states."""

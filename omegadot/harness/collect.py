@@ -169,9 +169,7 @@ def metrics_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
         for row in found
     ]
     columns = {name: f.dtype for name, f in schema.METRICS.items()}
-    return (
-        pl.DataFrame(rows, schema=columns, orient="row") if rows else schema.empty(schema.METRICS)
-    )
+    return pl.DataFrame(rows, schema=columns, orient="row")
 
 
 def _samples(labels: Labels, time: Array, state: State, omega_dot: Array) -> pl.DataFrame:

@@ -11,16 +11,13 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State
 
 
-def is_unknown(integrator: Integrator) -> bool:
-    """Whether the reference has no run to hold an integrator's steps against."""
-    return integrator.scheme not in SCHEMES and integrator.knob == "timestep"
-
-
 def probe_unknown_schemes(
     driver: Driver, case: Case, evaluation_states: EvaluationStates, result: CaseResult
 ) -> None:
     """Have unknown schemes take first steps, and begin their runs again, into `result`."""
-    for integrator in filter(is_unknown, result.integrators):
+    for integrator in result.integrators:
+        if integrator.scheme in SCHEMES or integrator.knob != "timestep":
+            continue  # the reference has a run to hold its steps against
         runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue

@@ -23,8 +23,10 @@ def read_bytes(path: Path, file: str, kind: str, largest: int) -> bytes:
     try:
         status = path.stat()
         # a pipe would be waited for, a device never ends
-        regular = stat.S_ISREG(status.st_mode)
-        content = _first(path, largest + 1) if regular else b""
+        regular, content = stat.S_ISREG(status.st_mode), b""
+        if regular:
+            with path.open("rb") as stream:
+                content = stream.read(largest + 1)
     except FileNotFoundError:
         raise ScenarioError(file, None, "missing", advice) from None
     except OSError as error:
@@ -39,11 +41,6 @@ def read_bytes(path: Path, file: str, kind: str, largest: int) -> bytes:
         found = f"a file of {max(status.st_size, len(content)):,} bytes"
         raise ScenarioError(file, None, found, f"give one of at most {largest:,} bytes")
     return content
-
-
-def _first(path: Path, count: int) -> bytes:
-    with path.open("rb") as stream:
-        return stream.read(count)
 
 
 def read_toml(path: Path, file: str) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """Conventions and defaults of the installed DART, measured on it, not read in its documents."""
 
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -9,11 +8,6 @@ from omegadot.adapters.native_axes import GIVEN, TURNED, axes_observed, describe
 from omegadot.reference_impl.system import Array
 
 SMALL_TURN = 5e-4  # rad, below the 1e-3 rad where some versions expand a turn
-
-
-def native(dart: ModuleType) -> dict[str, dict[str, str]]:
-    """Conventions as measured, and defaults as they come, name to value."""
-    return {"conventions": _conventions(dart), "defaults": _defaults(dart)}
 
 
 def _body(dart: Any, kind: str) -> tuple[Any, Any, Any]:
@@ -37,7 +31,8 @@ def _seen(dart: Any, kind: str, first: int) -> tuple[Array, Array]:
     return node.getAngularVelocity(world, world), node.getLinearVelocity(world, world)
 
 
-def _conventions(dart: Any) -> dict[str, str]:
+def conventions(dart: Any) -> dict[str, str]:
+    """As measured, name to value."""
     angular, linear = _seen(dart, "FreeJoint", 0)
     angular_first = np.any(angular) and not np.any(linear)
     turning = 0 if angular_first else 3
@@ -68,7 +63,8 @@ def _after_overflow(dart: Any) -> str:
     return "not finite" if not np.all(np.isfinite(found)) else described(found)
 
 
-def _defaults(dart: Any) -> dict[str, str]:
+def defaults(dart: Any) -> dict[str, str]:
+    """As they come, name to value."""
     world = dart.simulation.World()
     _skeleton, joint, node = _body(dart, "FreeJoint")
     inertia = node.getInertia()

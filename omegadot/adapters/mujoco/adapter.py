@@ -104,9 +104,9 @@ class MujocoAdapter:
 
     def native(self) -> dict[str, dict[str, str]]:
         """Conventions as measured of the engine itself, and its defaults."""
-        from omegadot.adapters.mujoco.native import native
+        from omegadot.adapters.mujoco.native import conventions, defaults
 
-        return native(self._mujoco)
+        return {"conventions": conventions(self._mujoco), "defaults": defaults(self._mujoco)}
 
     def model(self) -> tuple[Body, ...]:
         """Mass, centre of mass and inertia, read back from the compiled model."""

@@ -93,11 +93,8 @@ def defects(probe: Probe, step: Stepper) -> dict[str, Defect]:
             for channel, square in squares.items()
         }
 
-    points = sweep(measure)
-    return {channel: _defect(points[channel], probe) for channel in CHANNELS}
-
-
-def _defect(points: list[Point], probe: Probe) -> Defect:
-    named = probe.timestep(LONGEST) / 2**NAMED_HALVINGS
-    values = [point.error for point in points if point.timestep == named]
-    return Defect(values[0] if values else None, observe(points))
+    found, named = {}, longest / 2**NAMED_HALVINGS
+    for channel, points in sweep(measure).items():
+        value = next((point.error for point in points if point.timestep == named), None)
+        found[channel] = Defect(value, observe(points))
+    return found
