@@ -14,10 +14,9 @@ from functools import cache
 import numpy as np
 
 from omegadot.diagnosis import equation, model
-from omegadot.diagnosis.pieces import intervals, one_field
 from omegadot.diagnosis.reported_run import reported_run
 from omegadot.diagnosis.reported_run_causes import CAUSES_REPORTED, begin_apart
-from omegadot.diagnosis.reported_sample_causes import omega_dot_late
+from omegadot.diagnosis.reported_sample_causes import intervals, omega_dot_late, one_field
 from omegadot.diagnosis.stepping import CAUSES_OF_STEPPING, MOST_STEPS
 from omegadot.gates.case import Case
 from omegadot.gates.equation import EvaluationStates, evaluation_states_of

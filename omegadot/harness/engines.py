@@ -77,9 +77,6 @@ class Engines:
             self.drivers[name] = Driver(engine, process, self._in_turn, self._stopping)
             if name in self._requested:
                 self.started.append(engine)
-        self._require_truth()
-
-    def _require_truth(self) -> None:
         for choice, answer in self.missing:
             if choice.name in TRUTH:
                 raise NoTruthError(

@@ -100,11 +100,11 @@ def body_from(message: dict[str, Any]) -> Body:
 
 def description_of(message: dict[str, Any]) -> Description:
     """The Description that a packed one holds."""
-    fields = dict(message)
-    fields["integrators"] = tuple(Integrator(**item) for item in fields["integrators"])
-    fields["features"] = frozenset(fields["features"])
-    for name in ("conventions", "switched_off", "links"):
-        fields[name] = tuple(fields[name])
+    fields: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value for key, value in message.items()
+    }
+    fields["integrators"] = tuple(Integrator(**item) for item in message["integrators"])
+    fields["features"] = frozenset(message["features"])
     return Description(**fields)
 
 

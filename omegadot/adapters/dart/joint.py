@@ -46,8 +46,7 @@ class DartJoint:
 
     def get_state(self) -> State:
         """The body node's state in the project's frames; NaN where DART's own is not finite."""
-        found = self.states([self._joint.getPositions(), self._joint.getVelocities()], 1)
-        return found[0]
+        return self.states([self._joint.getPositions(), self._joint.getVelocities()], 1)[0]
 
     def states(self, logged: list[Array], count: int) -> State:
         """The states, `count` of them, at joint positions and velocities logged in turns.

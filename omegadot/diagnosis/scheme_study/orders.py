@@ -65,10 +65,8 @@ def observe(points: Iterable[Point]) -> Observed:
 
 def _settled(slopes: Sequence[float], spread: float) -> int:
     """How many slopes, from the finest on, spread by no more than this."""
-    count = 0
-    while count < len(slopes) and np.ptp(slopes[: count + 1]) <= spread:
-        count += 1
-    return count
+    counts = range(len(slopes))
+    return next((n for n in counts if np.ptp(slopes[: n + 1]) > spread), len(slopes))
 
 
 def _decided(points: Sequence[Point]) -> bool:

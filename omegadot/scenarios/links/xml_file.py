@@ -56,7 +56,9 @@ def read_text(path: Path, file: str) -> str:
     Raises ScenarioError.
     """
     content = read_bytes(path, file, "URDF, MJCF or SDF", LARGEST_FILE)
-    text = _DECLARATION.sub(_blank, decoded(content), count=1)
+    text = decoded(content)
+    if found := _DECLARATION.match(text):  # its line ends stay, so that lines keep their numbers
+        text = "\n" * found[0].count("\n") + text[found.end() :]
     return _without_comments(text)
 
 
@@ -97,11 +99,6 @@ def _without_comments(text: str) -> str:
                 pieces += [text[kept : markup.start()], lines]
                 kept = position
     return "".join([*pieces, text[kept:]])
-
-
-def _blank(found: re.Match[str]) -> str:
-    """Line ends alone, so that the lines keep their numbers."""
-    return "\n" * found[0].count("\n")
 
 
 def decoded(content: bytes) -> str:

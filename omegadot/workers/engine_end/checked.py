@@ -10,13 +10,11 @@ from omegadot.reference_impl.system import Acceleration, Array, Body, State
 
 Shape = tuple[int, ...]
 Arrays = TypeVar("Arrays", bound=State | Acceleration | Body)
+_V: Shape = (3,)
 SHAPES: dict[type, dict[str, Shape]] = {
-    State: {
-        **{"orientation": (4,), "angular_velocity": (3,)},
-        **{"position": (3,), "linear_velocity": (3,)},
-    },
-    Acceleration: {"angular": (3,), "linear": (3,)},
-    Body: {"mass": (), "center_of_mass": (3,), "inertia": (3, 3)},
+    State: {"orientation": (4,), "angular_velocity": _V, "position": _V, "linear_velocity": _V},
+    Acceleration: {"angular": _V, "linear": _V},
+    Body: {"mass": (), "center_of_mass": _V, "inertia": (3, 3)},
 }
 CHANNELS = get_args(Channel)
 
