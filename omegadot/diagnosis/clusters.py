@@ -7,12 +7,12 @@ or its centre of mass, turn alike.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.gates.case import Case, Sweep
+from omegadot.gates.case import Sweep
 from omegadot.gates.likeness import ROTATION, likeness
 from omegadot.gates.scales import norm
 from omegadot.gates.truth import Truth
@@ -116,25 +116,22 @@ def _named(group: list[_MeasuredRun], schemes: list[_MeasuredRun], rate: float) 
     return sorted(agreeing, key=lambda name: -declared[name])
 
 
-def clusters_of(case: Case, truth: Truth, engines: Sequence[EngineCase]) -> list[Cluster]:
-    """The clusters of one case, step by step; a run that nothing else equals is one by itself."""
-    found, rate = [], truth.yardstick.rate
-    with np.errstate(all="ignore"):
-        for sweep in case.sweeps:
-            schemes = _schemes(truth, sweep)
-            for group in _grouped(_runs(truth, engines, sweep), rate):
-                names = tuple(run.name for run in group)
-                equal = _named(group, schemes, rate)
-                scheme, also = next(iter(equal), None), tuple(equal[1:])
-                found.append(Cluster(case.name, sweep.timestep, scheme, names, also))
-    return found
-
-
 def clusters_of_run(cases: Iterable[JudgedCase]) -> list[Cluster]:
-    """The clusters of every case that has an exact trajectory to be measured by."""
-    return [
-        cluster
-        for judged in cases
-        if judged.truth is not None
-        for cluster in clusters_of(judged.case, judged.truth, judged.engines)
-    ]
+    """The clusters of every case that has an exact trajectory to be measured by, step by step.
+
+    A run that nothing else equals is one by itself.
+    """
+    with np.errstate(all="ignore"):
+        return [cluster for judged in cases for cluster in _clusters(judged)]
+
+
+def _clusters(judged: JudgedCase) -> Iterator[Cluster]:
+    truth = judged.truth
+    if truth is None:
+        return
+    for sweep in judged.case.sweeps:
+        schemes, rate = _schemes(truth, sweep), truth.yardstick.rate
+        for group in _grouped(_runs(truth, judged.engines, sweep), rate):
+            names, equal = tuple(run.name for run in group), _named(group, schemes, rate)
+            scheme, also = next(iter(equal), None), tuple(equal[1:])
+            yield Cluster(judged.case.name, sweep.timestep, scheme, names, also)
