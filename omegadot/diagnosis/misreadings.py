@@ -62,8 +62,11 @@ NOT_UNIT = Misreading(
 )
 
 
-def of_origin(system: System) -> tuple[Misreading, ...]:
-    """Position or velocity reported at the body's origin instead of the centre of mass."""
+def misreadings(system: System) -> tuple[Misreading, ...]:
+    """All of them, for what comes out of an engine.
+
+    Position or velocity may be reported at the body's origin instead of the centre of mass.
+    """
 
     def meant(state: State) -> State:
         return at_point(state, system.body.center_of_mass)
@@ -76,13 +79,9 @@ def of_origin(system: System) -> tuple[Misreading, ...]:
 
     at = "looks like that of the body's origin, not of the centre of mass"
     both = f"position and linear velocity {at}".replace("looks", "look").replace("that", "those")
-    return (
+    of_origin = (
         Misreading(f"the position {at}", position),
         Misreading(f"the linear velocity {at}", velocity),
         Misreading(both, meant),
     )
-
-
-def misreadings(system: System) -> tuple[Misreading, ...]:
-    """All of them, for what comes out of an engine."""
-    return (*OF_ANY_STATE, *of_origin(system), NOT_UNIT)
+    return (*OF_ANY_STATE, *of_origin, NOT_UNIT)

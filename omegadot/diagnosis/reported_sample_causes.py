@@ -18,7 +18,7 @@ from omegadot.gates.scales import angular_size, norm
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import turn_in_body
-from omegadot.reference_impl.system import Array
+from omegadot.reference_impl.system import State
 
 MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
 # One interval's rounding is within the bound of its end; its start is rounded, too.
@@ -37,29 +37,24 @@ def not_unit(reported: ReportedRun) -> str:
     length = norm(reported.state.orientation)[:, None]
     off = float(np.max(np.abs(length - 1.0)))
     places = {"position": reported.own.position, "linear_velocity": reported.own.linear_velocity}
-    unit = replace(reported.state, orientation=reported.state.orientation / length, **places)
-    if reported.agrees(replace(reported.state, **places), reported.own) or not reported.agrees(
-        unit, reported.own
-    ):
+    longer = replace(reported.state, **places)
+    unit = replace(longer, orientation=reported.state.orientation / length)
+    if reported.agrees(longer, reported.own) or not reported.agrees(unit, reported.own):
         return ""
     return f"the quaternion is not of unit length in the run: it is off by up to {off:.1e}"
 
 
 def digits_reported(reported: ReportedRun) -> str:
-    """Every number of the run is one of a few decimal digits."""
-    numbers = np.concatenate([np.ravel(values) for values in vars(reported.state).values()])
-    if not np.all(np.isfinite(numbers)):
-        return ""
-    digits = _digits(numbers)
-    own = np.concatenate([np.ravel(values) for values in vars(reported.own).values()])
-    if digits > MOST_DIGITS or _digits(own) <= digits:
+    """Every number of the run is one of a few decimal digits; all are finite."""
+    digits = _digits(reported.state)
+    if digits > MOST_DIGITS or _digits(reported.own) <= digits:
         return ""
     return f"the numbers of the run have {digits} digits: they went through text"
 
 
-def _digits(numbers: Array) -> int:
-    """How many significant digits determine all of these numbers."""
-    needed = 1
+def _digits(state: State) -> int:
+    """How many significant digits determine all numbers of these states."""
+    numbers, needed = np.concatenate([np.ravel(values) for values in vars(state).values()]), 1
     for number in numbers.tolist():
         while needed < MOST_DIGITS + 2 and float(f"{number:.{needed}g}") != number:
             needed += 1
@@ -72,17 +67,13 @@ def half_step(reported: ReportedRun) -> str:
     q, w = reported.own.orientation, reported.own.angular_velocity
     w_dot = forward_dynamics(reported.case.system, reported.own).angular
     for sign, when in ((-0.5, "before"), (0.5, "after")):
-        turned = _but_for_the_start(q, turn_in_body(q, w, sign * h))
+        turned = np.concatenate((q[:1], turn_in_body(q, w, sign * h)[1:]))
         if reported.agrees(reported.state, replace(reported.own, orientation=turned)):
             return f"the attitude reported is that of half a step {when}"
-        moved = _but_for_the_start(w, w + sign * h * w_dot)
+        moved = np.concatenate((w[:1], (w + sign * h * w_dot)[1:]))
         if reported.agrees(reported.state, replace(reported.own, angular_velocity=moved)):
             return f"omega is reported as of half a step {when}"
     return ""
-
-
-def _but_for_the_start(right: Array, wrong: Array) -> Array:
-    return np.concatenate([right[:1], wrong[1:]])
 
 
 def omega_dot_late(reported: ReportedRun, result: CaseResult) -> str:

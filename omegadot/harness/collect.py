@@ -60,19 +60,25 @@ def _entry(
     return {**labels, **own}
 
 
-def _judged_entry(
-    labels: Labels, found: EngineCase, judged: JudgedRun, cause: Cause, diagnosed: set[Any]
+def _answered_entry(
+    labels: Labels, found: EngineCase, outcome: str, reason: str, rows: Iterable[Row], why: str
 ) -> dict[str, Any]:
-    """A task that ran, or whose run failed; a failure before it counts where it ran well.
-
-    Where a gate fails, the likeliest cause comes first among its reasons, if there is one.
-    diagnosed: the scenarios and integrators of the engine for which causes were looked for.
-    """
-    outcome, reason = judged.outcome, judged.reason
+    """A task that ran, or whose run failed; a failure before it counts where it ran well."""
     earlier = found.result.first_failure()
     if outcome == "ok" and earlier is not None:
         outcome, reason = earlier.outcome, earlier.reason
-    entry = _entry(labels, outcome, reason, [*found.shared, *judged.rows], judged.why)
+    return _entry(labels, outcome, reason, [*found.shared, *rows], why)
+
+
+def _judged_entry(
+    labels: Labels, found: EngineCase, judged: JudgedRun, cause: Cause, diagnosed: set[Any]
+) -> dict[str, Any]:
+    """Where a gate fails, the likeliest cause comes first among its reasons, if there is one.
+
+    diagnosed: the scenarios and integrators of the engine for which causes were looked for.
+    """
+    outcome, reason = judged.outcome, judged.reason
+    entry = _answered_entry(labels, found, outcome, reason, judged.rows, judged.why)
     entry["scheme"] = judged.integrator.scheme
     key, likeliest = (labels["scenario"], labels["integrator"]), ""
     if "fail" in entry["gates"].values() and (key in diagnosed or len(diagnosed) < MOST_CAUSES):
@@ -81,16 +87,6 @@ def _judged_entry(
     if likeliest:
         entry["why"] = f"likely cause: {likeliest}" + (f" ({judged.why})" if judged.why else "")
     return entry
-
-
-def _exact_entry(labels: Labels, case: JudgedCase, found: EngineCase) -> dict[str, Any]:
-    assert case.truth is not None
-    failure = found.result.first_failure()
-    outcome, reason = (failure.outcome, failure.reason) if failure else ("ok", "")
-    rows = [*found.shared, *exact_rows(case.case, case.truth)]
-    return _entry(
-        labels, outcome, reason, rows, f"the exact solution itself, by {case.truth.source}"
-    )
 
 
 def _unjudged_entries(
@@ -122,7 +118,9 @@ def tasks_of_run(
             if case.truth is None:
                 entries += _unjudged_entries(label, case, found)
             elif found.engine.name == "exact":
-                entries.append(_exact_entry(label(case.truth.source), case, found))
+                source, rows = case.truth.source, exact_rows(case.case, case.truth)
+                why = f"the exact solution itself, by {source}"
+                entries.append(_answered_entry(label(source), found, "ok", "", rows, why))
             else:
                 cause, known = causes_of(case, found, seed), diagnosed[found.engine.name]
                 for run in found.runs:
