@@ -32,9 +32,8 @@ def causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) 
         found += _center(case.system.body, held)
     if "inertia" in failed:
         found += _inertia(case, held)
-    first = evaluation_states.random[0]
     # Of a wrong body the state follows: where it is pivoted, where its centre of mass is.
-    return found or _state(case, first, State(**result.model.result["state"]))
+    return found or _state(case, evaluation_states.random[0], State(**result.model.result["state"]))
 
 
 def _center(requested: Body, held: Body) -> list[str]:

@@ -40,8 +40,7 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
         answer = result.model.result
         for body in answer["bodies"]:
             rows += model.body_rows(case, body_from(body))
-        first = evaluation_states.random[0]
-        rows += model.state_rows(case, first, State(**answer["state"]))
+        rows += model.state_rows(case, evaluation_states.random[0], State(**answer["state"]))
     named = {"residual": (result.forward, evaluation_states.random)}
     named["residual_on_path"] = (result.path, evaluation_states.path)
     for metric, (found, states) in named.items():

@@ -100,9 +100,8 @@ def body_from(message: dict[str, Any]) -> Body:
 
 def description_of(message: dict[str, Any]) -> Description:
     """The Description that a packed one holds."""
-    fields: dict[str, Any] = {
-        key: tuple(value) if isinstance(value, list) else value for key, value in message.items()
-    }
+    lists = {key: tuple(value) for key, value in message.items() if isinstance(value, list)}
+    fields: dict[str, Any] = {**message, **lists}
     fields["integrators"] = tuple(Integrator(**item) for item in message["integrators"])
     fields["features"] = frozenset(message["features"])
     return Description(**fields)
