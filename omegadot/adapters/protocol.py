@@ -21,6 +21,13 @@ Channel = Literal[
     "model",
     "time",
 ]
+ONE_BODY = frozenset(
+    {
+        *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
+        *("forward_dynamics", "inverse_dynamics"),
+    }
+)
+"""The features of an engine that takes a single body under every load."""
 
 
 class UnsupportedError(Exception):

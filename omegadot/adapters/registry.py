@@ -33,23 +33,18 @@ def registered() -> dict[str, str]:
     return {**found, **BUILT_IN}
 
 
-def _module_of_file(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    if spec is None or spec.loader is None:
-        raise AdapterError(f"{path}: not a Python file; give FILE.py:Class or module:Class.")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module
-    spec.loader.exec_module(module)
-    return module
-
-
 def _import_target(module_name: str) -> ModuleType:
     if not module_name.endswith(".py"):
         return importlib.import_module(module_name)
     path = Path(module_name)
     if not path.is_file():
         raise AdapterError(f"{module_name}: no such adapter file; check the path.")
-    return _module_of_file(path)
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None  # as the file's name ends with .py
+    assert spec.loader is not None
+    sys.modules[path.stem] = module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def build_adapter(target: str, setup: Setup = "physics") -> Adapter:

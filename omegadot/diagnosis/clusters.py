@@ -9,19 +9,19 @@ or its centre of mass, turn alike.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.gates.case import Case, Sweep
+from omegadot.gates.case import Sweep
 from omegadot.gates.likeness import ROTATION, likeness
-from omegadot.gates.measured_run import scheme_key
+from omegadot.gates.scales import norm
 from omegadot.gates.truth import Truth
 from omegadot.harness.outcome import EngineCase, JudgedCase
 from omegadot.reference_impl.rotations import attitude_angle
-from omegadot.reference_impl.system import Array
-from omegadot.workers.wire import state_from
+from omegadot.reference_impl.stepping import stack
+from omegadot.reference_impl.system import Array, State
 
 # The reference is not counted: its schemes give the clusters their names.
 NOT_COUNTED = ("exact", "reference")
@@ -49,8 +49,7 @@ class _MeasuredRun:
 
     name: str
     scheme: str | None
-    orientation: Array
-    omega: Array
+    state: State
     bound: Array
 
 
@@ -58,9 +57,9 @@ def _alike(one: _MeasuredRun, others: Sequence[_MeasuredRun], rate: float) -> li
     """Whether a run agrees with each of the others, to the sum of both bounds."""
     if not others:
         return []
-    turns = attitude_angle(one.orientation, np.array([other.orientation for other in others]))
-    gaps = one.omega - np.array([other.omega for other in others])
-    spins = np.sqrt(np.add.reduce(gaps * gaps, -1)) / rate
+    many = stack([other.state for other in others])
+    turns = attitude_angle(one.state.orientation, many.orientation)
+    spins = norm(one.state.angular_velocity - many.angular_velocity) / rate
     found = []
     for turn, spin, other in zip(turns, spins, others, strict=True):
         bounds = dict.fromkeys(ROTATION, one.bound + other.bound)
@@ -79,36 +78,22 @@ def _runs(truth: Truth, engines: Iterable[EngineCase], sweep: Sweep) -> list[_Me
         for judged in engine.runs:
             if judged.sweep != sweep or judged.outcome != "ok" or engine.engine.name in NOT_COUNTED:
                 continue
-            answer = engine.result.runs[judged.integrator.name, sweep.timestep]
+            integrator = judged.integrator
+            answer = engine.result.runs[integrator.name, sweep.timestep]
             if len(answer.result["time"]) != len(sweep.times):
                 continue
-            state = state_from(answer.result["state"])
-            key = scheme_key(judged.integrator, truth.yardstick.system)
-            companion = truth.companions.get((key, sweep.timestep)) if key else None
-            growth = companion.growth if companion else truth.samples(sweep).growth
-            found.append(
-                _MeasuredRun(
-                    f"{engine.engine.name}:{judged.integrator.name}",
-                    judged.integrator.scheme,
-                    state.orientation,
-                    state.angular_velocity,
-                    _bound(truth, sweep, growth),
-                )
-            )
+            own = truth.companion(integrator, sweep)
+            bound = _bound(truth, sweep, own.growth if own else truth.growth[truth.rows(sweep)])
+            name, state = f"{engine.engine.name}:{integrator.name}", State(**answer.result["state"])
+            found.append(_MeasuredRun(name, integrator.scheme, state, bound))
     return found
 
 
 def _schemes(truth: Truth, sweep: Sweep) -> list[_MeasuredRun]:
     """The reference's runs with this step."""
     return [
-        _MeasuredRun(
-            key.scheme,
-            key.scheme,
-            companion.state.orientation,
-            companion.state.angular_velocity,
-            _bound(truth, sweep, companion.growth),
-        )
-        for (key, timestep), companion in truth.companions.items()
+        _MeasuredRun(key.scheme, key.scheme, own.state, _bound(truth, sweep, own.growth))
+        for (key, timestep), own in truth.companions.items()
         if timestep == sweep.timestep
     ]
 
@@ -133,25 +118,22 @@ def _named(group: list[_MeasuredRun], schemes: list[_MeasuredRun], rate: float) 
     return sorted(agreeing, key=lambda name: -declared[name])
 
 
-def clusters_of(case: Case, truth: Truth, engines: Sequence[EngineCase]) -> list[Cluster]:
-    """The clusters of one case, step by step; a run that nothing else equals is one by itself."""
-    found, rate = [], truth.yardstick.rate
-    with np.errstate(all="ignore"):
-        for sweep in case.sweeps:
-            schemes = _schemes(truth, sweep)
-            for group in _grouped(_runs(truth, engines, sweep), rate):
-                names = tuple(run.name for run in group)
-                equal = _named(group, schemes, rate)
-                scheme, also = next(iter(equal), None), tuple(equal[1:])
-                found.append(Cluster(case.name, sweep.timestep, scheme, names, also))
-    return found
-
-
 def clusters_of_run(cases: Iterable[JudgedCase]) -> list[Cluster]:
-    """The clusters of every case that has an exact trajectory to be measured by."""
-    return [
-        cluster
-        for judged in cases
-        if judged.truth is not None
-        for cluster in clusters_of(judged.case, judged.truth, judged.engines)
-    ]
+    """The clusters of every case that has an exact trajectory to be measured by, step by step.
+
+    A run that nothing else equals is one by itself.
+    """
+    with np.errstate(all="ignore"):
+        return [cluster for judged in cases for cluster in _clusters(judged)]
+
+
+def _clusters(judged: JudgedCase) -> Iterator[Cluster]:
+    truth = judged.truth
+    if truth is None:
+        return
+    for sweep in judged.case.sweeps:
+        schemes, rate = _schemes(truth, sweep), truth.yardstick.rate
+        for group in _grouped(_runs(truth, judged.engines, sweep), rate):
+            names, equal = tuple(run.name for run in group), _named(group, schemes, rate)
+            scheme, also = next(iter(equal), None), tuple(equal[1:])
+            yield Cluster(judged.case.name, sweep.timestep, scheme, names, also)

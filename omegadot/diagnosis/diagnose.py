@@ -15,20 +15,16 @@ from functools import cache
 
 import numpy as np
 
-from omegadot.diagnosis import (
-    equation,
-    model,
-    pieces,
-    reported_run_causes,
-    stepping,
-)
+from omegadot.diagnosis import equation, model
 from omegadot.diagnosis.reported_run import reported_run
-from omegadot.diagnosis.reported_sample_causes import omega_dot_late
+from omegadot.diagnosis.reported_run_causes import CAUSES_REPORTED, begin_apart
+from omegadot.diagnosis.reported_sample_causes import intervals, omega_dot_late, one_field
+from omegadot.diagnosis.stepping import CAUSES_OF_STEPPING, MOST_STEPS
 from omegadot.gates.case import Case
-from omegadot.gates.evaluation_states import EvaluationStates, evaluation_states_of
+from omegadot.gates.equation import EvaluationStates, evaluation_states_of
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun, shared_rows
+from omegadot.harness.judge import JudgedRun, is_finite, shared_rows
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
 
 
@@ -64,30 +60,22 @@ def diagnose(
     at by themselves only where neither gate failed.
     """
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-        return _causes(case, truth, evaluation_states, result, runs)
-
-
-def _causes(
-    case: Case,
-    truth: Truth,
-    evaluation_states: EvaluationStates,
-    result: CaseResult,
-    runs: Sequence[JudgedRun],
-) -> list[str]:
-    failed = {
-        row.gate for row in shared_rows(case, evaluation_states, result) if row.verdict == "fail"
-    }
-    found: list[str] = []
-    if "model" in failed:
-        found += model.causes(case, evaluation_states, result)
-    if "equation" in failed and not found:
-        found += equation.causes(case, evaluation_states, result)
-    if not failed:
-        for run in _shortest_failed(runs):
-            found = _of_run(case, truth, result, run)
-            if found:
-                break
-    return list(dict.fromkeys(found))
+        failed = {
+            row.gate
+            for row in shared_rows(case, evaluation_states, result)
+            if row.verdict == "fail"
+        }
+        found: list[str] = []
+        if "model" in failed:
+            found += model.causes(case, evaluation_states, result)
+        if "equation" in failed and not found:
+            found += equation.causes(case, evaluation_states, result)
+        if not failed:
+            for run in _shortest_failed(runs):
+                found = _of_run(case, truth, result, run)
+                if found:
+                    break
+        return list(dict.fromkeys(found))
 
 
 def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list[str]:
@@ -99,11 +87,17 @@ def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> lis
     if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
         late = "" if reported is None else omega_dot_late(reported, result)
         return [late] if late else []
-    found = reported_run_causes.causes(case, truth, result, run)
-    found = found or stepping.causes(case, truth, result, run)
-    if found or reported is None or len(reported.time) != len(reported.sweep.times):
-        return found
-    return pieces.causes(reported)
+    if reported is None:
+        return []
+    if begin_apart(reported, result):
+        return ["runs begin at other states than the one given: one is left over from a run before"]
+    tried = list(CAUSES_REPORTED)
+    if len(reported.time) == len(reported.sweep.times):
+        if is_finite(reported.state) and reported.sweep.steps <= MOST_STEPS:
+            tried += CAUSES_OF_STEPPING
+        tried += (intervals, one_field)
+    sentence = next(filter(None, (cause(reported) for cause in tried)), None)
+    return [sentence] if sentence else []
 
 
 def _shortest_failed(runs: Sequence[JudgedRun]) -> list[JudgedRun]:

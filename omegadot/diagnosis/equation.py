@@ -7,19 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.conditions import only_where
 from omegadot.diagnosis.fits import (
     constant_inertia,
     difference_quotient,
     other_pivot,
     scaled_terms,
+    term_of,
+    with_term,
 )
-from omegadot.diagnosis.match import Match
+from omegadot.diagnosis.match import Match, only_where
 from omegadot.diagnosis.misreadings import OF_ANY_STATE
-from omegadot.diagnosis.tensors import mistaken_inertias
+from omegadot.diagnosis.model import mistaken_inertias
 from omegadot.gates.case import Case
-from omegadot.gates.equation import BOUND, forward_rows, inverse_rows
-from omegadot.gates.evaluation_states import EvaluationStates
+from omegadot.gates.equation import BOUND, EvaluationStates, forward_rows, inverse_rows
 from omegadot.gates.scales import norm, torque_size
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.cross_product import cross
@@ -27,14 +27,12 @@ from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.loads import damping_torque, gravity_torque, weight
 from omegadot.reference_impl.motion import (
-    center_of_mass_acceleration,
     forward_dynamics,
     inverse_dynamics,
 )
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
-from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
-from omegadot.workers.wire import acceleration_from
 
 
 def causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[str]:
@@ -42,7 +40,7 @@ def causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) 
     system, states = case.system, evaluation_states.random
     if not result.forward.ok:
         return []
-    found = acceleration_from(result.forward.result)
+    found = Acceleration(**result.forward.result)
     rows = forward_rows(system, states, found, "residual")
     if any(row.verdict == "fail" for row in rows):
         return _forward(Match(system, states, found))
@@ -116,7 +114,8 @@ def _other_systems(match: Match) -> Iterator[tuple[str, Acceleration]]:
         loads["the pivot has the wrong sign"] = replace(load, pivot=-load.pivot)
     for text, other in loads.items():
         yield text, forward_dynamics(replace(system, load=other), states)
-    weight_moved = _gravity_at_origin(match)
+    force = rotate_inverse(states.orientation, weight(system))
+    weight_moved = with_term(match, term_of(match, cross(-body.center_of_mass, force)))
     yield "gravity acts at the body's origin instead of the centre of mass", weight_moved
     yield "gravity is fixed to the body instead of the world", _gravity_in_body(match)
     centers = {
@@ -132,27 +131,14 @@ def _other_systems(match: Match) -> Iterator[tuple[str, Acceleration]]:
             yield f"in the dynamics, {text}", forward_dynamics(other_body, states)
 
 
-def with_torque(match: Match, torque: Array) -> Acceleration:
-    """The true acceleration with one more torque, (n, 3) N m, body axes."""
-    angular = match.true.angular + apply(inverse(moving_inertia(match.system)), torque)
-    if match.system.load.pivot is None:
-        return Acceleration(angular, match.true.linear)
-    linear = center_of_mass_acceleration(match.system, match.states, angular)
-    return Acceleration(angular, linear)
-
-
-def _gravity_at_origin(match: Match) -> Acceleration:
-    force = rotate_inverse(match.states.orientation, weight(match.system))
-    return with_torque(match, cross(-match.system.body.center_of_mass, force))
-
-
 def _gravity_in_body(match: Match) -> Acceleration:
     system, q = match.system, match.states.orientation
     g = system.load.gravity
     if system.load.pivot is None:
         return Acceleration(match.true.angular, match.true.linear - g + rotate(q, g))
     r = system.body.center_of_mass - system.load.pivot
-    return with_torque(match, cross(r, system.body.mass * (g - rotate_inverse(q, g))))
+    moment = cross(r, system.body.mass * (g - rotate_inverse(q, g)))
+    return with_term(match, term_of(match, moment))
 
 
 def _inverse(system: System, states: State, requested: Acceleration, torque: Array) -> list[str]:

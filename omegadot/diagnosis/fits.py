@@ -11,16 +11,8 @@ from omegadot.gates.scales import norm
 from omegadot.reference_impl.body_motion import attitude_motion
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.loads import (
-    applied_torque,
-    damping_torque,
-    gravity_torque,
-    torque,
-)
-from omegadot.reference_impl.motion import (
-    center_of_mass_acceleration,
-    forward_dynamics,
-)
+from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque, torque
+from omegadot.reference_impl.motion import center_of_mass_acceleration, forward_dynamics
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array
@@ -28,9 +20,10 @@ from omegadot.reference_impl.system import Acceleration, Array
 # A fitted number has rounding of its own, of about as many terms as there are components.
 SLACK = 4.0
 MOST_TRIES = 6
+NOTHING = Acceleration(np.zeros(3), np.zeros(3))
 
 
-def _term(match: Match, moment: Array, gravity: float) -> Acceleration:
+def term_of(match: Match, moment: Array, gravity: float = 0.0) -> Acceleration:
     """A torque's share of the acceleration, and that of a free body's weight."""
     angular = apply(inverse(moving_inertia(match.system)), moment)
     if match.system.load.pivot is None:
@@ -40,22 +33,19 @@ def _term(match: Match, moment: Array, gravity: float) -> Acceleration:
     return Acceleration(angular, turned - still)
 
 
+def with_term(match: Match, term: Acceleration, k: float = 1.0) -> Acceleration:
+    """The true acceleration with k times one more term."""
+    true = match.true
+    return Acceleration(true.angular + k * term.angular, true.linear + k * term.linear)
+
+
 def _fit(match: Match, term: Acceleration) -> float | None:
     """The k with ``found = true + k term``, each state weighted by its bound; None if none fits."""
-    true = match.true
-    rest, line = _weighted(match, _difference(match.found, true)), _weighted(match, term)
+    rest, line = _apart(match, match.found, match.true), _apart(match, term, NOTHING)
     if not np.any(line):
         return None
     k = float(rest @ line / (line @ line))
-    added = Acceleration(true.angular + k * term.angular, true.linear + k * term.linear)
-    return k if match.fits(added, SLACK) else None
-
-
-def _as_text(what: str, factor: float, phrases: dict[int, str]) -> str:
-    nearest = round(factor)
-    if abs(factor - nearest) < 1e-9 and nearest in phrases:
-        return f"{what} {phrases[nearest]}"
-    return f"{what} is scaled by {factor:.6g}"
+    return k if match.fits(with_term(match, term, k), SLACK) else None
 
 
 def scaled_terms(match: Match) -> str:
@@ -72,12 +62,14 @@ def scaled_terms(match: Match) -> str:
     }
     phrases = {0: "is missing", -1: "has the wrong sign", 2: "counts twice"}
     for what, (moment, gravity) in terms.items():
-        k = _fit(match, _term(match, moment, gravity))
+        k = _fit(match, term_of(match, moment, gravity))
         if k is not None:
-            over_mass = abs((1.0 + k) * float(system.body.mass) - 1.0) < 1e-9
-            text = _as_text(what, 1.0 + k, phrases)
-            return f"{text}: it is divided by the mass" if over_mass else text
-    k = _fit(match, _term(match, -w, 0.0))
+            factor, whole = 1.0 + k, round(1.0 + k)
+            scaled = f"is scaled by {factor:.6g}"
+            text = phrases.get(whole, scaled) if abs(factor - whole) < 1e-9 else scaled
+            over_mass = abs(factor * float(system.body.mass) - 1.0) < 1e-9
+            return f"{what} {text}" + ": it is divided by the mass" * over_mass
+    k = _fit(match, term_of(match, -w))
     if k is not None:
         return f"a damping of {k:.3g} N m s/rad acts that was not requested"
     return _gravity_vector(match)
@@ -85,60 +77,48 @@ def scaled_terms(match: Match) -> str:
 
 def _gravity_vector(match: Match) -> str:
     """Another constant gravity than the one requested, by least squares."""
-    system, states = match.system, match.states
-    rest = _weighted(match, _difference(match.found, match.true))
-    lines = []
-    for unit in np.eye(3):
-        other = replace(system, load=replace(system.load, gravity=system.load.gravity + unit))
-        more = _difference(forward_dynamics(other, states), match.true)
-        lines.append(_weighted(match, more))
-    change = np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
-    requested = system.load.gravity
-    other = replace(system, load=replace(system.load, gravity=requested + change))
-    if not match.fits(forward_dynamics(other, states), SLACK):
+    requested = match.system.load.gravity
+    gravity = requested + _change(match, "gravity", requested, 1.0)
+    if not match.fits(_under(match, "gravity", gravity), SLACK):
         return ""
-    return (
-        f"gravity is {_vector(requested + change)} m/s^2, where {_vector(requested)} was requested"
-    )
+    return f"gravity is {_vector(gravity)} m/s^2, where {_vector(requested)} was requested"
+
+
+def _under(match: Match, part: str, vector: Array) -> Acceleration:
+    """The equation under a load that is another in one part."""
+    other = replace(match.system, load=replace(match.system.load, **{part: vector}))
+    return forward_dynamics(other, match.states)
+
+
+def _change(match: Match, part: str, vector: Array, delta: float) -> Array:
+    """By how much to change one part (3,) of the load: a step of Gauss-Newton."""
+    here, ends = _under(match, part, vector), vector + delta * np.eye(3)
+    rest = _apart(match, match.found, here)
+    lines = [_apart(match, _under(match, part, end), here) / delta for end in ends]
+    change: Array = np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
+    return change
 
 
 def other_pivot(match: Match) -> str:
     """Another pivot than the one requested, by Gauss-Newton."""
-    system, requested = match.system, match.system.load.pivot
+    requested = match.system.load.pivot
     if requested is None:
         return ""
-
-    def there(pivot: Array) -> Acceleration:
-        load = replace(system.load, pivot=pivot)
-        return forward_dynamics(replace(system, load=load), match.states)
-
-    delta = 1e-6 * float(norm(system.body.center_of_mass - requested))
+    delta = 1e-6 * float(norm(match.system.body.center_of_mass - requested))
     pivot = np.array(requested, dtype=float)
     for _ in range(MOST_TRIES):
-        here = there(pivot)
-        if match.fits(here, SLACK):
+        if match.fits(_under(match, "pivot", pivot), SLACK):
             off = _vector(pivot - requested)
             return f"the pivot lies at {_vector(pivot)} m, {off} m from where it was requested"
-        rest = _weighted(match, _difference(match.found, here))
-        lines = [
-            _weighted(match, _difference(there(pivot + delta * unit), here)) / delta
-            for unit in np.eye(3)
-        ]
-        pivot = pivot + np.linalg.lstsq(np.stack(lines, axis=-1), rest, rcond=None)[0]
+        pivot = pivot + _change(match, "pivot", pivot, delta)
     return ""
 
 
-def _difference(one: Acceleration, other: Acceleration) -> Acceleration:
-    return Acceleration(one.angular - other.angular, one.linear - other.linear)
-
-
-def _weighted(match: Match, acceleration: Acceleration) -> Array:
-    """All components in one row, each state's in parts of its bound."""
-    parts = (
-        acceleration.angular / match.angular_bound[:, None],
-        acceleration.linear / match.linear_bound[:, None],
-    )
-    return np.concatenate([np.ravel(part) for part in parts])
+def _apart(match: Match, one: Acceleration, other: Acceleration) -> Array:
+    """All components of a difference in one row, each state's in parts of its bound."""
+    angular = (one.angular - other.angular) / match.angular_bound[:, None]
+    linear = (one.linear - other.linear) / match.linear_bound[:, None]
+    return np.concatenate([np.ravel(angular), np.ravel(linear)])
 
 
 def _vector(values: Array) -> str:
@@ -151,7 +131,8 @@ def constant_inertia(match: Match) -> str:
     Without any torque its size stays open, and is taken to be the requested one's.
     """
     w, w_dot = match.states.angular_velocity, match.found.angular
-    basis = _symmetric_basis()
+    (i, j), basis, six = np.triu_indices(3), np.zeros((6, 3, 3)), range(6)
+    basis[six, i, j] = basis[six, j, i] = 1.0  # of the symmetric tensors
     columns = [apply(one, w_dot) + cross(w, apply(one, w)) for one in basis]
     weight = 1.0 / match.angular_bound[:, None]
     lines = np.stack([np.ravel(column * weight) for column in columns], axis=-1)
@@ -174,14 +155,6 @@ def constant_inertia(match: Match) -> str:
     off = float(np.linalg.norm(tensor - requested, 2) / np.linalg.norm(requested, 2))
     text = f"the dynamics are those of another inertia, {100 * off:.2g} % off"
     return f"{text}: its moments are {_vector(moments)} kg m^2"
-
-
-def _symmetric_basis() -> Array:
-    pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-    basis = np.zeros((6, 3, 3))
-    for n, (i, j) in enumerate(pairs):
-        basis[n, i, j] = basis[n, j, i] = 1.0
-    return basis
 
 
 def difference_quotient(match: Match) -> str:

@@ -1,4 +1,4 @@
-"""Whether an engine's accelerations are those of a candidate equation."""
+"""Whether an engine's accelerations are those of a candidate equation, and at which states."""
 
 from __future__ import annotations
 
@@ -8,7 +8,11 @@ from numpy.typing import NDArray
 from omegadot.gates.equation import BOUND
 from omegadot.gates.scales import BodyScale, body_scale, linear_size, norm, torque_size
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+# So many states on either side at least: the odds that chance sorts them are then below 1 in 20.
+LEAST = 3
 
 
 class Match:
@@ -41,3 +45,20 @@ class Match:
             np.all(angular <= slack * np.maximum(self.angular_bound, own_angular))
             and np.all(linear <= slack * np.maximum(self.linear_bound, own_linear))
         )
+
+
+def only_where(states: State, sound: NDArray[np.bool_]) -> str:
+    """The condition that holds at every wrong state and at no sound one; "" where none does."""
+    if np.count_nonzero(sound) < LEAST or np.count_nonzero(~sound) < LEAST:
+        return ""
+    w, q = states.angular_velocity, normalize(states.orientation)
+    turned = 2.0 * np.arccos(np.clip(np.abs(q[:, 0]), 0.0, 1.0))
+    features = {"|omega|": (norm(w), "rad/s"), "the angle from the identity": (turned, "rad")}
+    features |= {f"omega_{axis}": (w[:, k], "rad/s") for k, axis in enumerate("xyz")}
+    for text, (values, unit) in features.items():
+        low, high = values[sound], values[~sound]
+        for term, a, b in (("above", low, high), ("below", high, low)):
+            if np.max(a) < np.min(b):
+                between = f"{np.max(a):.4g} to {np.min(b):.4g} {unit}"
+                return f"{text} is {term} a limit that lies at {between}"
+    return ""

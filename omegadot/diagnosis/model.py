@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import permutations, product
+
 import numpy as np
 
 from omegadot.diagnosis.misreadings import misreadings
-from omegadot.diagnosis.tensors import mistaken_inertias
 from omegadot.gates.case import Case
-from omegadot.gates.evaluation_states import EvaluationStates
+from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.model import body_rows, state_rows
 from omegadot.gates.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
 from omegadot.harness.drive import CaseResult
-from omegadot.reference_impl.system import Array, Body, State
-from omegadot.workers.wire import body_from, state_from
+from omegadot.reference_impl.inertia import parallel_axis
+from omegadot.reference_impl.system import Array, Body, State, System
+from omegadot.workers.wire import body_from
 
 
 def causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[str]:
@@ -25,19 +28,14 @@ def causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) 
     failed = {row.metric for row in body_rows(case, held) if row.verdict == "fail"}
     found = []
     if "mass" in failed:
-        found += _mass(case.system.body, held)
+        factor = float(held.mass) / float(case.system.body.mass)
+        found.append(f"the mass is {factor:.6g} times what was requested")
     if "center_of_mass" in failed:
         found += _center(case.system.body, held)
     if "inertia" in failed:
         found += _inertia(case, held)
-    first = State(*(values[0] for values in vars(evaluation_states.random).values()))
     # Of a wrong body the state follows: where it is pivoted, where its centre of mass is.
-    return found or _state(case, first, state_from(result.model.result["state"]))
-
-
-def _mass(requested: Body, held: Body) -> list[str]:
-    factor = float(held.mass) / float(requested.mass)
-    return [f"the mass is {factor:.6g} times what was requested"]
+    return found or _state(case, evaluation_states.random[0], State(**result.model.result["state"]))
 
 
 def _center(requested: Body, held: Body) -> list[str]:
@@ -84,3 +82,32 @@ def _state(case: Case, requested: State, back: State) -> list[str]:
     if all(np.array_equal(a, b) for a, b in pairs):
         return ["the state is kept in single precision"]
     return []
+
+
+def mistaken_inertias(body: Body, system: System) -> Iterator[tuple[str, Array]]:
+    """What it would be, and the tensor; the plainest first."""
+    tensor = np.asarray(body.inertia, dtype=float)
+    diagonal = np.diag(np.diag(tensor))
+    moments, axes = np.linalg.eigh(tensor)
+    yield "only the diagonal of the inertia is used", diagonal
+    yield "the products of inertia have the wrong sign", 2 * diagonal - tensor
+    about = "instead of the centre of mass"
+    shifted = tensor + parallel_axis(body.mass, body.center_of_mass)
+    yield f"the inertia is about the body's origin {about}", shifted
+    if system.load.pivot is not None:
+        lever = body.center_of_mass - system.load.pivot
+        yield f"the inertia is about the pivot {about}", tensor + parallel_axis(body.mass, lever)
+    yield "the inertia is inverted: its reciprocal is used", np.linalg.inv(tensor)
+    for order in permutations(range(3)):
+        if order != (0, 1, 2):
+            names = ", ".join("xyz"[k] for k in order)
+            text = f"the inertia's axes are permuted: x, y, z hold what belongs to {names}"
+            yield text, tensor[np.ix_(order, order)]
+    for order in permutations(range(3)):
+        text = "the principal moments stand on the diagonal: the rotation of their axes is dropped"
+        yield text, np.diag(moments[list(order)])
+    # R^T D R for R D R^T, whatever order and signs the axes are kept in
+    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3)):
+        turn = axes[:, order] * np.array(signs)
+        text = "the rotation of the inertia's principal axes looks transposed"
+        yield text, turn.T @ np.diag(moments[list(order)]) @ turn

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.measured_run import CHANNELS, scheme_key
+from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
@@ -19,16 +17,10 @@ from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
-from omegadot.workers.wire import state_from
 
 LEAST_SAMPLES = 6
 # In parts of what rounding may do: a fitted number is then good to six digits.
 DISTINCT = 1e6
-
-
-def rows(state: State, which: slice | NDArray[Any]) -> State:
-    """Some samples of a run."""
-    return State(*(values[which] for values in vars(state).values()))
 
 
 @dataclass(frozen=True)
@@ -48,6 +40,11 @@ class ReportedRun:
     growth: Array
 
     @property
+    def declared(self) -> Scheme:
+        """The scheme that is declared."""
+        return SCHEMES[self.integrator.scheme or ""]
+
+    @property
     def bounds(self) -> dict[str, Array]:
         """(n,) per channel: what rounding may account for."""
         step, numbers = self.sweep.timestep, self.sweep.sample_steps
@@ -58,11 +55,10 @@ class ReportedRun:
     ) -> bool:
         """Whether two trajectories are the same within rounding, at these samples."""
         bounds, yardstick = self.bounds, self.truth.yardstick
-        with np.errstate(all="ignore"):
-            return all(
-                bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))
-                for c in CHANNELS
-            )
+        return all(
+            bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))
+            for c in CHANNELS
+        )
 
     def stepped(
         self,
@@ -74,7 +70,6 @@ class ReportedRun:
     ) -> State:
         """The reference's run with something else in it; the declared where nothing is given."""
         wanted, sweep = system or self.case.system, self.sweep
-        stepped = scheme or SCHEMES[self.integrator.scheme or ""]
         exact = body_motion(wanted, self.integrator.coordinates)
         plan = (timestep or sweep.timestep, sweep.steps, 1 if every_step else sweep.every)
 
@@ -82,15 +77,14 @@ class ReportedRun:
             return exact.acceleration(exact.normalize(q), v)
 
         how = (*plan, self.integrator.coordinates, replace(exact, acceleration=acceleration))
-        return step_body(stepped, wanted, initial or self.case.initial, *how)[1]
+        return step_body(scheme or self.declared, wanted, initial or self.case.initial, *how)[1]
 
     def stepped_on(self, states: State) -> State:
         """Where the declared scheme leads from each of (m,) states to the next sample."""
         plan = (self.sweep.timestep, self.sweep.every, self.sweep.every)
-        system, declared = self.case.system, SCHEMES[self.integrator.scheme or ""]
         unit = replace(states, orientation=normalize(states.orientation))
-        ends = step_body(declared, system, unit, *plan, self.integrator.coordinates)[1]
-        return State(*(values[-1] for values in vars(ends).values()))
+        how = (*plan, self.integrator.coordinates)
+        return step_body(self.declared, self.case.system, unit, *how)[1][-1]
 
 
 def reported_run(
@@ -99,11 +93,10 @@ def reported_run(
     """The run that was judged; None where it failed or no scheme is declared for it."""
     integrator, sweep = run.integrator, run.sweep
     answer = result.runs.get((integrator.name, sweep.timestep))
-    key = scheme_key(integrator, case.system)
-    own = truth.companions.get((key, sweep.timestep)) if key else None
+    own = truth.companion(integrator, sweep)
     if answer is None or not answer.ok or own is None or integrator.scheme not in SCHEMES:
         return None
-    time, state = answer.result["time"], state_from(answer.result["state"])
+    time, state = answer.result["time"], State(**answer.result["state"])
     whole = ReportedRun(case, truth, integrator, sweep, time, state, own.state, own.growth)
     return _until_it_shows(whole) if len(time) == len(sweep.times) else whole
 
@@ -121,12 +114,11 @@ def _until_it_shows(reported: ReportedRun) -> ReportedRun:
     apart = np.any([~(distances[c] <= DISTINCT * bounds[c]) for c in CHANNELS], axis=0)
     first = int(np.argmax(apart)) if apart.any() else len(numbers)
     count = min(max(2 * first, LEAST_SAMPLES), len(numbers))
-    start = slice(0, count)
-    sweep = Sweep(reported.sweep.timestep, int(numbers[count - 1]), reported.sweep.every)
-    part = (
-        reported.time[start],
-        rows(reported.state, start),
-        rows(reported.own, start),
-        reported.growth[start],
+    return replace(
+        reported,
+        sweep=replace(reported.sweep, steps=int(numbers[count - 1])),
+        time=reported.time[:count],
+        state=reported.state[:count],
+        own=reported.own[:count],
+        growth=reported.growth[:count],
     )
-    return ReportedRun(reported.case, reported.truth, reported.integrator, sweep, *part)

@@ -7,50 +7,21 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.diagnosis.misreadings import OF_ANY_STATE, misreadings
-from omegadot.diagnosis.reported_run import ReportedRun, reported_run, rows
+from omegadot.diagnosis.reported_run import ReportedRun
 from omegadot.diagnosis.reported_sample_causes import digits_reported, half_step, not_unit
-from omegadot.gates.case import Case
 from omegadot.gates.scales import norm
-from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
 from omegadot.reference_impl.energy import rotational_kinetic_energy
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.system import Array, State
-from omegadot.workers.wire import state_from
 
 
-def causes(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list[str]:
-    """One sentence, or none."""
-    reported = reported_run(case, truth, result, run)
-    if reported is None:
-        return []
-    if _begin_apart(reported, result):
-        return ["runs begin at other states than the one given: one is left over from a run before"]
-    tried = (
-        _samples,
-        _clock,
-        _not_finite,
-        digits_reported,
-        _misread,
-        not_unit,
-        _late,
-        half_step,
-        _start,
-    )
-    for cause in (*tried, _rescaled):
-        text = cause(reported)
-        if text:
-            return [text]
-    return []
-
-
-def _begin_apart(reported: ReportedRun, result: CaseResult) -> bool:
+def begin_apart(reported: ReportedRun, result: CaseResult) -> bool:
     """Whether runs of the same case do not even begin at the same state."""
     starts, first = [], slice(0, 1)
     for run in result.runs.values():
         if run.ok and len(run.result["time"]) and run.result["time"][0] == 0.0:
-            start = rows(state_from(run.result["state"]), first)
+            start = State(**run.result["state"])[first]
             starts += [start] if np.all(np.isfinite(start.angular_velocity)) else []
     return any(not reported.agrees(start, starts[0], first) for start in starts[1:])
 
@@ -60,16 +31,11 @@ def _samples(reported: ReportedRun) -> str:
     if came == len(expected):
         return ""
     missing = len(expected) - came
-    if missing > 0 and np.allclose(reported.time, expected[missing:], rtol=1e-12, atol=0.0):
-        return _counted(missing, "first")
-    if missing > 0 and np.allclose(reported.time, expected[:-missing], rtol=1e-12, atol=0.0):
-        return _counted(missing, "last")
-    return f"{came} samples came back, {len(expected)} were requested"
-
-
-def _counted(missing: int, which: str) -> str:
     counted = "sample is" if missing == 1 else f"{missing} samples are"
-    return f"the {which} {counted} missing"
+    for which, left in (("first", expected[missing:]), ("last", expected[:-missing])):
+        if missing > 0 and np.allclose(reported.time, left, rtol=1e-12, atol=0.0):
+            return f"the {which} {counted} missing"
+    return f"{came} samples came back, {len(expected)} were requested"
 
 
 def _clock(reported: ReportedRun) -> str:
@@ -93,10 +59,8 @@ def _not_finite(reported: ReportedRun) -> str:
     if not len(bad):
         return ""
     names = [name.replace("_", " ") for name, ok in finite.items() if not ok.all()]
-    before = rows(reported.state, slice(0, bad[0]))
-    sound = bad[0] > 0 and reported.agrees(
-        before, rows(reported.own, slice(0, bad[0])), slice(0, bad[0])
-    )
+    before = reported.state[: bad[0]]
+    sound = bad[0] > 0 and reported.agrees(before, reported.own[: bad[0]], slice(0, bad[0]))
     until = ", after a sound beginning" if sound else ""
     return f"{' and '.join(names)}: not finite from t = {reported.time[bad[0]]:.4g} s{until}"
 
@@ -119,29 +83,29 @@ def _late(reported: ReportedRun) -> str:
     if n < 3:
         return ""
     after, before = slice(1, None), slice(None, -1)
-    if reported.agrees(rows(reported.state, after), rows(reported.own, before), after):
+    if reported.agrees(reported.state[after], reported.own[before], after):
         return "every sample is the one before: the run is logged one sample late"
-    if reported.agrees(rows(reported.state, before), rows(reported.own, after), after):
+    if reported.agrees(reported.state[before], reported.own[after], after):
         return "every sample is the one after: the run is logged one sample early"
     steps, every = reported.sweep.sample_steps, reported.stepped(every_step=True)
-    late = rows(every, np.maximum(steps - 1, 0))
+    late = every[np.maximum(steps - 1, 0)]
     if reported.agrees(reported.state, late):
         return "every sample is the state one step before: the run is logged one step late"
-    early = rows(every, np.minimum(steps + 1, steps[-1]))
-    if reported.agrees(rows(reported.state, before), rows(early, before), before):
+    early = every[np.minimum(steps + 1, steps[-1])]
+    if reported.agrees(reported.state[before], early[before], before):
         return "every sample is the state one step after: the run is logged one step early"
     last = slice(-1, None)
-    ended = reported.agrees(rows(reported.state, last), rows(late, last), last)
-    if ended and reported.agrees(rows(reported.state, before), rows(reported.own, before), before):
+    ended = reported.agrees(reported.state[last], late[last], last)
+    if ended and reported.agrees(reported.state[before], reported.own[before], before):
         return "the last step is missing: the end is the state one step before"
     return ""
 
 
 def _start(reported: ReportedRun) -> str:
     first = slice(0, 1)
-    if reported.agrees(rows(reported.state, first), rows(reported.own, first), first):
+    if reported.agrees(reported.state[first], reported.own[first], first):
         return ""
-    start = State(*(values[0] for values in vars(reported.state).values()))
+    start = reported.state[0]
     if reported.agrees(reported.state, reported.stepped(initial=start), slack=2.0):
         return "the run does not begin at the state it is given, and is sound from where it begins"
     return "the run does not begin at the state it is given"
@@ -150,8 +114,7 @@ def _start(reported: ReportedRun) -> str:
 def _rescaled(reported: ReportedRun) -> str:
     """Omega of the right direction and of a size that keeps something constant."""
     w, own = reported.state.angular_velocity, reported.own.angular_velocity
-    with np.errstate(all="ignore"):
-        sized = w * (norm(own) / norm(w))[:, None]
+    sized = w * (norm(own) / norm(w))[:, None]
     if not reported.agrees(replace(reported.state, angular_velocity=sized), reported.own):
         return ""
     system = reported.case.system
@@ -164,3 +127,17 @@ def _rescaled(reported: ReportedRun) -> str:
         if np.all(np.abs(size / size[0] - 1.0) <= bounds[channel]):
             return f"omega is rescaled so that the {what} stays the same"
     return ""
+
+
+CAUSES_REPORTED = (
+    _samples,
+    _clock,
+    _not_finite,
+    digits_reported,
+    _misread,
+    not_unit,
+    _late,
+    half_step,
+    _start,
+    _rescaled,
+)

@@ -1,20 +1,37 @@
-"""Causes in the samples of a sound run: rounded to digits, or of half a step before."""
+"""Causes in the samples of a run: rounded to digits, of half a step before, or wrong in places.
+
+The last resort, where no single cause explains a whole run, is where it is sound: sample to sample,
+and quantity by quantity. Every sample is stepped on by the declared scheme to the next, so that
+what is wrong at one place does not spoil the rest.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from omegadot.diagnosis.match import only_where
 from omegadot.diagnosis.reported_run import ReportedRun
 from omegadot.gates.equation import BOUND
+from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.scales import angular_size, norm
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import turn_in_body
-from omegadot.reference_impl.system import Array
+from omegadot.reference_impl.system import State
 
 MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
+# One interval's rounding is within the bound of its end; its start is rounded, too.
+SLACK = 2.0
+ALONE = {
+    "the attitude": ("orientation",),
+    "omega": ("angular_velocity",),
+    "the position": ("position",),
+    "the linear velocity": ("linear_velocity",),
+    "the linear velocity, with the position,": ("linear_velocity", "position"),
+}
 
 
 def not_unit(reported: ReportedRun) -> str:
@@ -22,29 +39,24 @@ def not_unit(reported: ReportedRun) -> str:
     length = norm(reported.state.orientation)[:, None]
     off = float(np.max(np.abs(length - 1.0)))
     places = {"position": reported.own.position, "linear_velocity": reported.own.linear_velocity}
-    unit = replace(reported.state, orientation=reported.state.orientation / length, **places)
-    if reported.agrees(replace(reported.state, **places), reported.own) or not reported.agrees(
-        unit, reported.own
-    ):
+    longer = replace(reported.state, **places)
+    unit = replace(longer, orientation=reported.state.orientation / length)
+    if reported.agrees(longer, reported.own) or not reported.agrees(unit, reported.own):
         return ""
     return f"the quaternion is not of unit length in the run: it is off by up to {off:.1e}"
 
 
 def digits_reported(reported: ReportedRun) -> str:
-    """Every number of the run is one of a few decimal digits."""
-    numbers = np.concatenate([np.ravel(values) for values in vars(reported.state).values()])
-    if not np.all(np.isfinite(numbers)):
-        return ""
-    digits = _digits(numbers)
-    own = np.concatenate([np.ravel(values) for values in vars(reported.own).values()])
-    if digits > MOST_DIGITS or _digits(own) <= digits:
+    """Every number of the run is one of a few decimal digits; all are finite."""
+    digits = _digits(reported.state)
+    if digits > MOST_DIGITS or _digits(reported.own) <= digits:
         return ""
     return f"the numbers of the run have {digits} digits: they went through text"
 
 
-def _digits(numbers: Array) -> int:
-    """How many significant digits determine all of these numbers."""
-    needed = 1
+def _digits(state: State) -> int:
+    """How many significant digits determine all numbers of these states."""
+    numbers, needed = np.concatenate([np.ravel(values) for values in vars(state).values()]), 1
     for number in numbers.tolist():
         while needed < MOST_DIGITS + 2 and float(f"{number:.{needed}g}") != number:
             needed += 1
@@ -57,17 +69,13 @@ def half_step(reported: ReportedRun) -> str:
     q, w = reported.own.orientation, reported.own.angular_velocity
     w_dot = forward_dynamics(reported.case.system, reported.own).angular
     for sign, when in ((-0.5, "before"), (0.5, "after")):
-        turned = _but_for_the_start(q, turn_in_body(q, w, sign * h))
+        turned = np.concatenate((q[:1], turn_in_body(q, w, sign * h)[1:]))
         if reported.agrees(reported.state, replace(reported.own, orientation=turned)):
             return f"the attitude reported is that of half a step {when}"
-        moved = _but_for_the_start(w, w + sign * h * w_dot)
+        moved = np.concatenate((w[:1], (w + sign * h * w_dot)[1:]))
         if reported.agrees(reported.state, replace(reported.own, angular_velocity=moved)):
             return f"omega is reported as of half a step {when}"
     return ""
-
-
-def _but_for_the_start(right: Array, wrong: Array) -> Array:
-    return np.concatenate([right[:1], wrong[1:]])
 
 
 def omega_dot_late(reported: ReportedRun, result: CaseResult) -> str:
@@ -82,3 +90,48 @@ def omega_dot_late(reported: ReportedRun, result: CaseResult) -> str:
         if np.all(apart[inner] <= np.maximum(bound, np.roll(bound, shift))[inner]):
             return f"the omega-dot reported along the run is that of the sample {when}"
     return ""
+
+
+def _sound_intervals(reported: ReportedRun) -> NDArray[np.bool_]:
+    """(n - 1,): whether the declared scheme leads from each sample to the next."""
+    numbers = reported.sweep.sample_steps
+    count = int(np.count_nonzero(np.diff(numbers) == reported.sweep.every))
+    ends = reported.stepped_on(reported.state[:count])
+    then, bounds = reported.state[1 : count + 1], reported.bounds
+    sound = np.ones(count, bool)
+    for channel in CHANNELS:
+        apart = reported.truth.yardstick.distance(channel, then, ends)
+        sound &= apart <= SLACK * bounds[channel][1 : count + 1]
+    return sound
+
+
+def one_field(reported: ReportedRun) -> str:
+    """All but one quantity are sound, and so they are stepped with the right one."""
+    for text, names in ALONE.items():
+        right = {name: getattr(reported.own, name) for name in names}
+        if reported.agrees(replace(reported.state, **right), reported.own):
+            own = right[names[0]]
+            off = float(np.max(np.abs(getattr(reported.state, names[0]) - own)))
+            part = off / float(np.max(np.abs(own)))
+            return f"{text} alone is wrong in the run, by up to {part:.1e} of it"
+    return ""
+
+
+def intervals(reported: ReportedRun) -> str:
+    """From which sample to which the steps are wrong."""
+    sound = _sound_intervals(reported)
+    wrong = np.flatnonzero(~sound)
+    if len(sound) < 3 or not len(wrong) or not sound.any():
+        return ""
+    time, first, last = reported.time, int(wrong[0]), int(wrong[-1])
+    if len(wrong) == 1 and first == 0:
+        return f"only the first steps are wrong: from t = {time[1]:.4g} s on, the run is sound"
+    if len(wrong) <= 2 and last - first <= 1 and last + 1 < len(sound):
+        pairs = (values[last] == values[last - 1] for values in vars(reported.state).values())
+        twice = last > 0 and all(bool(np.all(pair)) for pair in pairs)
+        what = "is the one before, reported twice" if twice else "alone does not belong to the run"
+        return f"the sample at t = {time[last]:.4g} s {what}"
+    if first > 0 and len(wrong) == len(sound) - first:
+        return f"the run is sound until t = {time[first]:.4g} s, and every step after it is wrong"
+    where = only_where(reported.state[: len(sound)], sound)
+    return f"steps are wrong only where {where}" if where else ""

@@ -8,12 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.gates.scales import norm
-from omegadot.reference_impl.rotations import (
-    conjugate,
-    normalize,
-    quaternion_product,
-    turn_in_body,
-)
+from omegadot.reference_impl.rotations import conjugate, normalize, quaternion_product, turn_in_body
 from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array, State
 
@@ -67,31 +62,30 @@ def single_precision(before: State, after: State, dt: float | Array) -> State:
     return State(*(f.astype(np.float32).astype(float) for f in vars(after).values()))
 
 
-def asleep_below(rate: float) -> End:
-    """Omega is zero below a rate in rad/s."""
+def _of_omega(change: Callable[[Array], Array]) -> End:
+    """Omega is changed at the end of a step, and nothing else."""
 
     def end(before: State, after: State, dt: float | Array) -> State:
-        w = after.angular_velocity
-        return replace(after, angular_velocity=np.where(norm(w)[..., None] < rate, 0.0, w))
+        return replace(after, angular_velocity=change(after.angular_velocity))
 
     return end
+
+
+def asleep_below(rate: float) -> End:
+    """Omega is zero below a rate in rad/s."""
+    return _of_omega(lambda w: np.where(norm(w)[..., None] < rate, 0.0, w))
 
 
 def clipped_at(rate: float) -> End:
     """Each component of omega is held within a rate in rad/s."""
-
-    def end(before: State, after: State, dt: float | Array) -> State:
-        return replace(after, angular_velocity=np.clip(after.angular_velocity, -rate, rate))
-
-    return end
+    return _of_omega(lambda w: np.clip(w, -rate, rate))
 
 
 def held_below(rate: float) -> End:
     """Omega is scaled down to a rate in rad/s."""
 
-    def end(before: State, after: State, dt: float | Array) -> State:
-        w = after.angular_velocity
+    def held(w: Array) -> Array:
         with np.errstate(divide="ignore"):
-            return replace(after, angular_velocity=w * np.minimum(1.0, rate / norm(w)[..., None]))
+            return np.asarray(w * np.minimum(1.0, rate / norm(w)[..., None]))
 
-    return end
+    return _of_omega(held)

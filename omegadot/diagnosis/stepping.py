@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.reported_run import ReportedRun, reported_run
+from omegadot.diagnosis.reported_run import ReportedRun
 from omegadot.diagnosis.step_ends import (
     End,
     clipped_at,
@@ -17,11 +17,7 @@ from omegadot.diagnosis.step_ends import (
     turned_by_last_omega,
     with_end,
 )
-from omegadot.gates.case import Case
 from omegadot.gates.scales import norm
-from omegadot.gates.truth import Truth
-from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
 from omegadot.reference_impl.coordinates import PHRASES, canonical, distinct
 from omegadot.reference_impl.growth import changes
 from omegadot.reference_impl.schemes import SCHEMES
@@ -36,32 +32,6 @@ MOST_TRIES = 8
 MOST_STEPS = 5000  # causes are tried by stepping again, and a step takes about 0.1 ms
 # A fitted run has come out of a search that ends within rounding, and bounds are of one run.
 SLACK = 4.0
-
-
-def causes(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list[str]:
-    """One sentence, or none."""
-    reported = reported_run(case, truth, result, run)
-    finite = reported is not None and all(
-        np.all(np.isfinite(f)) for f in vars(reported.state).values()
-    )
-    if reported is None or not finite or len(reported.time) != len(reported.sweep.times):
-        return []
-    if reported.sweep.steps > MOST_STEPS:
-        return []
-    for cause in (
-        _precision,
-        _asleep,
-        _other_scheme,
-        _other_end,
-        _longer,
-        _damped,
-        _clipped,
-        _held,
-    ):
-        text = cause(reported)
-        if text:
-            return [text]
-    return []
 
 
 def _precision(reported: ReportedRun) -> str:
@@ -95,34 +65,32 @@ def _asleep(reported: ReportedRun) -> str:
     return f"the body is put to sleep: omega is zero {when}, where it should be {rate:.2g} rad/s"
 
 
-def _held(reported: ReportedRun) -> str:
-    """The greatest |omega| reported is a limit, and nearly the one that the steps keep to."""
-    greatest = float(np.max(norm(reported.state.angular_velocity[1:])))
-    if not 0.0 < greatest < float(np.max(norm(reported.own.angular_velocity[1:]))):
-        return ""
-    declared = SCHEMES[reported.integrator.scheme or ""]
+def _limit(
+    reported: ReportedRun, size: Callable[[Array], Array], end: Callable[[float], End]
+) -> float | None:
+    """The size that omega is kept within by the end of each step, where it is.
+
+    The greatest that is reported is nearly the one that the steps keep to.
+    """
+    greatest = float(np.max(size(reported.state.angular_velocity[1:])))
+    if not 0.0 < greatest < float(np.max(size(reported.own.angular_velocity[1:]))):
+        return None
 
     def stepped(more: float) -> State:
-        return reported.stepped(with_end(declared, held_below(greatest * (1.0 + more))))
+        return reported.stepped(with_end(reported.declared, end(greatest * (1.0 + more))))
 
     more = _search(reported, stepped, 1e-6)
-    return "" if more is None else f"omega is held below {greatest * (1.0 + more):.6g} rad/s"
+    return None if more is None else greatest * (1.0 + more)
+
+
+def _held(reported: ReportedRun) -> str:
+    limit = _limit(reported, norm, held_below)
+    return "" if limit is None else f"omega is held below {limit:.6g} rad/s"
 
 
 def _clipped(reported: ReportedRun) -> str:
-    """The greatest component of omega that is reported is a limit to each of them."""
-    greatest = float(np.max(np.abs(reported.state.angular_velocity[1:])))
-    if not 0.0 < greatest < float(np.max(np.abs(reported.own.angular_velocity[1:]))):
-        return ""
-    declared = SCHEMES[reported.integrator.scheme or ""]
-
-    def stepped(more: float) -> State:
-        return reported.stepped(with_end(declared, clipped_at(greatest * (1.0 + more))))
-
-    more = _search(reported, stepped, 1e-6)
-    if more is None:
-        return ""
-    return f"each component of omega is held within {greatest * (1.0 + more):.6g} rad/s"
+    limit = _limit(reported, np.abs, clipped_at)
+    return "" if limit is None else f"each component of omega is held within {limit:.6g} rad/s"
 
 
 def _other_scheme(reported: ReportedRun) -> str:
@@ -140,8 +108,7 @@ def _other_scheme(reported: ReportedRun) -> str:
 
 def _other_end(reported: ReportedRun) -> str:
     for text, end in ENDS.items():
-        declared = SCHEMES[reported.integrator.scheme or ""]
-        if reported.agrees(reported.state, reported.stepped(with_end(declared, end))):
+        if reported.agrees(reported.state, reported.stepped(with_end(reported.declared, end))):
             return text
     return ""
 
@@ -190,3 +157,15 @@ def _damped(reported: ReportedRun) -> str:
     if found is None or found == 0.0:
         return ""
     return f"a damping of {found:.3g} N m s/rad acts in the steps that was not requested"
+
+
+CAUSES_OF_STEPPING = (
+    _precision,
+    _asleep,
+    _other_scheme,
+    _other_end,
+    _longer,
+    _damped,
+    _clipped,
+    _held,
+)

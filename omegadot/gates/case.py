@@ -3,33 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from omegadot.reference_impl.stepping import kept_steps
+from omegadot.reference_impl.companion import Steps
 from omegadot.reference_impl.system import Array, State, System
 from omegadot.scenarios import Scenario
 
 
 @dataclass(frozen=True)
-class Sweep:
-    """One step size of a scenario: `steps` of `timestep`, keeping every `every`-th."""
-
-    timestep: float
-    steps: int
-    every: int
-
-    @property
-    def sample_steps(self) -> NDArray[Any]:
-        """The step numbers that are kept: the start, every `every`-th, the end."""
-        return np.array(kept_steps(self.steps, self.every))
-
-    @property
-    def times(self) -> Array:
-        """(n,) s: the step numbers times the step, the contract's sample times."""
-        return self.sample_steps * self.timestep
+class Sweep(Steps):
+    """One step size of a scenario."""
 
     def refined(self, factor: int) -> Sweep:
         """The same samples at a step `factor` times smaller."""

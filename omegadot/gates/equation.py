@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from omegadot.gates.scales import (
     norm,
     torque_size,
 )
+from omegadot.gates.truth import Truth
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import (
     center_of_mass_acceleration,
@@ -29,6 +30,30 @@ from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 GATE = "equation"
 BOUND = ROUNDINGS_PER_EVALUATION * EPS
+RANDOM_STATES = 200
+PATH_STATES = 200
+
+
+@dataclass(frozen=True)
+class EvaluationStates:
+    """Where an engine's equations are evaluated: at random, and along the exact trajectory.
+
+    path: spread evenly, both ends among them.  acceleration: at the random states, for inverse
+    dynamics.
+    """
+
+    random: State
+    path: State
+    acceleration: Acceleration
+
+
+def evaluation_states_of(case: Case, truth: Truth, seed: int) -> EvaluationStates:
+    """The states of a case, the same for every engine and every run."""
+    own = [seed, *case.name.encode()]
+    states = random_states(case, RANDOM_STATES, own)
+    along = np.unique(np.linspace(0, len(truth.times) - 1, PATH_STATES).round().astype(int))
+    path = truth.state[along]
+    return EvaluationStates(states, path, random_acceleration(case.system, states, own))
 
 
 def random_states(case: Case, count: int, seed: Sequence[int]) -> State:
@@ -92,13 +117,20 @@ def forward_rows(system: System, states: State, found: Acceleration, metric: str
     linear_momentum: the centre of mass's acceleration, relative to its terms by size.
     """
     true = forward_dynamics(extended(system), extended(states))
-    scale, rounded = body_scale(system), in_doubles(true)
-    angular, linear = _apart(found.angular, true.angular), _apart(found.linear, true.linear)
-    size = torque_size(system, states, rounded) / scale.largest
+    linear, size = _apart(found.linear, true.linear), linear_size(system, states, in_doubles(true))
     return [
-        _row("omega_dot", metric, angular, size, scale.largest / scale.smallest),
-        _row("linear_momentum", metric, linear, linear_size(system, states, rounded)),
+        _omega_dot_row(system, states, found.angular, true, metric),
+        _row("linear_momentum", metric, linear, size),
     ]
+
+
+def _omega_dot_row(
+    system: System, states: State, omega_dot: Array, true: Acceleration, metric: str
+) -> Row:
+    scale = body_scale(system)
+    size = torque_size(system, states, in_doubles(true)) / scale.largest
+    apart = _apart(omega_dot, true.angular)
+    return _row("omega_dot", metric, apart, size, scale.largest / scale.smallest)
 
 
 def reported_rows(system: System, states: State, omega_dot: Array) -> list[Row]:
@@ -111,13 +143,10 @@ def reported_rows(system: System, states: State, omega_dot: Array) -> list[Row]:
     kept = np.isfinite(rate) & np.isfinite(norm(states.orientation)) & np.isfinite(norm(omega_dot))
     if not kept.any():
         return []
-    sound = State(*(values[kept] for values in vars(states).values()))
+    sound = states[kept]
     unit = replace(sound, orientation=normalize(sound.orientation))
     true = forward_dynamics(extended(system), extended(unit))
-    scale = body_scale(system)
-    size = torque_size(system, unit, in_doubles(true)) / scale.largest
-    apart = _apart(omega_dot[kept], true.angular)
-    return [_row("omega_dot", "residual_in_run", apart, size, scale.largest / scale.smallest)]
+    return [_omega_dot_row(system, unit, omega_dot[kept], true, "residual_in_run")]
 
 
 def inverse_rows(

@@ -21,21 +21,27 @@ class Hermite:
     slopes: Array
 
     def at(self, times: Array) -> tuple[Array, Array]:
-        """(m, k) values and slopes at `times` (m,) s, within the first and the last sample.
-
-        With ``s = (t - t0) / h`` the value is ``v0 + s (d + (1 - s) ((1 - s) a + s b))``,
-        ``d = v1 - v0``, ``a = h v0' - d``, ``b = d - h v1'``.
-        """
+        """(m, k) values and slopes at `times` (m,) s, within the first and the last sample."""
         left = np.clip(np.searchsorted(self.times, times, "right") - 1, 0, len(self.times) - 2)
         h = (self.times[left + 1] - self.times[left])[:, None]
-        s = (times - self.times[left])[:, None] / h
-        start = self.values[left]
-        d = self.values[left + 1] - start
-        a, b = h * self.slopes[left] - d, d - h * self.slopes[left + 1]
-        r = 1.0 - s
-        value = start + s * (d + r * (r * a + s * b))
-        slope = (d + r * (r - 2.0 * s) * a + s * (2.0 * r - s) * b) / h
-        return value, slope
+        ends = (self.values[left], self.values[left + 1])
+        rises = (h * self.slopes[left], h * self.slopes[left + 1])
+        value, rise = _cubic((times - self.times[left])[:, None] / h, *ends, *rises)
+        return value, rise / h
+
+
+def _cubic(
+    s: Array, start: Array, end: Array, start_rise: Array, end_rise: Array
+) -> tuple[Array, Array]:
+    """The value at ``s = (t - t0) / h`` and its derivative in s. The rises are those of the ends.
+
+    It is ``v0 + s (d + (1 - s) ((1 - s) a + s b))``, ``d = v1 - v0``, ``a = h v0' - d``,
+    ``b = d - h v1'``.
+    """
+    d, r = end - start, 1.0 - s
+    a, b = start_rise - d, d - end_rise
+    value = start + s * (d + r * (r * a + s * b))
+    return value, d + r * (r - 2.0 * s) * a + s * (2.0 * r - s) * b
 
 
 def error_factor(share: float) -> float:
@@ -65,15 +71,11 @@ def zero_crossings(times: Array, values: Array, slopes: Array) -> Array:
         return np.empty(0)
     h = times[left + 1] - times[left]
     start, end = values[left], values[left + 1]
-    d = end - start
-    a, b = h * slopes[left] - d, d - h * slopes[left + 1]
-    low, high, s = np.zeros(len(left)), np.ones(len(left)), -start / d
+    low, high, s = np.zeros(len(left)), np.ones(len(left)), -start / (end - start)
     for _ in range(ITERATIONS):
-        r = 1.0 - s
-        value = start + s * (d + r * (r * a + s * b))
+        value, slope = _cubic(s, start, end, h * slopes[left], h * slopes[left + 1])
         before = (value > 0.0) == (start > 0.0)
         low, high = np.where(before, s, low), np.where(before, high, s)
-        slope = d + r * (r - 2.0 * s) * a + s * (2.0 * r - s) * b
         with np.errstate(divide="ignore", invalid="ignore"):
             newton = s - value / slope
         inside = (newton >= low) & (newton <= high)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.gates.case import Sweep
-from omegadot.gates.measured_run import CHANNELS, SchemeKey
-from omegadot.gates.truth import Truth
+from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.truth import SchemeKey, Truth
 from omegadot.reference_impl.system import Array, State
 
 ROTATION = ("omega", "attitude")
@@ -58,11 +58,10 @@ def likeness(distances: Mapping[str, Array], bounds: Mapping[str, Array]) -> Lik
 
 def like_schemes(truth: Truth, sweep: Sweep, state: State) -> dict[SchemeKey, Likeness]:
     """A run against every scheme that the reference stepped with the same step."""
-    found = {}
-    for (key, timestep), companion in truth.companions.items():
+    found, yardstick = {}, truth.yardstick
+    for (key, timestep), own in truth.companions.items():
         if timestep == sweep.timestep:
-            growth = companion.growth
-            bounds = truth.yardstick.round_off(timestep, sweep.sample_steps, growth)
-            distances = {c: truth.yardstick.distance(c, state, companion.state) for c in CHANNELS}
+            bounds = yardstick.round_off(timestep, sweep.sample_steps, own.growth)
+            distances = {c: yardstick.distance(c, state, own.state) for c in CHANNELS}
             found[key] = likeness(distances, bounds)
     return found

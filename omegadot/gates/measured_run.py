@@ -8,7 +8,8 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Sweep
-from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS, Yardstick
+from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
+from omegadot.gates.truth import Companion, Truth, scheme_key
 from omegadot.gates.verdicts import (
     VANISHED,
     Evidence,
@@ -17,20 +18,10 @@ from omegadot.gates.verdicts import (
     judge,
     observed_order,
 )
-from omegadot.reference_impl.coordinates import Coordinates, canonical
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
 
 CHANNELS = (*TRAJECTORY_UNITS, *INVARIANT_CHANNELS)
-
-
-@dataclass(frozen=True)
-class Companion:
-    """The reference stepping one scheme with one step: its states and the growth of rounding."""
-
-    state: State
-    growth: Array
-    omega_dot: Array
 
 
 @dataclass(frozen=True)
@@ -44,73 +35,67 @@ class MeasuredRun:
     floor: dict[str, Array] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class ExactSamples:
-    """The exact trajectory at the samples of a sweep, its growth of rounding and its floor."""
-
-    state: State
-    growth: Array
-    floor: dict[str, Array]
-
-
-def measure(
-    yardstick: Yardstick, sweep: Sweep, exact: ExactSamples, state: State, own: Companion | None
-) -> MeasuredRun:
+def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> MeasuredRun:
     """Distances of `state` from the exact trajectory and, where there is one, the scheme's own."""
-    growth = own.growth if own else exact.growth
+    yardstick, rows, exact = truth.yardstick, truth.rows(sweep), truth.at(sweep)
+
+    def apart(other: State) -> dict[str, Array]:
+        return {c: yardstick.distance(c, state, other) for c in CHANNELS}
+
+    growth = own.growth if own else truth.growth[rows]
     return MeasuredRun(
         sweep=sweep,
-        error={c: yardstick.distance(c, state, exact.state) for c in CHANNELS},
+        error=apart(exact),
         round_off=yardstick.round_off(sweep.timestep, sweep.sample_steps, growth),
-        against_scheme={c: yardstick.distance(c, state, own.state) for c in CHANNELS}
-        if own
-        else {},
-        floor=exact.floor,
+        against_scheme=apart(own.state) if own else {},
+        floor={channel: values[rows] for channel, values in truth.floor.items()},
     )
 
 
-def _order(
-    measured_runs: list[MeasuredRun], sizes: list[float], channel: str
+def _sizes(
+    measured_runs: list[MeasuredRun], channel: str, left: bool
+) -> list[tuple[MeasuredRun, Array]]:
+    """Runs with their error, or with what is left of it after the declared scheme."""
+    if left:
+        return [(run, run.against_scheme[channel]) for run in measured_runs if run.against_scheme]
+    return [(run, run.error[channel]) for run in measured_runs]
+
+
+def order_of(
+    measured_runs: list[MeasuredRun], channel: str, *, left: bool = False
 ) -> ObservedOrder | None:
-    """The order of some sizes, one a trajectory, where they stand above rounding."""
-    bounds = [float(np.max(measured.round_off[channel])) for measured in measured_runs]
-    steps = [measured.sweep.timestep for measured in measured_runs]
-    clear = [(h, e) for h, e, b in zip(steps, sizes, bounds, strict=True) if e > b]
-    return observed_order([h for h, _ in clear], [e for _, e in clear])
+    """The order over the steps of one integrator, of errors that stand above rounding.
+
+    left: of what is left after the declared scheme.
+    """
+    steps, errors = [], []
+    for run, size in _sizes(measured_runs, channel, left):
+        if np.max(size) > np.max(run.round_off[channel]):
+            steps.append(run.sweep.timestep)
+            errors.append(float(np.max(size)))
+    return observed_order(steps, errors)
 
 
-def order_of(measured_runs: list[MeasuredRun], channel: str) -> ObservedOrder | None:
-    """The order of the error over the steps of one integrator."""
-    return _order(measured_runs, [float(np.max(c.error[channel])) for c in measured_runs], channel)
-
-
-def order_left(measured_runs: list[MeasuredRun], channel: str) -> ObservedOrder | None:
-    """The order of what is left after the declared scheme."""
-    known = [measured for measured in measured_runs if measured.against_scheme]
-    return _order(known, [float(np.max(c.against_scheme[channel])) for c in known], channel)
-
-
-def _vanishes(measured_runs: list[MeasuredRun], sizes: list[Array], channel: str) -> bool:
-    """Whether an error that stands above rounding somewhere is within it at the finest step."""
+def _order_shown(
+    measured_runs: list[MeasuredRun], channel: str, left: bool
+) -> ObservedOrder | None:
+    """`order_of`; VANISHED where an error above rounding somewhere is within it at the finest."""
     above = {
-        measured.sweep.timestep: bool(np.any(size > measured.round_off[channel]))
-        for measured, size in zip(measured_runs, sizes, strict=True)
+        run.sweep.timestep: bool(np.any(size > run.round_off[channel]))
+        for run, size in _sizes(measured_runs, channel, left)
     }
-    return bool(above) and any(above.values()) and not above[min(above)]
+    if any(above.values()) and not above[min(above)]:
+        return VANISHED
+    return order_of(measured_runs, channel, left=left)
 
 
 def evidence_of(measured: MeasuredRun, measured_runs: list[MeasuredRun], channel: str) -> Evidence:
     """What one run and the others of its sweep show in a channel."""
-    error, left = measured.error[channel], measured.against_scheme.get(channel)
-    gone = _vanishes(measured_runs, [c.error[channel] for c in measured_runs], channel)
-    orders = [VANISHED if gone else order_of(measured_runs, channel)]
-    if left is not None:
-        known = [c for c in measured_runs if c.against_scheme]
-        gone = _vanishes(known, [c.against_scheme[channel] for c in known], channel)
-        orders.append(VANISHED if gone else order_left(measured_runs, channel))
-    return Evidence(
-        error, measured.round_off[channel], left, tuple(orders), measured.floor.get(channel)
-    )
+    left = measured.against_scheme.get(channel)
+    parts = (False,) if left is None else (False, True)
+    orders = tuple(_order_shown(measured_runs, channel, part) for part in parts)
+    bound, floor = measured.round_off[channel], measured.floor.get(channel)
+    return Evidence(measured.error[channel], bound, left, orders, floor)
 
 
 @dataclass(frozen=True)
@@ -119,21 +104,6 @@ class Declared:
 
     scheme: str | None
     orders: dict[str, int | None]
-
-
-@dataclass(frozen=True)
-class SchemeKey:
-    """Which of the reference's runs an integrator is compared with."""
-
-    scheme: str
-    coordinates: Coordinates = "com-world"
-
-
-def scheme_key(integrator: Integrator, system: System) -> SchemeKey | None:
-    """The run of the reference that this integrator should equal; None for an unknown scheme."""
-    if integrator.scheme is None:
-        return None
-    return SchemeKey(integrator.scheme, canonical(system, integrator.coordinates))
 
 
 def orders_for(integrator: Integrator, system: System) -> dict[str, int | None]:
@@ -149,8 +119,7 @@ def findings_of(
     measured: MeasuredRun, declared: Declared, measured_runs: list[MeasuredRun]
 ) -> dict[str, Finding]:
     """Judge every channel of one run; the other runs of its sweep show the orders."""
-    found = {}
-    for channel in CHANNELS:
-        evidence = evidence_of(measured, measured_runs, channel)
-        found[channel] = judge(evidence, declared.scheme, declared.orders[channel])
-    return found
+    return {
+        c: judge(evidence_of(measured, measured_runs, c), declared.scheme, declared.orders[c])
+        for c in CHANNELS
+    }

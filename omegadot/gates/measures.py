@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
-from omegadot.gates.scales import (
-    EPS,
-    ROUNDINGS_PER_STEP,
-    BodyScale,
-    angular_size,
-    body_scale,
-    norm,
-)
+from omegadot.gates.scales import EPS, ROUNDINGS_PER_STEP, BodyScale, angular_size, body_scale, norm
 from omegadot.reference_impl.energy import kinetic_energy, total_energy
 from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
 from omegadot.reference_impl.motion import forward_dynamics
@@ -22,7 +13,6 @@ from omegadot.reference_impl.system import Array, State, System
 
 TRAJECTORY_UNITS = {"omega": "1", "attitude": "rad", "position": "m"}
 INVARIANT_CHANNELS = ("energy", "angular_momentum", "linear_momentum")
-Distance = Callable[[State, State], Array]
 
 
 class Yardstick:
@@ -33,7 +23,7 @@ class Yardstick:
     """
 
     def __init__(self, system: System, times: Array, exact: State) -> None:
-        self.system, self.times, self.exact = system, times, exact
+        self.system = system
         self.scale: BodyScale = body_scale(system)
         acceleration = forward_dynamics(system, exact)
         self.acceleration = float(np.max(angular_size(system, exact, acceleration)))
@@ -43,22 +33,17 @@ class Yardstick:
         self.speed = float(np.max(norm(exact.linear_velocity))) + self.rate * self.scale.lever
         self.reach = float(np.max(norm(exact.position))) + self.scale.lever
         self.gravity = float(norm(system.load.gravity))
-        moment = float(np.max(norm(angular_momentum(system, exact))))
+        kinetic = float(np.max(kinetic_energy(system, exact)))
+        turning = float(np.max(norm(angular_momentum(system, exact))))
+        moving = float(np.max(norm(linear_momentum(system, exact))))
+        smallest, mass = self.scale.smallest, self.scale.mass
+        gyration = float(np.sqrt(float(np.trace(system.body.inertia)) / mass))
         self.sizes = {
-            "energy": self._energy_size(),
-            "angular_momentum": moment or self.scale.smallest * self.rate,
-            "linear_momentum": self._linear_momentum_size(),
+            "energy": kinetic or 0.5 * smallest * self.rate**2,
+            "angular_momentum": turning or smallest * self.rate,
+            # a body that stays in place has that of its turning
+            "linear_momentum": moving or mass * self.rate * gyration,
         }
-
-    def _energy_size(self) -> float:
-        kinetic = float(np.max(kinetic_energy(self.system, self.exact)))
-        return kinetic or 0.5 * self.scale.smallest * self.rate**2
-
-    def _linear_momentum_size(self) -> float:
-        """Its greatest value; for a body that stays in place, that of its turning."""
-        greatest = float(np.max(norm(linear_momentum(self.system, self.exact))))
-        gyration = np.sqrt(float(np.trace(self.system.body.inertia)) / self.scale.mass)
-        return greatest or self.scale.mass * self.rate * float(gyration)
 
     def distance(self, channel: str, one: State, other: State) -> Array:
         """(n,): |one - other| in this channel.
@@ -68,22 +53,19 @@ class Yardstick:
         """
         # An engine that has gone astray may be where squares overflow: that far away is infinite.
         with np.errstate(over="ignore", invalid="ignore"):
-            return self._distance(channel, one, other)
-
-    def _distance(self, channel: str, one: State, other: State) -> Array:
-        if channel == "omega":
-            return np.asarray(norm(one.angular_velocity - other.angular_velocity) / self.rate)
-        if channel == "attitude":
-            length = np.abs(norm(one.orientation) - norm(other.orientation))
-            return np.maximum(attitude_angle(one.orientation, other.orientation), length)
-        if channel == "position":
-            return norm(one.position - other.position)
-        if channel == "energy":
-            gap = np.abs(total_energy(self.system, one) - total_energy(self.system, other))
-        else:
-            momentum = angular_momentum if channel == "angular_momentum" else linear_momentum
-            gap = norm(momentum(self.system, one) - momentum(self.system, other))
-        return np.asarray(gap / self.sizes[channel])
+            if channel == "omega":
+                return np.asarray(norm(one.angular_velocity - other.angular_velocity) / self.rate)
+            if channel == "attitude":
+                length = np.abs(norm(one.orientation) - norm(other.orientation))
+                return np.maximum(attitude_angle(one.orientation, other.orientation), length)
+            if channel == "position":
+                return norm(one.position - other.position)
+            if channel == "energy":
+                gap = np.abs(total_energy(self.system, one) - total_energy(self.system, other))
+            else:
+                momentum = angular_momentum if channel == "angular_momentum" else linear_momentum
+                gap = norm(momentum(self.system, one) - momentum(self.system, other))
+            return np.asarray(gap / self.sizes[channel])
 
     def round_off(self, timestep: float, steps: Array, growth: Array) -> dict[str, Array]:
         """(n,) per channel: how far rounding may take a sound engine after so many steps.

@@ -127,10 +127,6 @@ def flip_rows(system: System, exact: Hermite, state: State, floor: float, gap: f
     return [Row(GATE, "time", "flip_time_error", error, "s", open_time, note=note)]
 
 
-def _as_text(shift: float) -> str:
-    return f"{'late' if shift < 0.0 else 'early'} by {abs(shift):.2e} s"
-
-
 def rows(truth: Truth, measured: MeasuredRun, state: State) -> list[Row]:
     """Time shift, what is left after it, and the flips' error; none where omega is constant.
 
@@ -155,10 +151,11 @@ def rows(truth: Truth, measured: MeasuredRun, state: State) -> list[Row]:
         floor = rounding + bend * error_factor(abs(best.shift) / gap % 1.0)
         before = float(np.max(measured.error["omega"]))
         text = f"{before:.1e} without the shift"
+        when = f"{'late' if best.shift < 0.0 else 'early'} by {abs(best.shift):.2e} s"
         between = rounding + bend * error_factor(0.5)
         flips = flip_rows(truth.yardstick.system, exact, state, between, rounding)
     return [
-        Row(GATE, "time", "time_shift", best.shift, "s", floor / change, note=_as_text(best.shift)),
+        Row(GATE, "time", "time_shift", best.shift, "s", floor / change, note=when),
         Row(GATE, "omega", "residual_after_shift", left, "1", floor / rate, note=text),
         *flips,
     ]

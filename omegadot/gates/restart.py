@@ -48,7 +48,7 @@ def row(
     most.
     """
     yardstick = truth.yardstick
-    rest = State(*(values[sample:] for values in vars(state).values()))
+    rest = state[sample:]
     apart = {c: yardstick.distance(c, rest, restarted) for c in CHANNELS}
 
     def alike(growth: Array) -> Likeness:

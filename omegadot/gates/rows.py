@@ -22,9 +22,13 @@ class Row:
     note: str = ""
 
 
-def within(gate: str, channel: str, metric: str, value: float, unit: str, bound: float) -> Row:
-    """A row that passes where the value is at most its bound; NaN fails."""
-    return Row(gate, channel, metric, value, unit, bound, "pass" if value <= bound else "fail")
+def within(
+    gate: str, channel: str, metric: str, value: float, unit: str, bound: float, note: str = ""
+) -> Row:
+    """A row that passes where the value is at most its bound; NaN fails. note: of a failure."""
+    if value <= bound:
+        return Row(gate, channel, metric, value, unit, bound, "pass")
+    return Row(gate, channel, metric, value, unit, bound, "fail", note)
 
 
 def worst(verdicts: Iterable[str]) -> str | None:

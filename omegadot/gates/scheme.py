@@ -8,19 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.likeness import Likeness, like_schemes, likeness
-from omegadot.gates.measured_run import (
-    CHANNELS,
-    Declared,
-    MeasuredRun,
-    SchemeKey,
-    evidence_of,
-    order_of,
-    scheme_key,
-)
+from omegadot.gates.likeness import ROTATION, Likeness, like_schemes, likeness
+from omegadot.gates.measured_run import CHANNELS, Declared, MeasuredRun, evidence_of, order_of
 from omegadot.gates.rows import Row
-from omegadot.gates.truth import Truth
-from omegadot.gates.verdicts import ORDER_TOLERANCE, is_whole
+from omegadot.gates.truth import SchemeKey, Truth, scheme_key
+from omegadot.gates.verdicts import ORDER_TOLERANCE, ObservedOrder, is_whole
 from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
@@ -31,24 +23,15 @@ CLEAR_OF_ROUNDING = 10.0
 # Beyond half a radian, or half its size, an error is no longer a power of the step: it saturates.
 SATURATED = 0.5
 BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
+NOTHING = Likeness(float("nan"), "omega", float("nan"))
 
 
 @dataclass(frozen=True)
 class Seen:
-    """The order that a sweep shows in one channel.
+    """The order that a sweep shows in a channel. reason: why it cannot be judged; "" if it can."""
 
-    limit: where its slopes are heading: what they lack halves with the step where the next term of
-    the error is one order higher, so that ``limit = s1 + (s1 - s2)``, the finest slope first.
-    reason: why it cannot be judged; "" if it can.
-    """
-
-    value: float
-    limit: float
+    order: ObservedOrder
     reason: str
-
-
-def _saturated(measured: MeasuredRun) -> bool:
-    return any(not np.max(measured.error[c]) <= SATURATED for c in ("omega", "attitude"))
 
 
 def _clear(measured: MeasuredRun, channel: str) -> bool:
@@ -64,7 +47,9 @@ def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, Seen]:
     It can be judged where the two finest slopes agree, of errors that stand clear of rounding and
     come from runs that do not saturate.
     """
-    unsaturated = [measured for measured in measured_runs if not _saturated(measured)]
+    unsaturated = [
+        m for m in measured_runs if all(np.max(m.error[c]) <= SATURATED for c in ROTATION)
+    ]
     saturate = len(unsaturated) < len(measured_runs)
     found = {}
     for channel in CHANNELS:
@@ -77,10 +62,7 @@ def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, Seen]:
         if clear is None or not clear.resolved:
             why = ": errors saturate" if saturate else ": errors are close to rounding"
             reason = "not resolved by this sweep" + why * (len(usable) < len(measured_runs))
-        best = clear or shown
-        coarser = order_of(sorted(usable, key=lambda c: c.sweep.timestep)[1:], channel)
-        limit = 2.0 * best.value - coarser.value if coarser else best.value
-        found[channel] = Seen(best.value, limit, reason)
+        found[channel] = Seen(clear or shown, reason)
     return found
 
 
@@ -91,28 +73,25 @@ def order_rows(seen: Mapping[str, Seen], declared: Declared, measured: MeasuredR
     scheme does not show here either.
     """
     found = []
-    for channel, order in seen.items():
-        limit = declared.orders[channel]
-        verdict, note = "info", order.reason
+    for channel, shown in seen.items():
+        limit, left = declared.orders[channel], measured.against_scheme.get(channel)
+        verdict, note = "info", shown.reason
         if not note:
-            verdict, note = _held_to(order, limit, _explained(measured, channel))
-        bound = None if limit is None else float(limit)
-        found.append(Row(GATE, channel, "observed_order", order.value, "1", bound, verdict, note))
+            explained = left is not None and bool(np.all(left <= measured.round_off[channel]))
+            verdict, note = _held_to(shown.order, limit, explained)
+        bound, value = None if limit is None else float(limit), shown.order.value
+        found.append(Row(GATE, channel, "observed_order", value, "1", bound, verdict, note))
     return found
 
 
-def _explained(measured: MeasuredRun, channel: str) -> bool:
-    left = measured.against_scheme.get(channel)
-    return left is not None and bool(np.all(left <= measured.round_off[channel]))
-
-
-def _held_to(order: Seen, declared: int | None, explained: bool) -> tuple[str, str]:
+def _held_to(order: ObservedOrder, declared: int | None, explained: bool) -> tuple[str, str]:
     if declared is None:
         return "info", "no order is declared"
     if order.value >= declared - ORDER_TOLERANCE:
         return "pass", ""
-    if order.limit >= declared - ORDER_TOLERANCE:
-        return "info", f"not settled: the slopes are heading for {order.limit:.2f}"
+    if order.value + order.rise >= declared - ORDER_TOLERANCE:
+        limit = order.value + order.rise
+        return "info", f"not settled: the slopes are heading for {limit:.2f}"
     if not is_whole(order.value):
         return "info", f"not settled: observed order {order.value:.2f}, declared {declared}"
     if explained:
@@ -156,15 +135,17 @@ def match_row(
         return row
     if integrator.scheme is not None:
         note = f"the reference has no run of {integrator.scheme} to hold this against"
-        return _row(Likeness(float("nan"), "omega", float("nan")), "info", note)
+        return _row(NOTHING, "info", note)
     alike = like_schemes(truth, measured.sweep, state)
     nearest = min(alike.values(), key=lambda one: (np.isnan(one.share), one.share), default=None)
     if nearest is None:
-        nothing = Likeness(float("nan"), "omega", float("nan"))
-        return _row(nothing, "info", "declares no scheme, and none was stepped for comparison")
-    equals = [key.scheme for key, one in alike.items() if one.agree]
-    text = f"declares no scheme, and equals {' and '.join(dict.fromkeys(equals)) or 'none known'}"
-    return _row(nearest, "info", text)
+        return _row(NOTHING, "info", "declares no scheme, and none was stepped for comparison")
+    equals = _equalled(alike) or "none known"
+    return _row(nearest, "info", f"declares no scheme, and equals {equals}")
+
+
+def _equalled(alike: Mapping[SchemeKey, Likeness]) -> str:
+    return " and ".join(dict.fromkeys(key.scheme for key, one in alike.items() if one.agree))
 
 
 def _left_is_of_higher_order(
@@ -194,8 +175,7 @@ def _declared_row(
         return _row(found, "info", BLOWN_UP)
     if found.agree:
         return _row(found, "pass", f"equals {integrator.scheme}, to {found.distance:.1e}")
-    alike = like_schemes(truth, measured.sweep, state)
-    others = dict.fromkeys(key.scheme for key, one in alike.items() if one.agree)
-    instead = f"equals {' and '.join(others)}" if others else "steps otherwise"
+    others = _equalled(like_schemes(truth, measured.sweep, state))
+    instead = f"equals {others}" if others else "steps otherwise"
     text = f"declares {integrator.scheme}, but {instead}: {found.channel} diverges from it"
     return _row(found, "fail", f"{text} {found.share:.0e} times as far as rounding can")

@@ -1,16 +1,25 @@
-"""Gate 5, trajectory: omega, attitude and position against the exact solution."""
+"""Gate 5, trajectory: omega, attitude and position against the exact solution.
+
+A run also reports what the contract requires, whatever the scheme and its order: it begins at the
+state that it was given, its quaternions are of unit length, and an engine that works in double
+precision reports numbers of double precision. No step size excuses any of these.
+"""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from omegadot.gates import equation
 from omegadot.gates.case import Sweep
 from omegadot.gates.measured_run import MeasuredRun
 from omegadot.gates.measures import TRAJECTORY_UNITS
 from omegadot.gates.rows import Row, within
-from omegadot.gates.scales import EPS
+from omegadot.gates.scales import EPS, ROUNDINGS_PER_STEP, norm
+from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
-from omegadot.reference_impl.system import Array
+from omegadot.reference_impl.system import Array, State, System
 
 GATE = "trajectory"
 
@@ -39,3 +48,59 @@ def rows(measured: MeasuredRun, findings: dict[str, Finding]) -> list[Row]:
             left = float(np.max(measured.against_scheme[channel]))
             found.append(Row(GATE, channel, "unexplained_max", left, unit, bound))
     return found
+
+
+def reported_rows(truth: Truth, measured: MeasuredRun, state: State, precision: str) -> list[Row]:
+    """The start, the quaternion's length and, where it is found, single precision."""
+    found = [_start(measured), _length(measured.sweep, state)]
+    if precision == "float64" and _is_single(state, truth.at(measured.sweep)):
+        note = "the state is kept in single precision, and double is declared"
+        eps = float(np.finfo(np.float32).eps)
+        found.append(Row(GATE, "attitude", "precision", eps, "1", EPS, "fail", note))
+    return found
+
+
+def omega_dot_rows(system: System, state: State, omega_dot: Array) -> list[Row]:
+    """The omega-dot reported along a run, held to the equation's bound at the states it reports."""
+    found = [replace(row, gate=GATE) for row in equation.reported_rows(system, state, omega_dot)]
+    note = "the omega-dot reported along the run is not that of its states"
+    return [replace(row, note=note) if row.verdict == "fail" else row for row in found]
+
+
+def _start(measured: MeasuredRun) -> Row:
+    """The first sample's distance from the state given, in parts of rounding in and out."""
+    shares = {}
+    for channel in TRAJECTORY_UNITS:
+        allowed = measured.round_off[channel][0] + measured.floor.get(channel, np.zeros(1))[0]
+        error = float(measured.error[channel][0])
+        shares[channel] = error / allowed if error else 0.0
+    worst = max(shares, key=lambda channel: shares[channel])
+    note = "the run does not begin at the state that it is given"
+    return within(GATE, worst, "start", float(shares[worst]), "1", 1.0, note)
+
+
+def _length(sweep: Sweep, state: State) -> Row:
+    """How far a quaternion is from unit length; each step may round it by ``16 eps``."""
+    off = np.abs(norm(state.orientation) - 1.0)
+    allowed = ROUNDINGS_PER_STEP * EPS * (sweep.sample_steps + 1.0)
+    place = int(np.argmax(off / allowed))
+    worst, bound = float(off[place]), float(allowed[place])
+    note = f"the quaternion is not of unit length: it is off by {worst:.1e}"
+    return within(GATE, "attitude", "unit_length", worst, "1", bound, note)
+
+
+def _is_single(state: State, exact: State) -> bool:
+    """Whether attitude or omega move, and every value after the start is a single's number."""
+    pairs = (
+        (state.orientation[1:], exact.orientation[1:]),
+        (state.angular_velocity[1:], exact.angular_velocity[1:]),
+    )
+    return any(
+        _singles(reported) and not _singles(true) and np.ptp(reported, 0).any()
+        for reported, true in pairs
+    )
+
+
+def _singles(values: Array) -> bool:
+    with np.errstate(over="ignore"):
+        return bool(np.array_equal(values, values.astype(np.float32).astype(float)))

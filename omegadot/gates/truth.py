@@ -7,10 +7,35 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.gates.case import Case, Sweep
-from omegadot.gates.measured_run import Companion, ExactSamples, SchemeKey
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates.case import Sweep
 from omegadot.gates.measures import Yardstick
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.coordinates import Coordinates, canonical
+from omegadot.reference_impl.system import Array, State, System
+
+
+@dataclass(frozen=True)
+class SchemeKey:
+    """Which of the reference's runs an integrator is compared with."""
+
+    scheme: str
+    coordinates: Coordinates = "com-world"
+
+
+def scheme_key(integrator: Integrator, system: System) -> SchemeKey | None:
+    """The run of the reference that this integrator should equal; None for an unknown scheme."""
+    if integrator.scheme is None:
+        return None
+    return SchemeKey(integrator.scheme, canonical(system, integrator.coordinates))
+
+
+@dataclass(frozen=True)
+class Companion:
+    """The reference stepping one scheme with one step: its states and the growth of rounding."""
+
+    state: State
+    growth: Array
+    omega_dot: Array
 
 
 @dataclass(frozen=True)
@@ -31,22 +56,15 @@ class Truth:
     yardstick: Yardstick
     companions: dict[tuple[SchemeKey, float], Companion] = field(default_factory=dict)
 
-    def at(self, sweep: Sweep) -> State:
-        """The exact states at the samples of one sweep."""
-        rows = self._rows(sweep)
-        return State(*(values[rows] for values in vars(self.state).values()))
-
-    def samples(self, sweep: Sweep) -> ExactSamples:
-        """What there is to measure one sweep's runs by."""
-        rows = self._rows(sweep)
-        floor = {channel: values[rows] for channel, values in self.floor.items()}
-        return ExactSamples(self.at(sweep), self.growth[rows], floor)
-
-    def _rows(self, sweep: Sweep) -> NDArray[np.intp]:
+    def rows(self, sweep: Sweep) -> NDArray[np.intp]:
+        """Where the samples of one sweep are among the times."""
         return np.searchsorted(self.times, sweep.times)
 
+    def at(self, sweep: Sweep) -> State:
+        """The exact states at the samples of one sweep."""
+        return self.state[self.rows(sweep)]
 
-def path_states(case: Case, truth: Truth, most: int) -> State:
-    """At most `most` states spread evenly along the exact trajectory, both ends among them."""
-    rows = np.unique(np.linspace(0, len(truth.times) - 1, most).round().astype(int))
-    return State(*(values[rows] for values in vars(truth.state).values()))
+    def companion(self, integrator: Integrator, sweep: Sweep) -> Companion | None:
+        """The run of the reference that an integrator's should equal, where there is one."""
+        key = scheme_key(integrator, self.yardstick.system)
+        return None if key is None else self.companions.get((key, sweep.timestep))

@@ -8,7 +8,7 @@ from numbers import Real
 from os import PathLike
 from typing import Any, TypeVar
 
-from omegadot.adapters.protocol import Description
+from omegadot.adapters.protocol import Description, Integrator
 from omegadot.adapters.registry import registered
 from omegadot.gates.case import Case, sweep_of
 from omegadot.harness.engine_target import EngineLike, is_target, target_of
@@ -57,8 +57,7 @@ def engine_choices(
     added = adapters_named([*extra, *(engine for engine in wanted if engine not in names)])
     known |= added
     if not wanted:
-        chosen = added or known
-        return [EngineChoice(name, target) for name, target in {**known, **chosen}.items()]
+        return [EngineChoice(name, target) for name, target in known.items()]
     picked: dict[str, list[str]] = {}
     for given in names:
         name, _, integrator = given.partition(":")
@@ -72,8 +71,11 @@ def engine_choices(
     ]
 
 
-def check_integrators(choice: EngineChoice, description: Description) -> None:
-    """Raise UsageError where an integrator is requested that the engine does not have."""
+def integrators_chosen(choice: EngineChoice, description: Description) -> tuple[Integrator, ...]:
+    """The integrators requested, in the engine's order; all of them when none was named.
+
+    Raises UsageError where one is requested that the engine does not have.
+    """
     names = [integrator.name for integrator in description.integrators]
     for wanted in choice.integrators:
         if wanted not in names:
@@ -81,6 +83,7 @@ def check_integrators(choice: EngineChoice, description: Description) -> None:
                 f"--engine {choice.name}:{wanted}: {choice.name} {description.version} has no "
                 f"integrator {wanted!r}; {nearest(wanted, names)}."
             )
+    return tuple(i for i in description.integrators if i.name in (choice.integrators or names))
 
 
 def scenarios_of(wanted: Sequence[ScenarioLike]) -> list[Scenario]:

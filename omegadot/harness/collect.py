@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,15 +12,12 @@ import polars as pl
 
 from omegadot import __version__
 from omegadot.gates.case import Case
-from omegadot.gates.exact_floor import floor_rows
-from omegadot.gates.exact_rows import exact_rows
+from omegadot.gates.exact import exact_rows, floor_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase, Outcome
-from omegadot.harness.plan import Engine, Task
 from omegadot.reference_impl.system import Array, State
 from omegadot.reports.record import schema
-from omegadot.workers.wire import state_from
 
 # Causes are tried by stepping again, which takes seconds: a run finds causes for so many failed
 # integrators of an engine, in the order of the scenarios. `omegadot check` finds them for all.
@@ -29,111 +28,80 @@ COLUMNS = {
     "position": ("px", "py", "pz"),
     "linear_velocity": ("vx", "vy", "vz"),
 }
+Labels = dict[str, Any]
 
 
-def _task_entry(task: Task, version: str, outcome: str, reason: str) -> dict[str, Any]:
+def _labels(
+    setup: str,
+    case: str,
+    engine: str,
+    version: str,
+    integrator: str | None,
+    timestep: float | None = None,
+) -> Labels:
+    """The columns that name a task."""
     return {
-        "scenario": task.scenario,
-        "engine": task.engine,
+        "scenario": case,
+        "engine": engine,
         "engine_version": version,
-        "setup": task.setup,
-        "integrator": task.integrator,
-        "timestep": task.timestep,
-        "accuracy": task.accuracy,
-        "outcome": outcome,
-        "reason": reason,
-        "gates": {},
-        "why": "",
-        "scheme": None,
+        "setup": setup,
+        "integrator": integrator,
+        "timestep": timestep,
+        "accuracy": None,
     }
 
 
-def _gates(rows: list[Row]) -> dict[str, str]:
-    found = {}
-    for gate in schema.GATES:
-        verdict = worst(row.verdict for row in rows if row.gate == gate)
-        if verdict is not None:
-            found[gate] = verdict
-    return found
+def _entry(
+    labels: Labels, outcome: str, reason: str, rows: Iterable[Row] = (), why: str = ""
+) -> dict[str, Any]:
+    verdicts = defaultdict(list)
+    for row in rows:
+        verdicts[row.gate].append(row.verdict)
+    gates = {gate: worst(verdicts[gate]) for gate in schema.GATES if verdicts[gate]}
+    own = {"outcome": outcome, "reason": reason, "gates": gates, "why": why, "scheme": None}
+    return {**labels, **own}
 
 
-class _Causes:
-    """Finds the likeliest causes, up to a number of diagnoses for each engine."""
-
-    def __init__(self, causes_of: CausesOf, seed: int) -> None:
-        self._causes_of, self._seed = causes_of, seed
-        self._diagnosed: dict[str, set[tuple[str, str]]] = {}
-
-    def of(self, case: JudgedCase, found: EngineCase) -> Cause:
-        """The causes of one engine's runs on one case."""
-        diagnose = self._causes_of(case, found, self._seed)
-        diagnosed = self._diagnosed.setdefault(found.engine.name, set())
-
-        def cause(run: JudgedRun | None) -> str:
-            key = (case.case.name, run.integrator.name if run else "")
-            if key not in diagnosed and len(diagnosed) >= MOST_CAUSES:
-                return ""
-            diagnosed.add(key)
-            return diagnose(run)
-
-        return cause
+def _answered_entry(
+    labels: Labels, found: EngineCase, outcome: str, reason: str, rows: Iterable[Row], why: str
+) -> dict[str, Any]:
+    """A task that ran, or whose run failed; a failure before it counts where it ran well."""
+    earlier = found.result.first_failure()
+    if outcome == "ok" and earlier is not None:
+        outcome, reason = earlier.outcome, earlier.reason
+    return _entry(labels, outcome, reason, [*found.shared, *rows], why)
 
 
 def _judged_entry(
-    task: Task, version: str, found: EngineCase, judged: JudgedRun, cause: Cause
+    labels: Labels, found: EngineCase, judged: JudgedRun, cause: Cause, diagnosed: set[Any]
 ) -> dict[str, Any]:
-    """A task that ran, or whose run failed; a failure before it counts where it ran well.
+    """Where a gate fails, the likeliest cause comes first among its reasons, if there is one.
 
-    Where a gate fails, the likeliest cause comes first among its reasons, if there is one.
+    diagnosed: the scenarios and integrators of the engine for which causes were looked for.
     """
-    earlier = found.result.first_failure()
     outcome, reason = judged.outcome, judged.reason
-    if outcome == "ok" and earlier is not None:
-        outcome, reason = earlier.outcome, earlier.reason
-    entry = _task_entry(task, version, outcome, reason)
-    entry["gates"] = _gates([*found.shared, *judged.rows])
-    entry["why"] = judged.why
-    likeliest = cause(judged) if "fail" in entry["gates"].values() else ""
+    entry = _answered_entry(labels, found, outcome, reason, judged.rows, judged.why)
+    entry["scheme"] = judged.integrator.scheme
+    key, likeliest = (labels["scenario"], labels["integrator"]), ""
+    if "fail" in entry["gates"].values() and (key in diagnosed or len(diagnosed) < MOST_CAUSES):
+        diagnosed.add(key)
+        likeliest = cause(judged)
     if likeliest:
         entry["why"] = f"likely cause: {likeliest}" + (f" ({judged.why})" if judged.why else "")
-    entry["scheme"] = judged.integrator.scheme
     return entry
 
 
-def _exact_tasks(case: JudgedCase, found: EngineCase, setup: str) -> Iterator[dict[str, Any]]:
-    name = case.truth.source if case.truth else "series"
-    task = Task(case.case.name, "exact", setup, name, None)
-    version = found.engine.description.version
-    if case.truth is None:
-        yield _task_entry(task, version, _outcome_without_truth(case.reason), case.reason)
-        return
-    failure = found.result.first_failure()
-    outcome, reason = (failure.outcome, failure.reason) if failure else ("ok", "")
-    entry = _task_entry(task, version, outcome, reason)
-    entry["gates"] = _gates([*found.shared, *exact_rows(case.case, case.truth)])
-    entry["why"] = f"the exact solution itself, by {name}"
-    yield entry
-
-
-def _outcome_without_truth(reason: str) -> str:
-    return "interrupted" if "interrupted" in reason else "raised"
-
-
-def _engine_tasks(
-    case: JudgedCase, found: EngineCase, setup: str, causes: _Causes
+def _unjudged_entries(
+    label: partial[Labels], case: JudgedCase, found: EngineCase
 ) -> Iterator[dict[str, Any]]:
-    version, name = found.engine.description.version, found.engine.name
-    if case.truth is None:
-        for integrator in found.engine.integrators:
-            for sweep in case.case.sweeps:
-                task = Task(case.case.name, name, setup, integrator.name, sweep.timestep)
-                outcome = _outcome_without_truth(case.reason)
-                yield _task_entry(task, version, outcome, case.reason)
-    cause = causes.of(case, found)
-    for judged in found.runs:
-        step = judged.sweep.timestep
-        task = Task(case.case.name, name, setup, judged.integrator.name, step)
-        yield _judged_entry(task, version, found, judged, cause)
+    """The tasks of a case without an exact solution."""
+    outcome = "interrupted" if "interrupted" in case.reason else "raised"
+    if found.engine.name == "exact":
+        yield _entry(label("series"), outcome, case.reason)
+        return
+    for integrator in found.engine.integrators:
+        for sweep in case.case.sweeps:
+            yield _entry(label(integrator.name, sweep.timestep), outcome, case.reason)
 
 
 def tasks_of_run(
@@ -144,104 +112,94 @@ def tasks_of_run(
     seed: that of the run, from which the evaluation states were drawn.
     causes_of: names the likeliest causes of an engine's failures.
     """
-    found: list[dict[str, Any]] = []
-    causes = _Causes(causes_of, seed)
+    entries: list[dict[str, Any]] = []
+    diagnosed: dict[str, set[Any]] = defaultdict(set)
     for case in outcome.cases:
-        for engine in case.engines:
-            if engine.engine.name == "exact":
-                found += _exact_tasks(case, engine, setup)
+        for found in case.engines:
+            label = _label_of(setup, case, found)
+            if case.truth is None:
+                entries += _unjudged_entries(label, case, found)
+            elif found.engine.name == "exact":
+                source, rows = case.truth.source, exact_rows(case.case, case.truth)
+                why = f"the exact solution itself, by {source}"
+                entries.append(_answered_entry(label(source), found, "ok", "", rows, why))
             else:
-                found += _engine_tasks(case, engine, setup, causes)
+                cause, known = causes_of(case, found, seed), diagnosed[found.engine.name]
+                for run in found.runs:
+                    labels = label(run.integrator.name, run.sweep.timestep)
+                    entries.append(_judged_entry(labels, found, run, cause, known))
     for choice, answer in outcome.missing:
         for prepared in cases:
-            wanted = choice.integrators or ("",)
-            for integrator in wanted:
-                task = Task(prepared.name, choice.name, setup, integrator, None)
-                found.append(_task_entry(task, "", answer.outcome, answer.reason))
-    return found
+            for integrator in choice.integrators or ("",):
+                labels = _labels(setup, prepared.name, choice.name, "", integrator)
+                entries.append(_entry(labels, answer.outcome, answer.reason))
+    return entries
 
 
-def _metric(
-    row: Row, case: str, engine: Engine, setup: str, task: JudgedRun | None, exact: str
-) -> dict[str, Any]:
-    return {
-        "scenario": case,
-        "engine": engine.name,
-        "engine_version": engine.description.version,
-        "setup": setup,
-        "integrator": task.integrator.name if task else exact or None,
-        "timestep": task.sweep.timestep if task else None,
-        "accuracy": None,
-        **vars(row),
-    }
+def _label_of(setup: str, case: JudgedCase, found: EngineCase) -> partial[Labels]:
+    """The labels of an engine's tasks on a case, of integrator and step."""
+    engine = found.engine
+    return partial(_labels, setup, case.case.name, engine.name, engine.description.version)
 
 
-def _floors(case: JudgedCase, setup: str) -> list[dict[str, Any]]:
-    """The exact solution's resolvable floors, which stand there whatever engines were requested."""
-    if case.truth is None:
-        return []
-    labels = _labels(case.case.name, "exact", setup, case.truth.source, None)
-    labels["engine_version"] = __version__
-    return [{**labels, **vars(row)} for row in floor_rows(case.truth)]
+def _rows_of(case: JudgedCase, setup: str) -> Iterator[tuple[Labels, Iterable[Row]]]:
+    """Rows with their labels; those of engine and scenario have no integrator and step.
+
+    The exact solution's resolvable floors stand there whatever engines were requested.
+    """
+    for found in case.engines:
+        label = _label_of(setup, case, found)
+        yield label(None), found.shared
+        for run in found.runs:
+            yield label(run.integrator.name, run.sweep.timestep), run.rows
+        if found.engine.name == "exact" and case.truth is not None:
+            yield label(case.truth.source), exact_rows(case.case, case.truth)
+    if case.truth is not None:
+        source = case.truth.source
+        labels = _labels(setup, case.case.name, "exact", __version__, source)
+        yield labels, floor_rows(case.truth)
 
 
 def metrics_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
     """One value a row; rows that belong to engine and scenario have no integrator and step."""
-    rows = []
-    for case in outcome.cases:
-        for found in case.engines:
-            name, engine = case.case.name, found.engine
-            rows += [_metric(row, name, engine, setup, None, "") for row in found.shared]
-            for task in found.runs:
-                rows += [_metric(row, name, engine, setup, task, "") for row in task.rows]
-            if engine.name == "exact" and case.truth is not None:
-                source = case.truth.source
-                for row in exact_rows(case.case, case.truth):
-                    rows.append(_metric(row, name, engine, setup, None, source))
-        rows += _floors(case, setup)
+    rows = [
+        {**labels, **vars(row)}
+        for case in outcome.cases
+        for labels, found in _rows_of(case, setup)
+        for row in found
+    ]
     columns = {name: f.dtype for name, f in schema.METRICS.items()}
-    return (
-        pl.DataFrame(rows, schema=columns, orient="row") if rows else schema.empty(schema.METRICS)
-    )
+    return pl.DataFrame(rows, schema=columns, orient="row")
 
 
-def _samples(labels: dict[str, Any], time: Array, state: State, omega_dot: Array) -> pl.DataFrame:
+def _samples(labels: Labels, time: Array, state: State, omega_dot: Array) -> pl.DataFrame:
     columns: dict[str, Array] = {"time": time}
     for field, names in COLUMNS.items():
         columns |= {name: getattr(state, field)[:, i] for i, name in enumerate(names)}
     columns |= {name: omega_dot[:, i] for i, name in enumerate(("ax", "ay", "az"))}
     numbers = {name: np.ascontiguousarray(values) for name, values in columns.items()}
-    texts = [pl.lit(v, dtype=schema.TRAJECTORIES[k].dtype).alias(k) for k, v in labels.items()]
+    texts = [
+        pl.lit(labels[name], dtype=field.dtype).alias(name)
+        for name, field in schema.TRAJECTORIES.items()
+        if name in labels
+    ]
     return pl.DataFrame(numbers).with_columns(texts).select(list(schema.TRAJECTORIES))
-
-
-def _labels(
-    case: str, engine: str, setup: str, integrator: str, timestep: float | None
-) -> dict[str, Any]:
-    return {
-        "scenario": case,
-        "engine": engine,
-        "setup": setup,
-        "integrator": integrator,
-        "timestep": timestep,
-        "accuracy": None,
-    }
 
 
 def trajectories_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
     """Every run's samples, and the exact trajectory of every case."""
     frames = []
     for case in outcome.cases:
-        name, truth = case.case.name, case.truth
+        truth = case.truth
         if truth is None:
             continue
-        labels = _labels(name, "exact", setup, truth.source, None)
+        labels = _labels(setup, case.case.name, "exact", __version__, truth.source)
         frames.append(_samples(labels, truth.times, truth.state, truth.omega_dot))
         for found in case.engines:
-            for (integrator, timestep), answer in found.result.runs.items():
+            label = _label_of(setup, case, found)
+            for key, answer in found.result.runs.items():
                 if answer.ok:
-                    labels = _labels(name, found.engine.name, setup, integrator, timestep)
                     run = answer.result
-                    state = state_from(run["state"])
-                    frames.append(_samples(labels, run["time"], state, run["omega_dot"]))
+                    state = State(**run["state"])
+                    frames.append(_samples(label(*key), run["time"], state, run["omega_dot"]))
     return pl.concat(frames) if frames else schema.empty(schema.TRAJECTORIES)

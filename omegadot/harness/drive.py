@@ -14,7 +14,8 @@ from typing import Any
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.evaluation_states import EvaluationStates, Probe
+from omegadot.gates.equation import EvaluationStates
+from omegadot.gates.vanishing_step import Probe
 from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
@@ -35,8 +36,6 @@ class CaseResult:
     steps from several states, and the sample from which a run was restarted with the rest of it.
     """
 
-    engine: str
-    case: str
     integrators: tuple[Integrator, ...] = ()
     model: Answer = INTERRUPTED
     forward: Answer = INTERRUPTED
@@ -139,10 +138,9 @@ class Driver:
 
     def evaluate_equations(self, case: Case, evaluation_states: EvaluationStates) -> CaseResult:
         """The model read back, and the engine's equations at the states in question."""
-        precision = self.engine.description.precision
-        result = CaseResult(self.engine.name, case.name, precision=precision)
+        result = CaseResult(precision=self.engine.description.precision)
         features = self.engine.description.features
-        first = State(*(f[0] for f in vars(evaluation_states.random).values()))
+        first = evaluation_states.random[0]
         result.model = self.request(case, "model", state=first)
         result.integrators = self.integrators()
         lacking = Answer("unsupported", "the engine offers no such call")

@@ -22,12 +22,9 @@ def is_target(engine: EngineLike, known: Container[str]) -> bool:
     left, separator, right = engine.rpartition(":")
     if not separator or left in known:
         return right.endswith(".py")
-    return left.endswith(".py") or _is_module(left.partition(".")[0])
-
-
-def _is_module(package: str) -> bool:
-    known = package.isidentifier() and package != "__main__"
-    return known and importlib.util.find_spec(package) is not None
+    package = left.partition(".")[0]
+    named = package.isidentifier() and package != "__main__"
+    return left.endswith(".py") or (named and importlib.util.find_spec(package) is not None)
 
 
 def target_of(engine: EngineLike) -> str:

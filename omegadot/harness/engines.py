@@ -2,29 +2,33 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import TypeVar
 
-from omegadot.adapters.protocol import Description, Integrator
 from omegadot.adapters.registry import BUILT_IN
-from omegadot.harness.arguments import check_integrators
+from omegadot.harness.arguments import integrators_chosen
 from omegadot.harness.drive import Driver
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import Engine, EngineChoice
-from omegadot.workers.harness_end.pool import Limits, WorkerPool
-from omegadot.workers.harness_end.process import Answer
+from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
 
 Result = TypeVar("Result")
 TRUTH = ("exact", "reference")
+SECONDS_ASLEEP = 0.2
 
 
-def integrators_chosen(choice: EngineChoice, description: Description) -> tuple[Integrator, ...]:
-    """The integrators requested, in the engine's order; all of them when none was named."""
-    if not choice.integrators:
-        return description.integrators
-    return tuple(i for i in description.integrators if i.name in choice.integrators)
+def outcome_of(future: Future[Result]) -> Result:
+    """A future's result, waited for in short turns.
+
+    A signal may reach another thread than the main one, which then sees it only when it wakes: a
+    single long wait would sleep through Ctrl-C.
+    """
+    while not future.done():
+        wait([future], timeout=SECONDS_ASLEEP)
+    return future.result()
 
 
 class NoTruthError(Exception):
@@ -32,22 +36,26 @@ class NoTruthError(Exception):
 
 
 class Engines:
-    """Started once, used through their drivers, ended together.
+    """A process and a thread for each, started once, used through their drivers, ended together.
 
+    Calls for one of them run on its own thread, in the order submitted.
     started: those requested that started.  missing: those that did not, with the answer.
     """
 
     def __init__(self, request: RunRequest) -> None:
-        self.request = request
         requested = {choice.name: choice for choice in request.choices}
         added = {n: EngineChoice(n, BUILT_IN[n]) for n in TRUTH if n not in requested}
         self._choices = {**requested, **added}
         self._requested = set(requested)
         memory = None if request.memory is None else int(request.memory * 2**30)
-        targets = {name: choice.target for name, choice in self._choices.items()}
-        self._pool = WorkerPool(
-            targets, request.setup, Limits(request.timeout, request.jobs, memory)
-        )
+        self._stopping = threading.Event()
+        # First come, first served: where workers wait for a free processor, none waits for long.
+        self._turns = ThreadPoolExecutor(request.jobs, "turn")
+        self._processes = {
+            name: WorkerProcess(choice.target, request.setup, request.timeout, memory=memory)
+            for name, choice in self._choices.items()
+        }
+        self._threads = {name: ThreadPoolExecutor(1, name) for name in self._choices}
         self.drivers: dict[str, Driver] = {}
         self.started: list[Engine] = []
         self.missing: list[tuple[EngineChoice, Answer]] = []
@@ -58,21 +66,19 @@ class Engines:
         Raises NoTruthError where one of the last two does not start, UsageError where an
         integrator is requested that an engine does not have.
         """
-        for name, answer in self._pool.start().items():
-            choice = self._choices[name]
+        # By turns: many engines that start together would only be late together.
+        starts = {name: self._turns.submit(p.start) for name, p in self._processes.items()}
+        answers = {name: outcome_of(future) for name, future in starts.items()}
+        for name, answer in answers.items():
+            choice, process = self._choices[name], self._processes[name]
             if not answer.ok:
                 self.missing.append((choice, answer))
                 continue
             description = description_of(answer.result)
-            check_integrators(choice, description)
             engine = Engine(choice, description, integrators_chosen(choice, description))
-            pool = self._pool
-            self.drivers[name] = Driver(engine, pool.processes[name], pool.in_turn, pool.stopping)
+            self.drivers[name] = Driver(engine, process, self._in_turn, self._stopping)
             if name in self._requested:
                 self.started.append(engine)
-        self._require_truth()
-
-    def _require_truth(self) -> None:
         for choice, answer in self.missing:
             if choice.name in TRUTH:
                 raise NoTruthError(
@@ -80,21 +86,30 @@ class Engines:
                     f"nothing can be judged; {_advice(answer)}."
                 )
 
+    def _in_turn(self, call: Callable[[], Answer]) -> Answer:
+        """A request's answer, once fewer than `jobs` others are being answered."""
+        return self._turns.submit(call).result()
+
     def submit(self, name: str, call: Callable[[], Result]) -> Future[Result]:
         """Have a call done on the engine's own thread, after what was submitted before."""
-        return self._pool.submit(name, call)
+        return self._threads[name].submit(call)
 
     def stop(self) -> None:
-        """End every worker at once; answers that were on their way become interruptions."""
-        self._pool.stop()
+        """End every process at once; answers that were on their way become interruptions."""
+        self._stopping.set()
+        for process in self._processes.values():
+            process.stop()
 
     def finish(self) -> None:
-        """Wait for the calls submitted, then end the workers."""
-        self._pool.finish()
+        """End the threads, then the processes, which are idle by then or stopped already."""
+        for threads in (*self._threads.values(), self._turns):
+            threads.shutdown(wait=True, cancel_futures=True)
+        for process in self._processes.values():
+            process.finish()
 
     def deaths(self) -> list[tuple[str, str]]:
-        """Which workers died, and how."""
-        return self._pool.deaths()
+        """Which processes died, and how."""
+        return [(name, how) for name, p in self._processes.items() for how in p.deaths]
 
 
 def _advice(answer: Answer) -> str:

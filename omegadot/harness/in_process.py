@@ -11,14 +11,11 @@ from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
-from omegadot.workers.wire import read_frame, write_frame
+from omegadot.workers.wire import encode_frame, read_frame
 
 
 def _sent(message: dict[str, Any]) -> dict[str, Any]:
-    stream = io.BytesIO()
-    write_frame(stream, message)
-    stream.seek(0)
-    return read_frame(stream)
+    return read_frame(io.BytesIO(encode_frame(message)))
 
 
 class Local:

@@ -2,44 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import (
-    cost,
-    equation,
-    invariants,
-    model,
-    phase,
-    scheme,
-    trajectory,
-)
-from omegadot.gates import (
-    reported as reports_found,
-)
+from omegadot.gates import cost, equation, invariants, model, phase, scheme, trajectory
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.evaluation_states import EvaluationStates
-from omegadot.gates.measured_run import (
-    Declared,
-    MeasuredRun,
-    findings_of,
-    measure,
-    orders_for,
-    scheme_key,
-)
-from omegadot.gates.rows import Row, worst
+from omegadot.gates.equation import EvaluationStates
+from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
+from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.unknown_schemes import rows_of_unknown
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import acceleration_from, body_from, state_from
-
-GATES = ("model", "equation", "scheme", "invariants", "trajectory", "cost")
+from omegadot.workers.wire import body_from
 
 
 @dataclass(frozen=True)
@@ -54,11 +34,6 @@ class JudgedRun:
     why: str = ""
     unresolved: bool = False
 
-    def verdicts(self) -> dict[str, str]:
-        """The worst verdict per gate that was reached."""
-        found = {gate: worst(r.verdict for r in self.rows if r.gate == gate) for gate in GATES}
-        return {gate: verdict for gate, verdict in found.items() if verdict is not None}
-
 
 def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[Row]:
     """The rows that belong to engine and scenario, whatever the integrator."""
@@ -67,13 +42,12 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
         answer = result.model.result
         for body in answer["bodies"]:
             rows += model.body_rows(case, body_from(body))
-        first = State(*(values[0] for values in vars(evaluation_states.random).values()))
-        rows += model.state_rows(case, first, state_from(answer["state"]))
+        rows += model.state_rows(case, evaluation_states.random[0], State(**answer["state"]))
     named = {"residual": (result.forward, evaluation_states.random)}
     named["residual_on_path"] = (result.path, evaluation_states.path)
     for metric, (found, states) in named.items():
         if found.ok:
-            acceleration = acceleration_from(found.result)
+            acceleration = Acceleration(**found.result)
             rows += equation.forward_rows(case.system, states, acceleration, metric)
     if result.inverse.ok:
         torque = result.inverse.result["torque"]
@@ -83,7 +57,8 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
     return rows
 
 
-def _is_finite(state: State) -> bool:
+def is_finite(state: State) -> bool:
+    """Whether every number of a trajectory is finite."""
     return all(bool(np.all(np.isfinite(values))) for values in vars(state).values())
 
 
@@ -97,20 +72,17 @@ def _why(findings: dict[str, Finding]) -> str:
 
 
 def _measured_runs(
-    truth: Truth, integrator: Integrator, answers: dict[float, Answer], sweeps: list[Sweep]
+    truth: Truth, integrator: Integrator, answers: Iterable[tuple[Sweep, Answer]]
 ) -> dict[float, MeasuredRun]:
     """The runs of one integrator that can be measured: finite, with the samples requested."""
-    measured_runs, key = {}, scheme_key(integrator, truth.yardstick.system)
-    for sweep in sweeps:
-        answer = answers[sweep.timestep]
+    measured_runs = {}
+    for sweep, answer in answers:
         if not answer.ok or len(answer.result["time"]) != len(sweep.times):
             continue
-        state = state_from(answer.result["state"])
-        if _is_finite(state):
-            companion = truth.companions.get((key, sweep.timestep)) if key else None
-            measured_runs[sweep.timestep] = measure(
-                truth.yardstick, sweep, truth.samples(sweep), state, companion
-            )
+        state = State(**answer.result["state"])
+        if is_finite(state):
+            own = truth.companion(integrator, sweep)
+            measured_runs[sweep.timestep] = measure(truth, sweep, state, own)
     return measured_runs
 
 
@@ -119,8 +91,8 @@ def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
     if not answer.ok:
         return JudgedRun(integrator, sweep, answer.outcome, answer.reason)
     rows = [trajectory.time_row(sweep, answer.result["time"])]
-    state = state_from(answer.result["state"])
-    if _is_finite(state):
+    state = State(**answer.result["state"])
+    if is_finite(state):
         return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
     finite = np.isfinite(state.orientation).all(-1) & np.isfinite(state.angular_velocity).all(-1)
     bad = np.flatnonzero(~finite & np.isfinite(answer.result["time"]))
@@ -132,39 +104,32 @@ def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
     return JudgedRun(integrator, sweep, "diverged", note, rows, why=note)
 
 
-def judge_integrator(
+def _judge_integrator(
     truth: Truth,
     integrator: Integrator,
-    sweeps: list[Sweep],
-    answers: dict[float, Answer],
-    refinements: dict[float, tuple[Sweep, Answer]],
-    result: CaseResult | None = None,
+    sweeps: Iterable[Sweep],
+    result: CaseResult,
+    finer: Iterable[tuple[Sweep, Answer]],
 ) -> Iterator[JudgedRun]:
-    """Judge every step size of one integrator; refinements only serve to see its order.
-
-    result: what else the engine answered, where its scheme is unknown.
-    """
-    result = result or CaseResult("", "")
-    finer = {step: answer for step, (_, answer) in refinements.items()}
-    every = [*sweeps, *(sweep for sweep, _ in refinements.values())]
-    measured_runs = _measured_runs(truth, integrator, {**answers, **finer}, every)
-    declared = Declared(integrator.scheme, orders_for(integrator, truth.yardstick.system))
+    """Judge every step size of one integrator; finer ones only serve to see its order."""
+    answers = [(sweep, result.runs[integrator.name, sweep.timestep]) for sweep in sweeps]
+    measured_runs = _measured_runs(truth, integrator, [*answers, *finer])
+    system = truth.yardstick.system
+    declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
     seen = scheme.orders_seen(known)
-    for sweep in sweeps:
-        answer, measured = answers[sweep.timestep], measured_runs.get(sweep.timestep)
+    for sweep, answer in answers:
+        measured = measured_runs.get(sweep.timestep)
         if measured is None:
             yield _failed(integrator, sweep, answer)
             continue
-        state = state_from(answer.result["state"])
+        state = State(**answer.result["state"])
         findings = findings_of(measured, declared, known)
         match = scheme.match_row(truth, integrator, measured, state, known)
-        system = truth.yardstick.system
-        rows = [match, *scheme.order_rows(seen, declared, measured)]
-        unknown = rows_of_unknown(truth, system, integrator, sweep, result)
-        misreported = reports_found.rows(truth, measured, state, result.precision)
-        misreported += reports_found.omega_dot_rows(system, state, answer.result["omega_dot"])
-        rows += unknown
+        unknown = rows_of_unknown(truth, integrator, sweep, result)
+        rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
+        misreported = trajectory.reported_rows(truth, measured, state, result.precision)
+        misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
         rows += invariants.rows(measured, findings, sweep.times)
         rows.append(trajectory.time_row(sweep, answer.result["time"]))
         rows += [*misreported, *trajectory.rows(measured, findings)]
@@ -183,9 +148,10 @@ def judge_case(
     refinements: dict[str, dict[float, tuple[Sweep, Answer]]],
 ) -> list[JudgedRun]:
     """Judge every task of one engine on one scenario."""
-    sweeps, judged = list(case.sweeps), []
-    for integrator in result.integrators:
-        answers = {s.timestep: result.runs[integrator.name, s.timestep] for s in sweeps}
-        finer = refinements.get(integrator.name, {})
-        judged += list(judge_integrator(truth, integrator, sweeps, answers, finer, result))
-    return judged
+    return [
+        judged
+        for integrator in result.integrators
+        for judged in _judge_integrator(
+            truth, integrator, case.sweeps, result, refinements.get(integrator.name, {}).values()
+        )
+    ]

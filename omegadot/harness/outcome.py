@@ -8,9 +8,8 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 
 from omegadot.gates.case import Case
-from omegadot.gates.measured_run import Companion, SchemeKey
 from omegadot.gates.rows import Row
-from omegadot.gates.truth import Truth
+from omegadot.gates.truth import Companion, SchemeKey, Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.plan import Engine, EngineChoice
@@ -85,20 +84,13 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class PendingTruth:
-    """What a case is judged by. The truth is a string where there is none: the reason."""
-
-    truth: Future[Truth | str]
-    companions: Future[dict[tuple[SchemeKey, float], Companion]]
-
-
-@dataclass(frozen=True)
 class PendingCase:
-    """The futures of one case."""
+    """The futures of one case. The truth is a string where there is none: the reason."""
 
     case: Case
-    known: PendingTruth
-    results: dict[str, Future[CaseResult]]
+    truth: Future[Truth | str]
+    companions: Future[dict[tuple[SchemeKey, float], Companion]]
+    results: dict[str, Future[CaseResult]] = field(default_factory=dict)
 
 
 def tasks_of(engine: Engine, case: Case) -> int:

@@ -1,4 +1,4 @@
-"""What is run: the engines requested, the engines that started, and the tasks."""
+"""What is run: the engines requested, and the engines that started."""
 
 from __future__ import annotations
 
@@ -15,18 +15,6 @@ class EngineChoice:
     target: str
     integrators: tuple[str, ...] = ()
     required: bool = False
-
-
-@dataclass(frozen=True)
-class Task:
-    """Scenario x engine x setup x integrator x step: what an outcome is given to."""
-
-    scenario: str
-    engine: str
-    setup: str
-    integrator: str
-    timestep: float | None
-    accuracy: float | None = None
 
 
 @dataclass(frozen=True)

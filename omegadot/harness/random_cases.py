@@ -12,8 +12,8 @@ from omegadot.gates.scales import norm
 from omegadot.harness.arguments import case_of
 from omegadot.reference_impl.rotations import normalize, rotation_matrix
 from omegadot.reference_impl.schemes.scheme import kinds_of
-from omegadot.reference_impl.system import Array, System
-from omegadot.scenarios.loader import scenario_of
+from omegadot.reference_impl.system import Array
+from omegadot.scenarios import scenario
 
 SLEEPY = 0.05  # rad/s, below which engines may put a body to sleep
 FASTEST = 1.0  # rad/s, above which some limit a body's rate
@@ -56,11 +56,11 @@ def _loads(random: Generator, flavour: str, torque: float, size: float, rate: fl
         load["damping"] = 0.3 * torque / rate * _spread(random, 1.0)
         frame = "world" if random.random() < 0.5 else "body"
         value = torque * _spread(random, 1.0) * _direction(random)
-        load["torque"] = {"frame": frame, "value": list(value)}
-        load["gravity"] = list(pull * _direction(random))
+        load["torque"] = {"frame": frame, "value": value}
+        load["gravity"] = pull * _direction(random)
     if flavour == "pivoted":
-        load["gravity"] = list(pull * _direction(random))
-        load["pivot"] = list(size * random.uniform(0.1, 1.0) * _direction(random))
+        load["gravity"] = pull * _direction(random)
+        load["pivot"] = size * random.uniform(0.1, 1.0) * _direction(random)
     return load
 
 
@@ -80,17 +80,16 @@ def random_case(seed: int, index: int) -> Case:
         rate = SLEEPY * 10.0 ** random.uniform(-1.0, -0.1)
     offset = size * random.uniform(0.1, 1.0) * _direction(random) * (random.random() < 2 / 3)
     initial: dict[str, Any] = {
-        "orientation": list(random.standard_normal(4)),
-        "angular_velocity": list(rate * _direction(random)),
+        "orientation": random.standard_normal(4),
+        "angular_velocity": rate * _direction(random),
     }
     if flavour != "pivoted":
-        initial["position"] = list(size * random.standard_normal(3))
-        initial["linear_velocity"] = list(size * rate * random.standard_normal(3))
+        initial["position"] = size * random.standard_normal(3)
+        initial["linear_velocity"] = size * rate * random.standard_normal(3)
     duration = RADIANS / rate
     data = {
-        "schema": 1,
         "name": f"random-{seed}-{index}",
-        "body": {"mass": mass, "inertia": tensor.tolist(), "center_of_mass": list(offset)},
+        "body": {"mass": mass, "inertia": tensor, "center_of_mass": offset},
         "initial": initial,
         "load": _loads(random, flavour, least * rate**2, size, rate),
         "run": {
@@ -99,27 +98,7 @@ def random_case(seed: int, index: int) -> Case:
             "sample": duration / SAMPLES,
         },
     }
-    return case_of(scenario_of(_floats(data), f"random scenario {index} of seed {seed}"), [])
-
-
-def _floats(value: Any) -> Any:
-    """NumPy's scalars as Python's, which is what a file holds."""
-    if isinstance(value, dict):
-        return {key: _floats(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_floats(item) for item in value]
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def _tensor_features(system: System) -> set[str]:
-    tensor = np.asarray(system.body.inertia)
-    moments = np.linalg.eigvalsh(tensor)
-    found = set()
-    if np.max(np.abs(tensor - np.diag(np.diag(tensor)))) > LEAST_SPREAD * moments[-1]:
-        found.add("full-inertia")
-    if np.min(np.diff(moments)) > LEAST_SPREAD * moments[-1]:
-        found.add("asymmetric")
-    return found
+    return case_of(scenario(data), [])
 
 
 def features_of(case: Case) -> frozenset[str]:
@@ -133,7 +112,12 @@ def features_of(case: Case) -> frozenset[str]:
     system, load = case.system, case.system.load
     rate = float(norm(case.initial.angular_velocity))
     held = load.pivot is not None
+    tensor = np.asarray(system.body.inertia)
+    moments = np.linalg.eigvalsh(tensor)
+    products = tensor - np.diag(np.diag(tensor))
     named = {
+        "full-inertia": np.max(np.abs(products)) > LEAST_SPREAD * moments[-1],
+        "asymmetric": np.min(np.diff(moments)) > LEAST_SPREAD * moments[-1],
         "offset": np.any(system.body.center_of_mass),
         "free": not held,
         "pivot": held,
@@ -145,4 +129,4 @@ def features_of(case: Case) -> frozenset[str]:
         "slow": rate < SLEEPY,
         "fast": rate > FASTEST,
     }
-    return frozenset({name for name, holds in named.items() if holds} | _tensor_features(system))
+    return frozenset(name for name, holds in named.items() if holds)

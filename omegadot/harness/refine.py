@@ -28,8 +28,3 @@ def refine(driver: Driver, case: Case, runs: list[JudgedRun], finer: Refinements
         known[sweep.timestep] = (sweep, driver.run(case, name, sweep))
         done.append(name)
     return done
-
-
-def refined_sweeps(finer: Refinements) -> list[Sweep]:
-    """The sweeps that were added to those of the case."""
-    return [sweep for known in finer.values() for sweep, _ in known.values()]

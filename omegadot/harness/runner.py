@@ -9,32 +9,24 @@ from functools import partial
 import numpy as np
 
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.evaluation_states import evaluation_states_of
-from omegadot.gates.measured_run import SchemeKey, scheme_key
+from omegadot.gates.equation import evaluation_states_of
 from omegadot.gates.scheme import comparison_keys
-from omegadot.gates.truth import Truth
+from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.harness.drive import INTERRUPTED, CaseResult
-from omegadot.harness.engines import Engines
+from omegadot.harness.engines import Engines, outcome_of
 from omegadot.harness.judge import JudgedRun, judge_case, shared_rows
 from omegadot.harness.outcome import (
     EngineCase,
     JudgedCase,
     Outcome,
     PendingCase,
-    PendingTruth,
     RunRequest,
     tasks_of,
 )
 from omegadot.harness.plan import Engine
-from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine, refined_sweeps
-from omegadot.harness.truth_requests import (
-    Companions,
-    case_companions,
-    case_truth,
-    reference_runs,
-)
+from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.truth_requests import Companions, case_companions, case_truth, reference_runs
 from omegadot.harness.unknown_schemes import probe_unknown_schemes
-from omegadot.workers.harness_end.pool import outcome_of
 
 
 class Runner:
@@ -92,11 +84,12 @@ class Runner:
             found: Companions = outcome_of(companions)
             truth.companions.update(found)
 
-    def _examine(self, engine: Engine, case: Case, pending: PendingTruth) -> CaseResult:
-        truth, driver = pending.truth.result(), self.engines.drivers[engine.name]
+    def _examine(self, engine: Engine, pending: PendingCase) -> CaseResult:
+        case, truth = pending.case, pending.truth.result()
+        driver = self.engines.drivers[engine.name]
         if isinstance(truth, str):
             self.on_advance(tasks_of(engine, case))
-            return CaseResult(engine.name, case.name)
+            return CaseResult()
         evaluation_states = evaluation_states_of(case, truth, self.request.seed)
         result = driver.evaluate_equations(case, evaluation_states)
         if engine.name == "exact":
@@ -113,47 +106,41 @@ class Runner:
         exact = self.engines.drivers["exact"]
         truth = self.engines.submit("exact", lambda: case_truth(exact, case))
         companions = self._submit_companions(case, truth.result, self._keys(case), case.sweeps)
-        known = PendingTruth(truth, companions)
-        results = {
-            engine.name: self.engines.submit(
-                engine.name, partial(self._examine, engine, case, known)
-            )
-            for engine in self.engines.started
-        }
-        return PendingCase(case, known, results)
+        pending = PendingCase(case, truth, companions)
+        for engine in self.engines.started:
+            call = partial(self._examine, engine, pending)
+            pending.results[engine.name] = self.engines.submit(engine.name, call)
+        return pending
 
     def judge(self, pending: PendingCase, finer: dict[str, Refinements]) -> JudgedCase:
         """Wait for one case and send it through the gates. finer: refinements, by engine."""
-        case, truth = pending.case, outcome_of(pending.known.truth)
+        case, truth = pending.case, outcome_of(pending.truth)
         results = {name: outcome_of(future) for name, future in pending.results.items()}
         if isinstance(truth, str):
             unjudged = [EngineCase(e, results[e.name], [], []) for e in self.engines.started]
             return JudgedCase(case, None, truth, unjudged)
-        companions = outcome_of(pending.known.companions)
+        companions = outcome_of(pending.companions)
         truth.companions.update(companions)
-        refined = [sweep for known in finer.values() for sweep in refined_sweeps(known)]
+        refined = [
+            sweep for own in finer.values() for runs in own.values() for sweep, _ in runs.values()
+        ]
         unique = {sweep.timestep: sweep for sweep in (*case.sweeps, *refined)}
         self._add_companions(case, truth, list(results.values()), list(unique.values()))
         judged = [
-            self._judge_engine(case, truth, engine, results[engine.name], finer)
-            for engine in self.engines.started
+            self._judge_engine(case, truth, e, results[e.name], finer.get(e.name, {}))
+            for e in self.engines.started
         ]
         return JudgedCase(case, truth, "", judged)
 
     def _judge_engine(
-        self,
-        case: Case,
-        truth: Truth,
-        engine: Engine,
-        result: CaseResult,
-        finer: dict[str, Refinements],
+        self, case: Case, truth: Truth, engine: Engine, result: CaseResult, finer: Refinements
     ) -> EngineCase:
         runs: list[JudgedRun] = []
         # A run that blew up is measured like any other: what overflows is infinitely far off.
         with np.errstate(over="ignore", invalid="ignore"):
             shared = shared_rows(case, evaluation_states_of(case, truth, self.request.seed), result)
             if engine.name != "exact":
-                runs = judge_case(truth, case, result, finer.get(engine.name, {}))
+                runs = judge_case(truth, case, result, finer)
         return EngineCase(engine, result, shared, runs)
 
     def _resolve(self, pending: PendingCase, judged: JudgedCase) -> JudgedCase:
@@ -205,8 +192,5 @@ class Runner:
 
     def _leftover(self, pending: PendingCase) -> JudgedCase:
         """A case that the interruption caught: none of it is judged, and it states so."""
-        engines = [
-            EngineCase(engine, CaseResult(engine.name, pending.case.name), [], [])
-            for engine in self.engines.started
-        ]
+        engines = [EngineCase(engine, CaseResult(), [], []) for engine in self.engines.started]
         return JudgedCase(pending.case, None, INTERRUPTED.reason, engines)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.measured_run import Companion, SchemeKey
 from omegadot.gates.measures import Yardstick
-from omegadot.gates.truth import Truth
+from omegadot.gates.truth import Companion, SchemeKey, Truth
 from omegadot.harness.drive import Driver
 from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import state_from
 
 STEPS_TIMED = 64
 Companions = dict[tuple[SchemeKey, float], Companion]
@@ -20,21 +20,22 @@ Companions = dict[tuple[SchemeKey, float], Companion]
 def case_truth(exact: Driver, case: Case) -> Truth | str:
     """The exact trajectory of a case, or the sentence that states why there is none."""
     times = case.sample_times
-    fields = {"system": case.system, "initial": case.initial, "times": times}
-    answer = exact.request(case, "solve", **fields)
-    if answer.outcome == "crashed":  # every engine is judged by this: it is worth a second try
-        answer = exact.request(case, "solve", **fields)
+    answer = _requested(exact, case, "solve", times=times)
     if not answer.ok:
         return f"no exact solution to compare with: {answer.reason}"
-    state = state_from(answer.result["state"])
+    state = State(**answer.result["state"])
     yardstick = Yardstick(case.system, times, state)
     found, floor = answer.result, answer.result["floor"]
-    relative = {
-        "omega": floor["angular_velocity"] / yardstick.rate,
-        "attitude": floor["attitude"],
-    }
+    relative = {"omega": floor["angular_velocity"] / yardstick.rate, "attitude": floor["attitude"]}
     growth = growth_along(case.system, times, state, yardstick.rate)
     return Truth(found["source"], times, state, found["omega_dot"], growth, relative, yardstick)
+
+
+def _requested(driver: Driver, case: Case, operation: str, **fields: Any) -> Answer:
+    """An answer by which every engine is judged: a crash is worth a second try."""
+    fields |= {"system": case.system, "initial": case.initial}
+    answer = driver.request(case, operation, **fields)
+    return driver.request(case, operation, **fields) if answer.outcome == "crashed" else answer
 
 
 def case_companions(
@@ -47,21 +48,13 @@ def case_companions(
     """The reference's run for every scheme and step; a scheme that fails is left out."""
     if isinstance(truth, str):
         return {}
-    plan = [{"timestep": s.timestep, "steps": s.steps, "every": s.every} for s in sweeps]
     found: Companions = {}
     for key in keys:
-        fields = {"system": case.system, "initial": case.initial, "plan": plan}
-        fields |= {
-            "scheme": key.scheme,
-            "coordinates": key.coordinates,
-            "rate": truth.yardstick.rate,
-        }
-        answer = reference.request(case, "companion", **fields)
-        if answer.outcome == "crashed":
-            answer = reference.request(case, "companion", **fields)
+        fields = {**vars(key), "plan": list(sweeps), "rate": truth.yardstick.rate}
+        answer = _requested(reference, case, "companion", **fields)
         if answer.ok:
             for sweep, run in zip(sweeps, answer.result, strict=True):
-                companion = Companion(state_from(run["state"]), run["growth"], run["omega_dot"])
+                companion = Companion(State(**run["state"]), run["growth"], run["omega_dot"])
                 found[key, sweep.timestep] = companion
     return found
 
@@ -85,8 +78,6 @@ def reference_runs(
                 failed = Answer("raised", "the reference gave no answer for this scheme")
                 runs[key] = failed if timed.ok else timed
                 continue
-            result = {"time": sweep.times, "state": vars(found.state)}
-            result |= {"omega_dot": found.omega_dot}
-            result |= {"seconds_per_step": timed.result["seconds_per_step"]}
-            runs[key] = Answer("ok", result=result)
+            own = {"time": sweep.times, "state": vars(found.state), "omega_dot": found.omega_dot}
+            runs[key] = Answer("ok", result={**timed.result, **own})
     return runs

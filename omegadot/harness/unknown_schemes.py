@@ -5,66 +5,48 @@ from __future__ import annotations
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates import restart, vanishing_step
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.evaluation_states import EvaluationStates
+from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.system import State, System
-from omegadot.workers.wire import state_from
-
-
-def is_unknown(integrator: Integrator) -> bool:
-    """Whether the reference has no run to hold an integrator's steps against."""
-    return integrator.scheme not in SCHEMES and integrator.knob == "timestep"
+from omegadot.reference_impl.system import State
 
 
 def probe_unknown_schemes(
     driver: Driver, case: Case, evaluation_states: EvaluationStates, result: CaseResult
 ) -> None:
     """Have unknown schemes take first steps, and begin their runs again, into `result`."""
-    for integrator in filter(is_unknown, result.integrators):
+    for integrator in result.integrators:
+        if integrator.scheme in SCHEMES or integrator.knob != "timestep":
+            continue  # the reference has a run to hold its steps against
         runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue
         probe = vanishing_step.probe_of(case.system, evaluation_states)
-        fields = {"states": probe.states, "timesteps": probe.timesteps}
-        answer = driver.request(case, "first_steps", integrator=integrator.name, **fields)
+        answer = driver.request(case, "first_steps", integrator=integrator.name, **vars(probe))
         result.first_steps[integrator.name] = (probe, answer)
         for sweep, run in runs.items():
-            if run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
-                state = state_from(run.result["state"])
-                _restart(driver, case, integrator, sweep, state, result)
-
-
-def _restart(
-    driver: Driver,
-    case: Case,
-    integrator: Integrator,
-    sweep: Sweep,
-    state: State,
-    result: CaseResult,
-) -> None:
-    found = restart.restart_of(sweep)
-    if found is not None:
-        sample, left = found
-        start = State(*(values[sample] for values in vars(state).values()))
-        answer = driver.run(case, integrator.name, left, start)
-        result.restarts[integrator.name, sweep.timestep] = (sample, answer)
+            found = restart.restart_of(sweep)
+            if found and run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
+                sample, left = found
+                start = State(**run.result["state"])[sample]
+                answer = driver.run(case, integrator.name, left, start)
+                result.restarts[integrator.name, sweep.timestep] = (sample, answer)
 
 
 def rows_of_unknown(
-    truth: Truth, system: System, integrator: Integrator, sweep: Sweep, result: CaseResult
+    truth: Truth, integrator: Integrator, sweep: Sweep, result: CaseResult
 ) -> list[Row]:
     """The rows of these answers for one run; none where they were not requested, or failed."""
     found = []
     probe, steps = result.first_steps.get(integrator.name, (None, None))
     if probe is not None and steps is not None and steps.ok:
-        found += vanishing_step.rows(system, probe, state_from(steps.result))
+        found += vanishing_step.rows(truth.yardstick.system, probe, State(**steps.result))
     sample, restarted = result.restarts.get((integrator.name, sweep.timestep), (0, None))
     if restarted is not None and restarted.ok:
-        state = state_from(result.runs[integrator.name, sweep.timestep].result["state"])
-        rest = state_from(restarted.result["state"])
+        state = State(**result.runs[integrator.name, sweep.timestep].result["state"])
+        rest = State(**restarted.result["state"])
         if len(rest.angular_velocity) == len(sweep.times) - sample:
             found.append(restart.row(truth, integrator, sweep, state, sample, rest))
         else:

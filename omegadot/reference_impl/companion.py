@@ -28,9 +28,14 @@ class Steps:
     every: int
 
     @property
-    def kept(self) -> NDArray[Any]:
-        """The numbers of the steps that are kept."""
+    def sample_steps(self) -> NDArray[Any]:
+        """The step numbers that are kept: the start, every `every`-th, the end."""
         return np.array(kept_steps(self.steps, self.every))
+
+    @property
+    def times(self) -> Array:
+        """(n,) s: the step numbers times the step, the contract's sample times."""
+        return self.sample_steps * self.timestep
 
 
 @dataclass(frozen=True)

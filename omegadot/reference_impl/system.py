@@ -7,6 +7,7 @@ SI units. Quaternions are ``(w, x, y, z)``, unit, world-from-body.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +75,10 @@ class State:
     angular_velocity: Array
     position: Array
     linear_velocity: Array
+
+    def __getitem__(self, places: Any) -> State:
+        """The states at these places of the leading axes."""
+        return State(*(values[places] for values in vars(self).values()))
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,12 @@
 """What is run: scenario files, their model and the built-in cases."""
 
-from omegadot.scenarios.build import ScenarioLike, scenario
 from omegadot.scenarios.errors import ScenarioError
 from omegadot.scenarios.loader import (
+    ScenarioLike,
     builtin_names,
-    find_scenario,
     load_builtin,
     load_scenario,
+    scenario,
     scenario_of,
 )
 from omegadot.scenarios.model import Scenario
@@ -16,7 +16,6 @@ __all__ = [
     "ScenarioError",
     "ScenarioLike",
     "builtin_names",
-    "find_scenario",
     "load_builtin",
     "load_scenario",
     "scenario",

@@ -1,4 +1,4 @@
-"""From a file, a built-in's name or a plain dict to a Scenario, or to one sentence."""
+"""From whatever names or describes a scenario to a Scenario, or to one sentence."""
 
 from __future__ import annotations
 
@@ -10,12 +10,16 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from omegadot.scenarios.errors import ScenarioError, describe, printable
+from omegadot.scenarios.errors import Phrase, ScenarioError, describe, printable
+from omegadot.scenarios.files import read_toml
 from omegadot.scenarios.model import Scenario
 from omegadot.scenarios.refusals import nearest, scenario_error
-from omegadot.scenarios.toml_file import read_toml
 
 BUILTIN = Path(__file__).with_name("builtin")
+ScenarioLike = str | os.PathLike[str] | Scenario | Mapping[str, Any]
+"""A built-in's name, a path, a scenario, or its tables as the file has them."""
+
+IN_CODE = "the scenario given"
 
 
 def load_scenario(path: str | os.PathLike[str]) -> Scenario:
@@ -43,20 +47,6 @@ def load_builtin(name: str) -> Scenario:
     return load_scenario(BUILTIN / f"{name}.toml")
 
 
-def find_scenario(name_or_path: str) -> Scenario:
-    """The built-in of this name; failing that, the scenario in the file of this path.
-
-    A name without a slash, a dot or a file of its name is taken for a mistyped built-in.
-    Raises ScenarioError.
-    """
-    if name_or_path in builtin_names():
-        return load_builtin(name_or_path)
-    if re.search(r"[/\\.]", name_or_path) or os.path.lexists(name_or_path):
-        return load_scenario(name_or_path)
-    found = "neither a built-in scenario nor a file"
-    raise ScenarioError(describe(name_or_path), None, found, _other_name(name_or_path))
-
-
 def scenario_of(data: Mapping[str, Any], file: str) -> Scenario:
     """The scenario in a dict as `Scenario.to_dict` or a TOML parser gives it.
 
@@ -73,3 +63,56 @@ def _other_name(name: str) -> str:
     if near:
         return f"write {near} if that is what you mean"
     return "give one of the built-in names or the path of a TOML file"
+
+
+def scenario(given: ScenarioLike | None = None, /, **changes: Any) -> Scenario:
+    """A built-in scenario, a file's, or one built in code.
+
+    given: a built-in's name, a path, a scenario or a mapping of its tables; nothing for a new one.
+    changes: keys and tables as in the file, such as ``name="spin"`` or ``run={"duration": 5.0}``.
+    They are put over the scenario given, key by key within ``initial``, ``load`` and ``run``; a
+    ``body`` replaces the whole body. NumPy arrays are taken for lists, and ``schema`` is 1 where
+    it is left out. Raises ScenarioError.
+    """
+    if isinstance(given, Scenario) and not changes:
+        return given
+    if given is None or isinstance(given, Mapping):
+        return _built(given or {}, changes)
+    found = given if isinstance(given, Scenario) else _named(given)
+    return _built(found.to_dict(), changes) if changes else found
+
+
+def _named(given: object) -> Scenario:
+    """The built-in of a name; failing that, the scenario in the file of a path.
+
+    A name without a slash, a dot or a file of its name is taken for a mistyped built-in.
+    """
+    if isinstance(given, str):
+        if given in builtin_names():
+            return load_builtin(given)
+        if not re.search(r"[/\\.]", given) and not os.path.lexists(given):
+            found = "neither a built-in scenario nor a file"
+            raise ScenarioError(describe(given), None, found, _other_name(given))
+    if isinstance(given, str | os.PathLike):
+        return load_scenario(given)
+    found = Phrase(f"of type {type(given).__name__}")
+    advice = "give a built-in's name, a path, a Scenario or a mapping of its tables"
+    raise ScenarioError(IN_CODE, None, found, advice)
+
+
+def _built(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> Scenario:
+    data: dict[str, Any] = {"schema": 1, **_plain(tables)}
+    for key, value in _plain(changes).items():
+        merged = key != "body" and isinstance(value, dict) and isinstance(data.get(key), dict)
+        data[key] = {**data[key], **value} if merged else value
+    name = data.get("name")
+    return scenario_of(data, name if isinstance(name, str) and name else IN_CODE)
+
+
+def _plain(value: Any) -> Any:
+    """Tables and lists of plain numbers: arrays have a ``tolist``."""
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return value.tolist() if hasattr(value, "tolist") else value

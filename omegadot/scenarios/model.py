@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, PlainValidator, model_validator
+from pydantic import Field, PlainValidator, model_validator
 
 from omegadot.scenarios.errors import Phrase
 from omegadot.scenarios.parts import Part
@@ -17,6 +17,7 @@ from omegadot.scenarios.quantities import (
     NotNegative,
     Positive,
     Quaternion,
+    Table,
     Text,
     Vector,
     read_positive,
@@ -54,11 +55,7 @@ def _read_flag(value: object) -> bool:
     return value
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Body(_Table):
+class Body(Table):
     """One rigid body: mass, inertia and centre of mass, or the parts that they follow from.
 
     inertia: 3x3, about the centre of mass, body axes.  With parts, the other three are None.
@@ -97,7 +94,7 @@ class Body(_Table):
         return self
 
 
-class Initial(_Table):
+class Initial(Table):
     """The state at time zero. Any nonzero quaternion is taken and normalised.
 
     position and linear_velocity are those of the centre of mass, in world axes. A pivoted body's
@@ -110,14 +107,14 @@ class Initial(_Table):
     linear_velocity: Vector = Field(default=ZERO, description="m/s, of the centre of mass, world")
 
 
-class Torque(_Table):
+class Torque(Table):
     """A constant torque, in axes fixed to the body or to the world."""
 
     frame: Literal["body", "world"] = Field(description='"body" or "world"')
     value: Vector = Field(description="N m")
 
 
-class Load(_Table):
+class Load(Table):
     """What acts on the body. Without a pivot the body is free."""
 
     gravity: Vector = Field(default=ZERO, description="m/s^2, world")
@@ -126,7 +123,7 @@ class Load(_Table):
     torque: Torque = Field(default=Torque(frame="body", value=ZERO), description="N m")
 
 
-class Run(_Table):
+class Run(Table):
     """How long, at which steps, and how densely stored."""
 
     duration: Positive = Field(description="s")
@@ -153,7 +150,7 @@ class Run(_Table):
         return self
 
 
-class Scenario(_Table):
+class Scenario(Table):
     """One case, as the contract's TOML file gives it. `title` is the name where it is left out."""
 
     schema_number: Annotated[int, PlainValidator(_read_schema)] = Field(
@@ -192,7 +189,8 @@ class Scenario(_Table):
 
         Defaults are written out. `scenario_of` reads it back to an equal scenario.
         """
-        data: dict[str, Any] = _plain(self)
+        # pydantic would warn of the lists that it makes of its own tuples
+        data = self.model_dump(mode="json", by_alias=True, exclude_none=True, warnings=False)
         if not self.body.part:
             del data["body"]["part"]
         if not self.body.allow_impossible_inertia:
@@ -200,14 +198,3 @@ class Scenario(_Table):
         if self.load.pivot is not None:
             del data["initial"]["position"], data["initial"]["linear_velocity"]
         return data
-
-
-def _plain(value: Any) -> Any:
-    """Models to dicts under the file's keys, tuples to lists; what is None is left out."""
-    if isinstance(value, BaseModel):
-        fields = type(value).model_fields.items()
-        given = {field.alias or name: getattr(value, name) for name, field in fields}
-        return {key: _plain(item) for key, item in given.items() if item is not None}
-    if isinstance(value, tuple):
-        return [_plain(item) for item in value]
-    return value

@@ -20,15 +20,13 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from omegadot.scenarios.errors import Phrase
-from omegadot.scenarios.quantities import Lengths, Positive, Quaternion, Vector, refuse
+from omegadot.scenarios.quantities import Lengths, Positive, Quaternion, Table, Vector, refuse
 
 
-class _Placed(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
+class _Placed(Table):
     position: Vector = Field(default=(0.0, 0.0, 0.0), description="m, the centre, body axes")
     orientation: Quaternion = Field(default=(1.0, 0.0, 0.0, 0.0), description="w, x, y, z")
 
@@ -92,12 +90,7 @@ class Point(_Placed):
 
 
 SHAPES: dict[str, type[_Placed]] = {
-    "box": Box,
-    "cylinder": Cylinder,
-    "sphere": Sphere,
-    "ellipsoid": Ellipsoid,
-    "capsule": Capsule,
-    "point": Point,
+    kind.__name__.lower(): kind for kind in (Box, Cylinder, Sphere, Ellipsoid, Capsule, Point)
 }
 Part = Annotated[
     Box | Cylinder | Sphere | Ellipsoid | Capsule | Point, Field(discriminator="shape")

@@ -10,15 +10,22 @@ from __future__ import annotations
 import math
 import re
 import sys
+from collections.abc import Callable
 from typing import Annotated
 
-from pydantic import PlainValidator
+from pydantic import BaseModel, ConfigDict, PlainValidator
 from pydantic_core import PydanticCustomError
 
 LARGEST = 1e50
 SMALLEST = 1e-50
 
 _MISSING = object()
+
+
+class Table(BaseModel):
+    """A table of a scenario file: frozen, and without keys that it does not know."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 def refuse(advice: str, *, key: str = "", found: object = _MISSING) -> PydanticCustomError:
@@ -58,28 +65,24 @@ def read_not_negative(value: object, *, key: str = "") -> float:
     return number
 
 
-def read_list(value: object, length: int, what: str) -> list[object] | tuple[object, ...]:
+def _read_each(
+    value: object, length: int, what: str, read: Callable[..., float] = read_number
+) -> list[float]:
     """A list of so many values; `what` names them in the advice."""
     if not isinstance(value, list | tuple) or len(value) != length:
         raise refuse(f"give {what}", found=value)
-    return value
+    return [read(item, key=f"[{i}]") for i, item in enumerate(value)]
 
 
 def read_vector(value: object) -> tuple[float, float, float]:
     """Three numbers, x y z."""
-    x, y, z = (
-        read_number(item, key=f"[{i}]")
-        for i, item in enumerate(read_list(value, 3, "a list of three numbers"))
-    )
+    x, y, z = _read_each(value, 3, "a list of three numbers")
     return x, y, z
 
 
 def read_lengths(value: object) -> tuple[float, float, float]:
     """Three positive numbers, along x y z."""
-    x, y, z = (
-        read_positive(item, key=f"[{i}]")
-        for i, item in enumerate(read_list(value, 3, "a list of three lengths in m"))
-    )
+    x, y, z = _read_each(value, 3, "a list of three lengths in m", read_positive)
     return x, y, z
 
 
@@ -88,10 +91,7 @@ def read_quaternion(value: object) -> tuple[float, float, float, float]:
 
     One that is unit to rounding is left as it is, so that reading twice changes nothing.
     """
-    w, x, y, z = (
-        read_number(item, key=f"[{i}]")
-        for i, item in enumerate(read_list(value, 4, "a quaternion as four numbers w, x, y, z"))
-    )
+    w, x, y, z = _read_each(value, 4, "a quaternion as four numbers w, x, y, z")
     if not any((w, x, y, z)):
         raise refuse("give a quaternion other than zero, such as [1, 0, 0, 0]", found=value)
     # the norm of a quotient by its own norm: half an ulp a component, one each for the two norms
@@ -130,7 +130,6 @@ def read_name(value: object) -> str:
     return value
 
 
-Number = Annotated[float, PlainValidator(read_number)]
 Positive = Annotated[float, PlainValidator(read_positive)]
 NotNegative = Annotated[float, PlainValidator(read_not_negative)]
 Vector = Annotated[tuple[float, float, float], PlainValidator(read_vector)]

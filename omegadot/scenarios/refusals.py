@@ -12,6 +12,7 @@ from omegadot.scenarios.model import Body, Initial, Load, Run, Scenario, Torque
 from omegadot.scenarios.parts import SHAPES
 
 Location = tuple[int | str, ...]
+ONE_SHAPE = "one of " + ", ".join(SHAPES)
 TABLES: dict[str, type[BaseModel]] = {
     "": Scenario,
     "body": Body,
@@ -48,10 +49,10 @@ def scenario_error(file: str, error: ValidationError) -> ScenarioError:
         case "missing":
             found, advice = "missing", f"add it ({_description(location)})"
         case "union_tag_not_found":
-            key, found, advice = _join(key, "shape"), "missing", f"add it, {_shapes()}"
+            key, found, advice = _join(key, "shape"), "missing", f"add it, {ONE_SHAPE}"
         case "union_tag_invalid":
             tag = fault["input"]["shape"] if isinstance(fault["input"], dict) else fault["input"]
-            key, found, advice = _join(key, "shape"), describe(tag), f"give {_shapes()}"
+            key, found, advice = _join(key, "shape"), describe(tag), f"give {ONE_SHAPE}"
         case "tuple_type":
             advice = f"write each one as a table [[{key}]]"
         case "literal_error":
@@ -89,10 +90,6 @@ def _description(location: Location) -> str:
     fields = TABLES[_table(location[:-1])].model_fields
     given = {field.alias or name: field.description for name, field in fields.items()}
     return given[str(location[-1])] or str(location[-1])
-
-
-def _shapes() -> str:
-    return "one of " + ", ".join(SHAPES)
 
 
 def _nearest_key(location: Location) -> str:

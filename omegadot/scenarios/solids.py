@@ -21,21 +21,40 @@ from omegadot.scenarios.quantities import LARGEST, SMALLEST, refuse
 EPS = float(np.finfo(float).eps)
 
 
-def volume(part: Part) -> float:
-    """The volume in m^3; zero for a point."""
+def _volume_and_squares(part: Part) -> tuple[float, tuple[float, float, float]]:
     match part:
         case Box():
-            return math.prod(part.size)
+            x, y, z = part.size
+            return x * y * z, (x * x / 12, y * y / 12, z * z / 12)
         case Cylinder():
-            return math.pi * part.radius**2 * part.length
+            r, h = part.radius, part.length
+            return math.pi * r**2 * h, (r**2 / 4, r**2 / 4, h**2 / 12)
         case Sphere():
-            return 4 / 3 * math.pi * part.radius**3
+            across = part.radius**2 / 5
+            return 4 / 3 * math.pi * part.radius**3, (across, across, across)
         case Ellipsoid():
-            return 4 / 3 * math.pi * math.prod(part.semi_axes)
+            x, y, z = part.semi_axes
+            return 4 / 3 * math.pi * (x * y * z), (x * x / 5, y * y / 5, z * z / 5)
         case Capsule():
-            return math.pi * part.radius**2 * (part.length + 4 / 3 * part.radius)
+            r, h = part.radius, part.length
+            middle = h / (h + 4 / 3 * r)  # the cylinder's share of the mass
+            caps = 1 - middle
+            across = (middle / 4 + caps / 5) * r * r
+            # the centre of a half ball lies 3/8 r beyond its flat face
+            along = middle * h * h / 12 + caps * (h * h / 4 + 3 / 8 * h * r + r * r / 5)
+            return math.pi * r**2 * (h + 4 / 3 * r), (across, across, along)
         case Point():
-            return 0.0
+            return 0.0, (0.0, 0.0, 0.0)
+
+
+def volume(part: Part) -> float:
+    """The volume in m^3; zero for a point."""
+    return _volume_and_squares(part)[0]
+
+
+def mean_squares(part: Part) -> tuple[float, float, float]:
+    """Mean x^2, y^2 and z^2 over the solid in m^2, part axes, about the part's centre."""
+    return _volume_and_squares(part)[1]
 
 
 def mass(part: Part) -> float:
@@ -46,37 +65,10 @@ def mass(part: Part) -> float:
     return part.density * volume(part)
 
 
-def mean_squares(part: Part) -> tuple[float, float, float]:
-    """Mean x^2, y^2 and z^2 over the solid in m^2, part axes, about the part's centre."""
-    match part:
-        case Box():
-            x, y, z = part.size
-            return x * x / 12, y * y / 12, z * z / 12
-        case Cylinder():
-            across = part.radius**2 / 4
-            return across, across, part.length**2 / 12
-        case Sphere():
-            across = part.radius**2 / 5
-            return across, across, across
-        case Ellipsoid():
-            x, y, z = part.semi_axes
-            return x * x / 5, y * y / 5, z * z / 5
-        case Capsule():
-            r, h = part.radius, part.length
-            middle = h / (h + 4 / 3 * r)  # the cylinder's share of the mass
-            caps = 1 - middle
-            across = (middle / 4 + caps / 5) * r * r
-            # the centre of a half ball lies 3/8 r beyond its flat face
-            along = middle * h * h / 12 + caps * (h * h / 4 + 3 / 8 * h * r + r * r / 5)
-            return across, across, along
-        case Point():
-            return 0.0, 0.0, 0.0
-
-
-def _axes(part: Part) -> NDArray[np.float64]:
-    """body_R_part, (3, 3)."""
-    w, v = part.orientation[0], np.array(part.orientation[1:])
-    x, y, z = v
+def rotation_of(quaternion: tuple[float, float, float, float]) -> NDArray[np.float64]:
+    """The matrix (3, 3) of a unit quaternion (w, x, y, z)."""
+    w, x, y, z = quaternion
+    v = np.array([x, y, z])
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     turned: NDArray[np.float64] = (w * w - v @ v) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * skew
     return turned
@@ -100,7 +92,7 @@ def check_body_of_parts(parts: tuple[Part, ...]) -> None:
     offsets = places - masses @ places / masses.sum()
     second_moment = np.einsum("n,ni,nj->ij", masses, offsets, offsets)
     for part, amount in zip(parts, masses, strict=True):
-        axes = _axes(part)
+        axes = rotation_of(part.orientation)
         second_moment += amount * (axes * mean_squares(part)) @ axes.T
     small, middle, large = np.linalg.eigvalsh(second_moment)
     # eigvalsh is good to a few ulps of the largest eigenvalue, an offset to a few of the farthest

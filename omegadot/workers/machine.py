@@ -52,10 +52,8 @@ def package_versions() -> dict[str, str]:
     """The versions of the packages that a figure may depend on; a missing one is left out."""
     found = {}
     for name in RECORDED:
-        try:
+        with contextlib.suppress(PackageNotFoundError):
             found[name] = version(name)
-        except PackageNotFoundError:
-            continue
     return found
 
 

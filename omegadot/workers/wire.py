@@ -15,10 +15,12 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from omegadot.adapters.protocol import Description, Integrator
-from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
+from omegadot.reference_impl.system import Array, Body, Load, System
 
 # Text that gets into the channel looks like a header of 10^18 bytes.
 LONGEST_HEADER = 2**30
+MOST_CHARACTERS = 500
+_SHORTENED = " ..."
 
 
 def _pack(value: Any, arrays: list[Array]) -> Any:
@@ -60,12 +62,6 @@ def encode_frame(message: dict[str, Any]) -> bytes:
     return struct.pack(">Q", len(header)) + header + b"".join(a.tobytes() for a in arrays)
 
 
-def write_frame(stream: BinaryIO, message: dict[str, Any]) -> None:
-    """Write one message."""
-    stream.write(encode_frame(message))
-    stream.flush()
-
-
 def _read_exactly(stream: BinaryIO, count: int) -> bytes:
     data = stream.read(count)
     if len(data) != count:
@@ -104,21 +100,23 @@ def body_from(message: dict[str, Any]) -> Body:
     return Body(**{key: np.asarray(value, dtype=float) for key, value in message.items()})
 
 
-def state_from(message: dict[str, Any]) -> State:
-    """The State that a packed one describes."""
-    return State(**message)
-
-
-def acceleration_from(message: dict[str, Any]) -> Acceleration:
-    """The Acceleration that a packed one describes."""
-    return Acceleration(**message)
-
-
 def description_of(message: dict[str, Any]) -> Description:
     """The Description that a packed one holds."""
-    fields = dict(message)
-    fields["integrators"] = tuple(Integrator(**item) for item in fields["integrators"])
-    fields["features"] = frozenset(fields["features"])
-    for name in ("conventions", "switched_off", "links"):
-        fields[name] = tuple(fields[name])
+    lists = {key: tuple(value) for key, value in message.items() if isinstance(value, list)}
+    fields: dict[str, Any] = {**message, **lists}
+    fields["integrators"] = tuple(Integrator(**item) for item in message["integrators"])
+    fields["features"] = frozenset(message["features"])
     return Description(**fields)
+
+
+def one_line(text: str, most: int = MOST_CHARACTERS) -> str:
+    """An engine's text as one line of printable characters, cut where it is longer than `most`.
+
+    Control characters, escape codes' first bytes and lone surrogates become spaces, so that the
+    line can be written as UTF-8 and shown anywhere.
+    """
+    start = text[: 8 * most]  # a message may be megabytes long
+    line = " ".join("".join(c if c.isprintable() else " " for c in start).split())
+    if len(line) <= most and len(start) == len(text):
+        return line
+    return line[: most - len(_SHORTENED)] + _SHORTENED

@@ -14,11 +14,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from omegadot.adapters.mujoco import MujocoAdapter, body_file
+from omegadot.adapters.mujoco import body_file
+from omegadot.adapters.mujoco.adapter import MujocoAdapter
 from omegadot.adapters.mujoco.body_file import bodies_of_mjcf, compiled, links_of
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.scenarios import ScenarioError, load_builtin
-from omegadot.scenarios.links import body_of_argument
+from omegadot.scenarios.links.body_file import body_of_argument
 from omegadot.scenarios.links.link import Link
 
 FILES = {

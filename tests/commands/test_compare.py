@@ -29,7 +29,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.adapters.protocol import Description
-from omegadot.adapters.reference import ReferenceAdapter
+from omegadot.adapters.reference.adapter import ReferenceAdapter
 
 SCHEMES = ("semi-implicit-euler", "lie-rk4")
 

@@ -8,7 +8,8 @@ import pytest
 from command_line import omegadot, quick_scenario
 from in_process import builtin, declared, engine_case, truth_of
 
-from omegadot.diagnosis.clusters import clusters_of
+from omegadot.diagnosis.clusters import clusters_of_run
+from omegadot.harness.outcome import JudgedCase
 
 EULER, IMPLICIT, RK4 = "semi-implicit-euler", "linearly-implicit-euler", "lie-rk4"
 
@@ -21,6 +22,10 @@ def case():
 @pytest.fixture(scope="module")
 def truth(case):
     return truth_of(case, (EULER, IMPLICIT, RK4))
+
+
+def clusters_of(case, truth, engines):
+    return clusters_of_run([JudgedCase(case, truth, "", engines)])
 
 
 def members(found, step):

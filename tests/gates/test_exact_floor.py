@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from omegadot.gates.exact_floor import UNITS, floor_rows, floors, slopes
+from omegadot.gates.exact import UNITS, floor_rows, floors, slopes
 from omegadot.gates.measures import Yardstick
 from omegadot.gates.scales import EPS
 from omegadot.gates.truth import Truth

@@ -17,9 +17,9 @@ from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.case import Sweep
 from omegadot.gates.measured_run import CHANNELS, MeasuredRun
-from omegadot.gates.reported import _first, _length, _start
 from omegadot.gates.rows import Row
 from omegadot.gates.scales import EPS
+from omegadot.gates.trajectory import _length, _start
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, State
 
@@ -86,8 +86,11 @@ def test_a_start_without_an_error_is_at_no_distance() -> None:
 
 
 def test_the_start_is_held_to_the_floor_of_the_start() -> None:
-    assert _first(np.array([1.0, 2.0, 3.0])) == 1.0
-    assert _first(None) == 0.0
+    error = {"omega": np.array([2.0, 9.0]), "attitude": np.zeros(2), "position": np.zeros(2)}
+    bounds = dict.fromkeys(error, np.array([1.0, 9.0]))
+    for floor, share in (({}, 2.0), ({"omega": np.array([3.0, 9.0])}, 0.5)):
+        row = _start(MeasuredRun(Sweep(0.1, 1, 1), error, bounds, {}, floor))
+        assert (row.channel, row.value) == ("omega", share)
 
 
 def test_the_length_reported_is_that_of_the_worst_sample(prepared: Prepared) -> None:

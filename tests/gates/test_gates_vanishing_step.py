@@ -11,11 +11,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from omegadot.gates.evaluation_states import Probe
 from omegadot.gates.vanishing_step import (
     RADIANS,
     STEPS,
     Limit,
+    Probe,
     _extrapolants,
     limits,
     probe_of,

@@ -28,7 +28,7 @@ def exact_at(case, times):
 
 def measured(case, truth, state):
     sweep = case.sweeps[0]
-    run = measure(truth.yardstick, sweep, truth.samples(sweep), state, None)
+    run = measure(truth, sweep, state, None)
     return {row.metric: row for row in phase.rows(truth, run, state)}
 
 

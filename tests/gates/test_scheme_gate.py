@@ -10,8 +10,10 @@ from in_process import builtin, declared, judged, truth_of
 from omegadot.adapters.registry import build_adapter
 from omegadot.gates.case import Sweep
 from omegadot.gates.likeness import likeness, share_of
-from omegadot.gates.measured_run import Declared, MeasuredRun, SchemeKey
+from omegadot.gates.measured_run import Declared, MeasuredRun
+from omegadot.gates.rows import worst
 from omegadot.gates.scheme import comparison_keys, order_rows, orders_seen
+from omegadot.gates.truth import SchemeKey
 from omegadot.reference_impl.schemes import SCHEMES
 
 STEPS = (0.02, 0.01, 0.005)
@@ -32,7 +34,11 @@ def rows_of(runs, metric):
 
 
 def gates(runs):
-    return {gate: run.verdicts()[gate] for run in runs for gate in ("scheme", "trajectory")}
+    return {
+        gate: worst(row.verdict for row in run.rows if row.gate == gate)
+        for run in runs
+        for gate in ("scheme", "trajectory")
+    }
 
 
 @pytest.mark.parametrize("scheme", ["semi-implicit-euler", "lie-rk4-naive", "implicit-midpoint"])

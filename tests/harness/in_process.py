@@ -2,45 +2,33 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import replace
 from typing import Any
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.gates.case import Case
-from omegadot.gates.measured_run import SchemeKey
-from omegadot.gates.truth import Truth
+from omegadot.gates.truth import SchemeKey, Truth
+from omegadot.harness import in_process
 from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun, judge_integrator
+from omegadot.harness.judge import JudgedRun, judge_case
 from omegadot.harness.outcome import EngineCase
 from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.harness.truth_requests import case_companions, case_truth
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.scenarios import load_builtin
-from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import read_frame, write_frame
 
 
-def _sent(message: dict[str, Any]) -> dict[str, Any]:
-    stream = io.BytesIO()
-    write_frame(stream, message)
-    stream.seek(0)
-    return read_frame(stream)
+class Local(in_process.Local):
+    """An adapter that answers requests about a case as a worker would."""
 
-
-class Local:
-    """An adapter that answers requests as a worker would."""
-
-    def __init__(self, adapter: Any) -> None:
-        self.adapter = adapter
-
-    def request(self, case: Case, operation: str, **fields: Any) -> Answer:
+    def request(self, case: Case, operation: str, **fields: Any) -> Answer:  # type: ignore[override]
         self.adapter.load(case.system)
-        answer = OPERATIONS[operation](self.adapter, _sent(fields))
-        return Answer("ok", result=_sent({"result": answer})["result"])
+        answer = super().request(operation, **fields)
+        assert answer.ok, answer.reason
+        return answer
 
 
 def builtin(name: str, *timesteps: float) -> Case:
@@ -81,20 +69,19 @@ def judged(
 ) -> list[JudgedRun]:
     """An integrator sent through the gates. steps: the reference's scheme that it really takes."""
     answers = answers_of(case, adapter or ReferenceAdapter(), steps or integrator.name)
-    return list(judge_integrator(truth, integrator, list(case.sweeps), answers, {}))
+    runs = {(integrator.name, step): answer for step, answer in answers.items()}
+    return judge_case(truth, case, CaseResult((integrator,), runs=runs), {})
 
 
 def engine_case(
     case: Case, truth: Truth, name: str, *integrators: tuple[Integrator, str]
 ) -> EngineCase:
     """An engine of several integrators, each with the scheme that it really takes."""
-    result, runs = CaseResult(name, case.name), []
-    adapter = ReferenceAdapter()
+    adapter, own = ReferenceAdapter(), tuple(integrator for integrator, _ in integrators)
+    result = CaseResult(own)
     for integrator, steps in integrators:
         answers = answers_of(case, adapter, steps)
         result.runs.update({(integrator.name, step): a for step, a in answers.items()})
-        runs += list(judge_integrator(truth, integrator, list(case.sweeps), answers, {}))
-    own = tuple(integrator for integrator, _ in integrators)
     description = replace(adapter.description, name=name, integrators=own)
     engine = Engine(EngineChoice(name, ""), description, own)
-    return EngineCase(engine, result, [], runs)
+    return EngineCase(engine, result, [], judge_case(truth, case, result, {}))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Adapter
-from omegadot.gates.measured_run import CHANNELS, SchemeKey, scheme_key
+from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.measures import Yardstick
 from omegadot.gates.scales import (
     EPS,
@@ -17,6 +17,7 @@ from omegadot.gates.scales import (
     norm,
     torque_size,
 )
+from omegadot.gates.truth import SchemeKey, scheme_key
 from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.inertia import inertia_of_moments
 from omegadot.reference_impl.kinematics import place_on_pivot

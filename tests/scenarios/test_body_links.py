@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from omegadot.reference_impl.from_scenario import system_of
 from omegadot.reference_impl.system import Body
 from omegadot.scenarios import ScenarioError, scenario_of
-from omegadot.scenarios.links import NamedBody, body_of_argument
+from omegadot.scenarios.links.body_file import NamedBody, body_of_argument
 from omegadot.scenarios.links.link import Link
 from omegadot.scenarios.tensor import broken_triangle
 

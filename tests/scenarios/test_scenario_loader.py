@@ -19,9 +19,9 @@ from omegadot.scenarios import (
     Scenario,
     ScenarioError,
     builtin_names,
-    find_scenario,
     load_builtin,
     load_scenario,
+    scenario,
     scenario_of,
 )
 
@@ -114,7 +114,7 @@ def test_garbage_in_a_file_is_a_scenario_or_a_sentence(
 @settings(derandomize=True, max_examples=150, deadline=None)
 @given(st.text(max_size=30))
 def test_no_name_leads_out_of_the_builtins(name: str) -> None:
-    for find in (load_builtin, find_scenario):
+    for find in (load_builtin, scenario):
         with pytest.raises(ScenarioError) as caught:
             find(name)
         assert str(caught.value).isprintable()
@@ -126,9 +126,9 @@ def test_a_builtin_goes_before_a_file_of_its_name(
     monkeypatch.chdir(tmp_path)
     write(tmp_path, SOUND, "sphere")
     write(tmp_path, SOUND, "mine")
-    assert find_scenario("sphere").name == "sphere"
-    assert find_scenario("./sphere").name == "a-body"
-    assert find_scenario("mine").name == "a-body"
+    assert scenario("sphere").name == "sphere"
+    assert scenario("./sphere").name == "a-body"
+    assert scenario("mine").name == "a-body"
 
 
 @pytest.mark.parametrize(
@@ -136,7 +136,7 @@ def test_a_builtin_goes_before_a_file_of_its_name(
     [("t-handel", "t-handle"), ("T-HANDLE", "t-handle"), ("fulltensor", "full-tensor")],
 )
 def test_a_mistyped_builtin_is_offered_the_nearest(requested: str, near: str) -> None:
-    for find in (load_builtin, find_scenario):
+    for find in (load_builtin, scenario):
         with pytest.raises(ScenarioError, match=f"write {near} if"):
             find(requested)
 
@@ -145,9 +145,9 @@ def test_a_name_like_no_builtin_gets_advice() -> None:
     with pytest.raises(
         ScenarioError, match="'zzz' is neither a built-in scenario nor a file; give"
     ):
-        find_scenario("zzz")
+        scenario("zzz")
     with pytest.raises(ScenarioError, match=r"zzz\.toml is missing"):
-        find_scenario("zzz.toml")
+        scenario("zzz.toml")
 
 
 def test_markup_and_other_alphabets_are_plain_text(tmp_path: Path) -> None:

@@ -10,16 +10,15 @@ from omegadot.adapters.protocol import Description, Integrator, Trajectory
 from omegadot.reference_impl.system import Acceleration, Body, State
 from omegadot.workers.engine_end.checked import (
     AnswerError,
-    checked_acceleration,
+    checked,
     checked_bodies,
     checked_description,
     checked_seconds,
-    checked_state,
-    checked_torque,
     checked_trajectory,
+    numbers,
 )
 from omegadot.workers.engine_end.worker import failure
-from omegadot.workers.plain_text import one_line
+from omegadot.workers.wire import one_line
 
 EULER = Integrator("euler", "semi-implicit-euler", {"omega": 1, "energy": None})
 ENGINE = Description("engine", "1.0", (EULER,), features=frozenset({"free"}))
@@ -32,10 +31,11 @@ def state(*lead: int) -> State:
 
 def test_what_is_right_passes_as_it_is() -> None:
     assert checked_description(ENGINE) is ENGINE
-    assert checked_state("state", state(), ()).orientation.shape == (4,)
+    assert checked("state", state(), State, ()).orientation.shape == (4,)
     assert checked_trajectory(Trajectory(np.arange(5.0), state(5))).time.shape == (5,)
-    assert checked_acceleration(Acceleration(np.ones((2, 3)), np.ones((2, 3))), (2,)).linear.all()
-    assert checked_torque(np.ones((2, 3)), (2,)).shape == (2, 3)
+    pair = Acceleration(np.ones((2, 3)), np.ones((2, 3)))
+    assert checked("forward_dynamics()", pair, Acceleration, (2,)).linear.all()
+    assert numbers("torque", np.ones((2, 3)), (2, 3)).shape == (2, 3)
     assert checked_bodies((Body(1.0, [0, 0, 0], np.eye(3)),), 1)[0].mass == 1.0  # type: ignore[arg-type]
 
 
@@ -52,35 +52,43 @@ def test_the_steps_of_a_run_took_a_part_of_the_call(seconds: Any) -> None:
 
 
 def test_single_precision_and_whole_numbers_are_numbers() -> None:
-    found = checked_torque(np.ones((2, 3), np.float32), (2,))
+    found = numbers("torque", np.ones((2, 3), np.float32), (2, 3))
     assert found.dtype == float
-    assert checked_torque(np.ones((2, 3), int), (2,)).dtype == float
+    assert numbers("torque", np.ones((2, 3), int), (2, 3)).dtype == float
 
 
 @pytest.mark.parametrize(
-    ("check", "value", "text"),
+    ("value", "text"),
     [
-        (checked_torque, None, "holds object"),
-        (checked_torque, np.ones(3), r"has the shape \(3,\); answer with \(2, 3\)"),
-        (checked_torque, np.ones((2, 3), complex), "holds complex128"),
-        (checked_torque, np.ones((2, 3), bool), "holds bool"),
-        (checked_torque, [[1.0], [1.0, 2.0]], "is no array"),
-        (checked_acceleration, np.ones((2, 3)), "is of type ndarray"),
-        (checked_acceleration, Acceleration(np.ones((2, 3)), np.ones((1, 3))), "linear has the"),
-        (checked_acceleration, Acceleration(np.ones((1, 3)), np.ones((2, 3))), "angular has the"),
+        (None, "holds object"),
+        (np.ones(3), r"has the shape \(3,\); answer with \(2, 3\)"),
+        (np.ones((2, 3), complex), "holds complex128"),
+        (np.ones((2, 3), bool), "holds bool"),
+        ([[1.0], [1.0, 2.0]], "is no array"),
     ],
 )
-def test_what_is_requested_of_two_states_is_answered_for_two(
-    check: Any, value: Any, text: str
-) -> None:
+def test_torques_of_two_states_are_two(value: Any, text: str) -> None:
     with pytest.raises(AnswerError, match=text):
-        check(value, (2,))
+        numbers("torque", value, (2, 3))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (np.ones((2, 3)), "is of type ndarray"),
+        (Acceleration(np.ones((2, 3)), np.ones((1, 3))), "linear has the"),
+        (Acceleration(np.ones((1, 3)), np.ones((2, 3))), "angular has the"),
+    ],
+)
+def test_accelerations_of_two_states_are_two(value: Any, text: str) -> None:
+    with pytest.raises(AnswerError, match=text):
+        checked("forward_dynamics()", value, Acceleration, (2,))
 
 
 @pytest.mark.parametrize("field", list(vars(state())))
 def test_every_field_of_a_state_is_checked(field: str) -> None:
     with pytest.raises(AnswerError, match=f"state.{field} has the shape"):
-        checked_state("state", replace(state(2), **{field: np.ones((2, 5))}), (2,))
+        checked("state", replace(state(2), **{field: np.ones((2, 5))}), State, (2,))
 
 
 @pytest.mark.parametrize(

@@ -93,7 +93,7 @@ def test_a_death_between_requests_is_counted() -> None:
     worker.start()
     assert worker.pid is not None
     os.kill(worker.pid, 9)
-    while worker._process is not None and worker._process.poll() is None:
+    while worker._pipes is not None and worker._pipes.process.poll() is None:
         time.sleep(0.01)
     worker.finish()
     assert worker.deaths == ["ended by signal 9 (SIGKILL)"]

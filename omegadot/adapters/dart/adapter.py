@@ -12,7 +12,9 @@ import numpy as np
 
 from omegadot.adapters.dart.joint import DartJoint
 from omegadot.adapters.dart.model import SWITCHED_OFF, DartModel
+from omegadot.adapters.one_joint import OneJointAdapter
 from omegadot.adapters.protocol import (
+    ONE_BODY,
     Description,
     Integrator,
     Setup,
@@ -21,7 +23,7 @@ from omegadot.adapters.protocol import (
 )
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import kept_steps
-from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
+from omegadot.reference_impl.system import Acceleration, State, System
 
 SEMI_IMPLICIT = Integrator(
     "semi-implicit",
@@ -42,12 +44,6 @@ CONVENTIONS = (
     "from 6.16.6 a non-finite acceleration is replaced by zero, and from 6.17 a non-finite "
     "transform by the identity: where DART's own coordinates are not finite, the adapter gives NaN",
 )
-FEATURES = frozenset(
-    {
-        *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
-        *("forward_dynamics", "inverse_dynamics"),
-    }
-)
 LINKS = (
     "https://github.com/dartsim/dart",
     "https://github.com/dartsim/dart/blob/main/CHANGELOG.md",
@@ -55,69 +51,40 @@ LINKS = (
 )
 
 
-class DartAdapter:
+class DartAdapter(OneJointAdapter):
     """dartpy 6.16.2 and later."""
+
+    name = "dart"
 
     def __init__(self, setup: Setup = "physics") -> None:
         import dartpy
 
         self._engine = dartpy
         self._setup = setup
-        self._joint: DartJoint | None = None
 
     @property
     def description(self) -> Description:
         """DART as it is installed."""
         return Description(
-            name="dart",
+            name=self.name,
             version=str(self._engine.__version__),
             integrators=(SEMI_IMPLICIT,),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
-            features=FEATURES,
+            features=ONE_BODY,
             licence="BSD-2-Clause",
             links=LINKS,
         )
 
-    def load(self, system: System) -> None:
-        """Build a world with one body. Raises UnsupportedError for several bodies."""
-        if len(system.bodies) != 1:
-            raise UnsupportedError(f"dart takes one body here, not {len(system.bodies)}.")
+    def _built(self, system: System) -> DartJoint:
         model = DartModel(self._engine, system, physics=self._setup == "physics")
-        self._joint = DartJoint(model, system)
-
-    def model(self) -> tuple[Body, ...]:
-        """The body node's inertia, read back."""
-        return (self._loaded().model.body(),)
-
-    def set_state(self, state: State) -> None:
-        """Put the joint in the state."""
-        self._loaded().set_state(state)
-
-    def get_state(self) -> State:
-        """The body node's state in the project's frames."""
-        return self._loaded().get_state()
+        return DartJoint(model, system)
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """`Skeleton.computeForwardDynamics` at n states."""
-        joint = self._loaded()
-        angular = np.empty_like(states.angular_velocity, dtype=float)
-        linear = np.empty_like(angular)
-        for n in range(len(angular)):
-            joint.set_state(_row(states, n))
-            angular[n], linear[n] = joint.forward()
-        return Acceleration(angular, linear)
-
-    def inverse_dynamics(self, states: State, acceleration: Acceleration) -> Array:
-        """`Skeleton.computeInverseDynamics` at n states."""
-        joint = self._loaded()
-        torque = np.empty_like(states.angular_velocity, dtype=float)
-        for n in range(len(torque)):
-            state = _row(states, n)
-            joint.set_state(state)
-            wanted = Acceleration(acceleration.angular[n], acceleration.linear[n])
-            torque[n] = joint.inverse(state, wanted)
-        return torque
+        joint, count = self._loaded(), len(states.angular_velocity)
+        answers = np.array([joint.forward(states[n]) for n in range(count)])
+        return Acceleration(answers[:, 0], answers[:, 1])
 
     def run(
         self, initial: State, integrator: str, timestep: float, steps: int, every: int
@@ -136,23 +103,3 @@ class DartAdapter:
         logged = joint.stepper.run(counts)
         seconds = perf_counter() - began
         return Trajectory(np.multiply(kept, timestep), joint.states(logged, len(kept)), seconds)
-
-    def native(self) -> dict[str, dict[str, str]]:
-        """Conventions as measured of the engine itself, and its defaults."""
-        from omegadot.adapters.dart.native import native
-
-        return native(self._engine)
-
-    def _loaded(self) -> DartJoint:
-        if self._joint is None:
-            raise RuntimeError("no system is loaded: call load() first")
-        return self._joint
-
-
-def _row(states: State, n: int) -> State:
-    return State(
-        states.orientation[n],
-        states.angular_velocity[n],
-        states.position[n],
-        states.linear_velocity[n],
-    )

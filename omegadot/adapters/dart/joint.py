@@ -16,7 +16,7 @@ from omegadot.adapters.dart.model import DartModel
 from omegadot.adapters.dart.stepping import DartStepper, are_finite
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import rotation_matrix
-from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 
 class DartJoint:
@@ -28,6 +28,11 @@ class DartJoint:
         self._free = system.load.pivot is None
         self._com = np.array(system.body.center_of_mass, float)
 
+    def body(self) -> Body:
+        """Mass, centre of mass and inertia about it, as the body node holds them."""
+        inertia = self._node.getInertia()
+        return Body(np.array(inertia.getMass()), inertia.getLocalCOM(), inertia.getMoment())
+
     def set_state(self, state: State) -> None:
         """Put the joint in the state; a pivoted body takes orientation and angular velocity."""
         world_R_body = rotation_matrix(np.array(state.orientation, float))
@@ -37,14 +42,13 @@ class DartJoint:
             joint.setVelocities(np.linalg.solve(joint.getRelativeJacobian()[:3], omega))
             return
         origin = state.position - world_R_body @ self._com
-        joint.setTransform(self.model.transform(world_R_body, origin))
+        joint.setTransform(self.model.isometry(world_R_body, origin))
         velocity = state.linear_velocity @ world_R_body - cross(omega, self._com)
         joint.setSpatialVelocity(np.concatenate([omega, velocity]), self._frame, self._node)
 
     def get_state(self) -> State:
         """The body node's state in the project's frames; NaN where DART's own is not finite."""
-        found = self.states([self._joint.getPositions(), self._joint.getVelocities()], 1)
-        return State(*(field[0] for field in vars(found).values()))
+        return self.states([self._joint.getPositions(), self._joint.getVelocities()], 1)[0]
 
     def states(self, logged: list[Array], count: int) -> State:
         """The states, `count` of them, at joint positions and velocities logged in turns.
@@ -70,8 +74,9 @@ class DartJoint:
         """Whether the joint's own coordinates are finite, and the squares of its velocities."""
         return bool(are_finite(self._joint.getPositions(), self._joint.getVelocities()))
 
-    def forward(self) -> tuple[Array, Array]:
+    def forward(self, state: State) -> tuple[Array, Array]:
         """omega-dot (3,), body, and the acceleration of the centre of mass (3,), world."""
+        self.set_state(state)
         if not self.is_finite():
             return np.full(3, np.nan), np.full(3, np.nan)
         self.stepper.push()
@@ -83,16 +88,18 @@ class DartJoint:
         )
 
     def inverse(self, state: State, wanted: Acceleration) -> Array:
-        """The torque (3,), body axes, about the centre of mass or about the pivot.
+        """The torque (3,), body axes, by `Skeleton.computeInverseDynamics`.
 
-        The joint must be in the state.
+        About the centre of mass, or about the pivot.
         """
+        self.set_state(state)
         return self.wrench(state, wanted)[:3]
 
     def wrench(self, state: State, wanted: Acceleration) -> Array:
         """Torque and force (6,) at a free body's centre of mass, body axes; torque (3,) if pivoted.
 
-        The joint's forces are ``Q = J^T W`` with W = (torque, force) at the body origin.
+        The joint must be in the state. Its forces are ``Q = J^T W`` with W = (torque, force) at the
+        body origin.
         """
         if not self.is_finite():
             return np.full(6 if self._free else 3, np.nan)

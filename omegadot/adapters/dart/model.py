@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.reference_impl.system import Array, Body, System
+from omegadot.reference_impl.system import Array, System
 
 SWITCHED_OFF = (
     "deactivation of slow bodies (World.setDeactivationOptions, where the version has it)",
@@ -25,13 +25,14 @@ TURN = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 class DartModel:
     """world, skeleton, joint and node are DART's objects; frame is DART's world frame.
 
+    isometry: DART's, of a (3, 3) rotation and a (3,) translation.
     turn: (3, 3), the attitude of the joint's frame in the world.
     """
 
     def __init__(self, engine: ModuleType, system: System, *, physics: bool) -> None:
         body, load = system.body, system.load
         dynamics: Any = engine.dynamics
-        self._isometry: Any = engine.math.Isometry3
+        self.isometry: Any = engine.math.Isometry3
         self.world: Any = engine.simulation.World()
         self.world.setGravity(np.array(load.gravity, float))
         self.frame: Any = dynamics.Frame.World()
@@ -40,7 +41,7 @@ class DartModel:
             self.joint, self.node = self.skeleton.createFreeJointAndBodyNodePair()
         else:
             self.joint, self.node = self.skeleton.createBallJointAndBodyNodePair()
-            pivot = self.transform(np.eye(3), np.array(load.pivot, float))
+            pivot = self.isometry(np.eye(3), np.array(load.pivot, float))
             self.joint.setTransformFromChildBodyNode(pivot)
         center, inertia = np.array(body.center_of_mass, float), np.array(body.inertia, float)
         self.node.setInertia(dynamics.Inertia(float(body.mass), center, inertia))
@@ -57,13 +58,4 @@ class DartModel:
             self.world.setDeactivationOptions(options)
         self.joint.setLimitEnforcement(False)
         self.turn = TURN
-        self.joint.setTransformFromParentBodyNode(self.transform(TURN, np.zeros(3)))
-
-    def transform(self, rotation: Array, translation: Array) -> Any:
-        """An Isometry3 of DART's: (3, 3) and (3,)."""
-        return self._isometry(rotation, translation)
-
-    def body(self) -> Body:
-        """Mass, centre of mass and inertia about it, as the body node holds them."""
-        inertia = self.node.getInertia()
-        return Body(np.array(inertia.getMass()), inertia.getLocalCOM(), inertia.getMoment())
+        self.joint.setTransformFromParentBodyNode(self.isometry(TURN, np.zeros(3)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -13,23 +12,9 @@ from omegadot.reference_impl.system import Array
 SMALL_TURN = 5e-4  # rad, below the 1e-3 rad where some versions expand a turn
 
 
-def native(dart: ModuleType) -> dict[str, dict[str, str]]:
-    """Conventions as measured, and defaults as they come, name to value."""
-    return {"conventions": _conventions(dart), "defaults": _defaults(dart)}
-
-
 def _body(dart: Any, kind: str) -> tuple[Any, Any, Any]:
     skeleton = dart.dynamics.Skeleton()
     joint, node = getattr(skeleton, f"create{kind}AndBodyNodePair")()
-    return skeleton, joint, node
-
-
-def _turned(dart: Any, kind: str) -> tuple[Any, Any, Any]:
-    skeleton, joint, node = _body(dart, kind)
-    if kind == "FreeJoint":
-        joint.setPositions(joint.convertToPositions(dart.math.Isometry3(TURNED, np.zeros(3))))
-    else:
-        joint.setPositions(joint.convertToPositions(TURNED))
     return skeleton, joint, node
 
 
@@ -37,7 +22,10 @@ def _seen(dart: Any, kind: str, first: int) -> tuple[Array, Array]:
     """Angular and linear velocity in world axes where the joint's velocities from `first` on are
     ``GIVEN``.
     """
-    _skeleton, joint, node = _turned(dart, kind)  # the skeleton must outlive its parts
+    _skeleton, joint, node = _body(dart, kind)  # the skeleton must outlive its parts
+    free = kind == "FreeJoint"
+    place = dart.math.Isometry3(TURNED, np.zeros(3)) if free else TURNED
+    joint.setPositions(joint.convertToPositions(place))
     velocities = np.zeros(joint.getNumDofs())
     velocities[first : first + 3] = GIVEN
     joint.setVelocities(velocities)
@@ -45,16 +33,13 @@ def _seen(dart: Any, kind: str, first: int) -> tuple[Array, Array]:
     return node.getAngularVelocity(world, world), node.getLinearVelocity(world, world)
 
 
-def _order(dart: Any) -> str:
+def conventions(dart: Any) -> dict[str, str]:
+    """As measured, name to value."""
     angular, linear = _seen(dart, "FreeJoint", 0)
-    return "angular, linear" if np.any(angular) and not np.any(linear) else "linear, angular"
-
-
-def _conventions(dart: Any) -> dict[str, str]:
-    order = _order(dart)
-    turning = 0 if order == "angular, linear" else 3
+    angular_first = np.any(angular) and not np.any(linear)
+    turning = 0 if angular_first else 3
     return {
-        "FreeJoint velocity order": order,
+        "FreeJoint velocity order": "angular, linear" if angular_first else "linear, angular",
         "FreeJoint velocity frame": axes_observed(_seen(dart, "FreeJoint", turning)[0]),
         "FreeJoint linear velocity frame": axes_observed(_seen(dart, "FreeJoint", 3 - turning)[1]),
         "BallJoint velocity frame": axes_observed(_seen(dart, "BallJoint", 0)[0]),
@@ -80,7 +65,8 @@ def _after_overflow(dart: Any) -> str:
     return "not finite" if not np.all(np.isfinite(found)) else described(found)
 
 
-def _defaults(dart: Any) -> dict[str, str]:
+def defaults(dart: Any) -> dict[str, str]:
+    """As they come, name to value."""
     world = dart.simulation.World()
     _skeleton, joint, node = _body(dart, "FreeJoint")
     inertia = node.getInertia()

@@ -1,5 +1,1 @@
 """MuJoCo behind the protocol."""
-
-from omegadot.adapters.mujoco.adapter import MujocoAdapter
-
-__all__ = ["MujocoAdapter"]

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from omegadot.adapters.mujoco.coordinates import Coordinates
-from omegadot.adapters.mujoco.engine import import_mujoco
 from omegadot.adapters.mujoco.integrators import (
     Case,
     declared_integrators,
@@ -20,10 +19,11 @@ from omegadot.adapters.mujoco.model import (
     apply_setup,
     body_of,
     build_model,
+    import_mujoco,
     switched_off,
 )
 from omegadot.adapters.mujoco.stepping import Stepper
-from omegadot.adapters.protocol import Description, Setup, Trajectory, UnsupportedError
+from omegadot.adapters.protocol import ONE_BODY, Description, Setup, Trajectory, UnsupportedError
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
 
@@ -33,12 +33,6 @@ _CONVENTIONS = (
     "angular velocity and acceleration are in body axes",
     "with the centre of mass off the origin, steps are taken in the origin's velocity",
     "qfrc_applied is in the joint's axes, xfrc_applied in world axes at the centre of mass",
-)
-_FEATURES = frozenset(
-    {
-        *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
-        *("forward_dynamics", "inverse_dynamics"),
-    }
 )
 _LINKS = (
     "https://mujoco.readthedocs.io/en/stable/computation/index.html#numerical-integration",
@@ -66,7 +60,7 @@ class MujocoAdapter:
             integrators=declared_integrators(mujoco, self._case()),
             conventions=_CONVENTIONS,
             switched_off=switched_off(mujoco) if self._setup == "physics" else (),
-            features=_FEATURES,
+            features=ONE_BODY,
             licence="Apache-2.0",
             links=_LINKS,
         )
@@ -112,9 +106,9 @@ class MujocoAdapter:
 
     def native(self) -> dict[str, dict[str, str]]:
         """Conventions as measured of the engine itself, and its defaults."""
-        from omegadot.adapters.mujoco.native import native
+        from omegadot.adapters.mujoco.native import conventions, defaults
 
-        return native(self._mujoco)
+        return {"conventions": conventions(self._mujoco), "defaults": defaults(self._mujoco)}
 
     def model(self) -> tuple[Body, ...]:
         """Mass, centre of mass and inertia, read back from the compiled model."""

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.adapters.mujoco.engine import import_mujoco
+from omegadot.adapters.mujoco.model import import_mujoco
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.scenarios.errors import ScenarioError, printable
 from omegadot.scenarios.links.link import Link

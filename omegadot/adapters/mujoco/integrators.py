@@ -7,8 +7,8 @@ apart by some versions; a body on a ball joint never is.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from typing import Any
 
 from omegadot.adapters.protocol import Integrator
@@ -16,16 +16,8 @@ from omegadot.adapters.protocol import Integrator
 _ROTATION = ("omega", "attitude", "energy", "angular_momentum")
 _TRANSLATION = ("linear_momentum", "position")
 
-_FLAGS = {
-    "Euler": "mjINT_EULER",
-    "RK4": "mjINT_RK4",
-    "implicit": "mjINT_IMPLICIT",
-    "implicitfast": "mjINT_IMPLICITFAST",
-    "discrete": "mjINT_DISCRETE",
-}
+_NAMES = ("Euler", "RK4", "implicit", "implicitfast", "discrete")
 
-_SEMI_IMPLICIT = "semi-implicit-euler"
-_LINEARLY_IMPLICIT = "linearly-implicit-euler"
 _MIDPOINT_NOTE = "I (ω₁ - ω₀) = dt (τ₀ - ω_m × I ω_m), ω_m = (ω₀ + ω₁)/2, q₁ = q₀ exp(dt ω_m)"
 
 
@@ -53,22 +45,13 @@ def _orders(rotation: int, translation: int) -> dict[str, int]:
 
 def version_of(text: str) -> tuple[int, ...]:
     """``"3.8.1"`` to ``(3, 8, 1)``; a suffix such as ``.dev1`` is dropped."""
-    numbers = []
-    for part in text.split("."):
-        if not part.isdigit():
-            break
-        numbers.append(int(part))
-    return tuple(numbers)
+    return tuple(int(part) for part in takewhile(str.isdigit, text.split(".")))
 
 
 def _explicit(name: str, damping_is_implicit: bool) -> Integrator:
     """The gyroscopic term is taken at the step's start; damping may be implicit."""
     scheme = "implicit-damping-euler" if damping_is_implicit else "semi-implicit-euler"
     return Integrator(name, scheme, _orders(1, 1))
-
-
-def _linearly_implicit(name: str) -> Integrator:
-    return Integrator(name, "linearly-implicit-euler", _orders(1, 1))
 
 
 def _midpoint(name: str, case: Case) -> Integrator:
@@ -84,10 +67,6 @@ def _midpoint(name: str, case: Case) -> Integrator:
     return Integrator(name, scheme, orders, note=_MIDPOINT_NOTE)
 
 
-def _euler(case: Case) -> Integrator:
-    return _explicit("Euler", case.damped and case.euler_damps)
-
-
 def _rk4(case: Case) -> Integrator:
     if case.version >= (4,):
         return Integrator("RK4", "munthe-kaas-rk4", _orders(4, 4))
@@ -98,39 +77,30 @@ def _rk4(case: Case) -> Integrator:
     return Integrator("RK4", "lie-rk4-naive", orders)
 
 
-def _implicit(case: Case) -> Integrator:
-    if (3, 7) <= case.version < (3, 8, 1) and not case.pivoted:
-        return _midpoint("implicit", case)
-    return _linearly_implicit("implicit")
-
-
-def _implicitfast(case: Case) -> Integrator:
-    if case.pivoted or case.version < (3, 7):
-        return _explicit("implicitfast", case.damped)
-    if case.version < (3, 11):
-        return _midpoint("implicitfast", case)
-    return _linearly_implicit("implicitfast")
-
-
-def _discrete(case: Case) -> Integrator:
-    if case.pivoted:
-        return _explicit("discrete", case.damped)
-    return _linearly_implicit("discrete")
-
-
-_DECLARATIONS: dict[str, Callable[[Case], Integrator]] = {
-    "Euler": _euler,
-    "RK4": _rk4,
-    "implicit": _implicit,
-    "implicitfast": _implicitfast,
-    "discrete": _discrete,
-}
+def _declared(name: str, case: Case) -> Integrator:
+    version, midpoint = case.version, False
+    match name:
+        case "RK4":
+            return _rk4(case)
+        case "Euler":
+            return _explicit(name, case.damped and case.euler_damps)
+        case "implicit":
+            midpoint = (3, 7) <= version < (3, 8, 1) and not case.pivoted
+        case "implicitfast" if case.pivoted or version < (3, 7):
+            return _explicit(name, case.damped)
+        case "implicitfast":
+            midpoint = version < (3, 11)
+        case "discrete" if case.pivoted:
+            return _explicit(name, case.damped)
+    if midpoint:
+        return _midpoint(name, case)
+    return Integrator(name, "linearly-implicit-euler", _orders(1, 1))
 
 
 def integrator_flag(mujoco: Any, name: str) -> int | None:
     """The number of ``opt.integrator``, or None where the installed version has no such one."""
-    flag = getattr(mujoco.mjtIntegrator, _FLAGS.get(name, ""), None)
-    return None if flag is None else int(flag)
+    flag = getattr(mujoco.mjtIntegrator, f"mjINT_{name.upper()}", None)
+    return None if flag is None or name not in _NAMES else int(flag)
 
 
 def declared_integrators(mujoco: Any, case: Case) -> tuple[Integrator, ...]:
@@ -139,7 +109,7 @@ def declared_integrators(mujoco: Any, case: Case) -> tuple[Integrator, ...]:
     A free joint's position is the body origin's, so that is what every one of them steps.
     """
     return tuple(
-        replace(declare(case), coordinates="origin-world")
-        for name, declare in _DECLARATIONS.items()
+        replace(_declared(name, case), coordinates="origin-world")
+        for name in _NAMES
         if integrator_flag(mujoco, name) is not None
     )

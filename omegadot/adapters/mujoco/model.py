@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from itertools import permutations
 from typing import Any
 
@@ -23,13 +24,22 @@ _DISABLED = {
 }
 
 
+def import_mujoco() -> Any:
+    """MuJoCo, writing no MUJOCO_LOG.TXT into the current folder. Raises ImportError.
+
+    Its own handler of warnings prints them and appends them to that file. Where no other is set,
+    they are dropped: what they warn of is seen in the states.
+    """
+    mujoco = importlib.import_module("mujoco")
+    if mujoco.get_mju_user_warning() is None:
+        mujoco.set_mju_user_warning(lambda _: None)
+    return mujoco
+
+
 def switched_off(mujoco: Any) -> tuple[str, ...]:
     """What the ``physics`` setup turns off in the installed version, one clause each."""
     known = [what for name, what in _DISABLED.items() if hasattr(mujoco.mjtDisableBit, name)]
-    return (
-        *known,
-        "off by default too: sleep, other optional flags, a viscous medium",
-    )
+    return (*known, "off by default too: sleep, other optional flags, a viscous medium")
 
 
 def _nearest_to_identity(axes: Array) -> Array:
@@ -43,23 +53,6 @@ def _nearest_to_identity(axes: Array) -> Array:
     return axes * np.where(np.diagonal(axes) < 0, -1.0, 1.0)
 
 
-def _quaternion(rotation: Array) -> Array:
-    """The unit quaternion (w, x, y, z) of a rotation matrix (3, 3).
-
-    ``4 q qᵀ`` is linear in the matrix; its row with the largest diagonal gives q without
-    cancellation.
-    """
-    trace = np.trace(rotation)
-    skewed = rotation - rotation.T
-    outer = np.empty((4, 4))
-    outer[0, 0] = 1 + trace
-    outer[0, 1:] = outer[1:, 0] = skewed[2, 1], skewed[0, 2], skewed[1, 0]
-    outer[1:, 1:] = rotation + rotation.T + (1 - trace) * np.eye(3)
-    row = outer[np.argmax(np.diagonal(outer))]
-    unit: Array = row / np.linalg.norm(row)
-    return unit
-
-
 def principal_frame(inertia: Array) -> tuple[Array, Array]:
     """Principal moments (3,) and the quaternion (4,) of their axes in body axes.
 
@@ -67,7 +60,10 @@ def principal_frame(inertia: Array) -> tuple[Array, Array]:
     """
     axes = _nearest_to_identity(np.linalg.eigh(inertia)[1])
     moments = np.einsum("ji,jk,ki->i", axes, inertia, axes)
-    return moments, _quaternion(axes)
+    w = 0.5 * np.sqrt(1.0 + np.trace(axes))  # the trace is above 1, so that nothing cancels
+    skewed = (axes - axes.T) / (4.0 * w)
+    quaternion = np.array([w, skewed[2, 1], skewed[0, 2], skewed[1, 0]])
+    return moments, quaternion / np.linalg.norm(quaternion)
 
 
 def _check_size(mujoco: Any, mass: float, moments: Array) -> None:

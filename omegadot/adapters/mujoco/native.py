@@ -18,11 +18,6 @@ _ENUMERATED = {
 }
 
 
-def native(mujoco: Any) -> dict[str, dict[str, str]]:
-    """Conventions as measured, and defaults as they come, name to value."""
-    return {"conventions": _conventions(mujoco), "defaults": _defaults(mujoco)}
-
-
 def _model(mujoco: Any, joint: str) -> Any:
     """A body on a joint, its centre of mass off its origin."""
     spec = mujoco.MjSpec()
@@ -47,7 +42,8 @@ def _seen(mujoco: Any, joint: str, first: int) -> Array:
     return found
 
 
-def _conventions(mujoco: Any) -> dict[str, str]:
+def conventions(mujoco: Any) -> dict[str, str]:
+    """As measured, name to value."""
     free, ball = "mjJNT_FREE", "mjJNT_BALL"
     turning, moving = _seen(mujoco, free, 3), _seen(mujoco, free, 0)
     at_rest = np.all(np.abs(turning[3:]) <= 64 * np.finfo(float).eps)
@@ -61,8 +57,8 @@ def _conventions(mujoco: Any) -> dict[str, str]:
     }
 
 
-def _defaults(mujoco: Any) -> dict[str, str]:
-    """Every option of a new model."""
+def defaults(mujoco: Any) -> dict[str, str]:
+    """Every option of a new model, name to value."""
     option = _model(mujoco, "mjJNT_FREE").opt
     found = {}
     for name in sorted(dir(option)):

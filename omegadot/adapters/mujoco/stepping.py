@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -22,14 +24,9 @@ class Stepper:
         self._applied = int(kinds.mjSTATE_QFRC_APPLIED) | int(kinds.mjSTATE_XFRC_APPLIED)
         first = mujoco.mj_stateSize(model, int(kinds.mjSTATE_TIME))
         self._kept = slice(first, first + model.nq + model.nv)
-        self._rollout = self._native_rollout()
-
-    def _native_rollout(self) -> Any:
-        try:
-            from mujoco.rollout import Rollout
-        except ImportError:
-            return None
-        return Rollout(nthread=0)
+        self._rollout: Any = None
+        with suppress(ImportError):  # an old version has no native loop
+            self._rollout = import_module("mujoco.rollout").Rollout(nthread=0)
 
     def _vector(self, kind: int) -> Array:
         vector = np.empty(self._mujoco.mj_stateSize(self._model, kind))
@@ -73,17 +70,14 @@ class Stepper:
                 state=log[None],
             )
             if self._data.warning.number.any():
-                self._restore(start, applied)
+                self._mujoco.mj_setState(self._model, self._data, start, self._physics)
+                self._mujoco.mj_setState(self._model, self._data, applied, self._applied)
                 return done
             if every > 1:
                 rows[first : first + count // every] = log[every - 1 :: every]
             start = log[-1].copy()
         rows[-1] = start
         return steps
-
-    def _restore(self, physics: Array, applied: Array) -> None:
-        self._mujoco.mj_setState(self._model, self._data, physics, self._physics)
-        self._mujoco.mj_setState(self._model, self._data, applied, self._applied)
 
     def _run_from_sample_to_sample(self, done: int, steps: int, every: int, rows: Array) -> None:
         step, log = self._mujoco.mj_step, self._mujoco.mj_getState

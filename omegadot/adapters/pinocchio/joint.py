@@ -13,7 +13,7 @@ import numpy as np
 
 from omegadot.adapters.pinocchio.motion import joint_motion, joint_torque
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
-from omegadot.reference_impl.system import Array, Body, State, System
+from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 
 class PinocchioJoint:
@@ -73,12 +73,12 @@ class PinocchioJoint:
         # both are Pinocchio's own memory, which its next call writes over
         return a[-3:].copy(), self._data.acom[0].copy()
 
-    def inverse(self, state: State, angular: Array, linear: Array) -> Array:
+    def inverse(self, state: State, wanted: Acceleration) -> Array:
         """The torque (3,), body axes, by RNEA, about the centre of mass or about the pivot."""
         if self._free:
-            return self.wrench(state, angular, linear)[3:]
+            return self.wrench(state, wanted.angular, wanted.linear)[3:]
         q, v = self.coordinates(state)
-        torque: Array = self._pin.rnea(self._model, self._data, q, v, np.array(angular))
+        torque: Array = self._pin.rnea(self._model, self._data, q, v, np.array(wanted.angular))
         return torque.copy()
 
     def wrench(self, state: State, angular: Array, linear: Array) -> Array:
@@ -98,17 +98,10 @@ class PinocchioJoint:
     def coordinates(self, state: State) -> tuple[Array, Array]:
         """Q and v of the joint, (..., 7) and (..., 6) of a free flyer, (..., 4) and (..., 3)."""
         q, v = to_coordinates(self.system, state, "body-spatial")
-        return _scalar_last(q), np.array(v, float)
+        scalar_last = (q[..., :-4], q[..., -3:], q[..., -4:-3])
+        return np.concatenate(scalar_last, axis=-1, dtype=float), np.array(v, float)
 
     def states(self, q: Array, v: Array) -> State:
         """The states of joint coordinates: the inverse of `coordinates`."""
-        return from_coordinates(self.system, _scalar_first(q), v, "body-spatial")
-
-
-def _scalar_last(q: Array) -> Array:
-    """(position, w, x, y, z) to Pinocchio's (position, x, y, z, w)."""
-    return np.concatenate((q[..., :-4], q[..., -3:], q[..., -4:-3]), axis=-1, dtype=float)
-
-
-def _scalar_first(q: Array) -> Array:
-    return np.concatenate((q[..., :-4], q[..., -1:], q[..., -4:-1]), axis=-1)
+        scalar_first = np.concatenate((q[..., :-4], q[..., -1:], q[..., -4:-1]), axis=-1)
+        return from_coordinates(self.system, scalar_first, v, "body-spatial")

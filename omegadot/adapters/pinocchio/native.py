@@ -2,24 +2,12 @@
 
 from __future__ import annotations
 
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from omegadot.adapters.native_axes import (
-    GIVEN,
-    TURNED,
-    TURNED_QUATERNION,
-    axes_observed,
-    described,
-)
+from omegadot.adapters.native_axes import GIVEN, TURNED, TURNED_QUATERNION, axes_observed, described
 from omegadot.reference_impl.system import Array
-
-
-def native(pinocchio: ModuleType) -> dict[str, dict[str, str]]:
-    """Conventions as measured, and defaults as they come, name to value."""
-    return {"conventions": _conventions(pinocchio), "defaults": _defaults(pinocchio)}
 
 
 def _model(pin: Any, joint: Any) -> Any:
@@ -55,7 +43,8 @@ def _turn(pin: Any, joint: Any, first: int) -> Array:
     return turn
 
 
-def _conventions(pin: Any) -> dict[str, str]:
+def conventions(pin: Any) -> dict[str, str]:
+    """As measured, name to value."""
     neutral = pin.neutral(_model(pin, pin.JointModelSpherical()))
     linear_first = bool(np.any(_shift(pin, 0)))
     moving, turning = (0, 3) if linear_first else (3, 0)
@@ -69,7 +58,8 @@ def _conventions(pin: Any) -> dict[str, str]:
     }
 
 
-def _defaults(pin: Any) -> dict[str, str]:
+def defaults(pin: Any) -> dict[str, str]:
+    """As they come, name to value."""
     model = _model(pin, pin.JointModelFreeFlyer())
     names = ("armature", "damping", "friction", "lowerDryFrictionLimit", "rotorInertia")
     settings = {name: described(getattr(model, name)) for name in names if hasattr(model, name)}

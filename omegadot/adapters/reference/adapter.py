@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from omegadot import __version__
-from omegadot.adapters.protocol import Description, Integrator, Setup, Trajectory, UnsupportedError
+from omegadot.adapters.protocol import (
+    ONE_BODY,
+    Description,
+    Integrator,
+    Setup,
+    Trajectory,
+    UnsupportedError,
+)
 from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.kinematics import place_on_pivot
@@ -12,19 +19,13 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
-FEATURES = frozenset(
-    {
-        *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
-        *("forward_dynamics", "inverse_dynamics", "batch"),
-    }
-)
+FEATURES = ONE_BODY | {"batch"}
 
 
 class ReferenceAdapter:
     """The Newton-Euler equations of the paper; ``setup`` makes no difference to them."""
 
     def __init__(self, setup: Setup = "physics") -> None:
-        self._setup = setup
         self._system: System | None = None
         self._state: State | None = None
 

@@ -22,7 +22,7 @@ from omegadot.harness.arguments import case_of
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios import ScenarioError, builtin_names, load_builtin
-from omegadot.scenarios.toml_file import read_toml
+from omegadot.scenarios.files import read_toml
 
 OWN_FOLDER = Path(__file__).with_name("known")
 SUFFIX = ".exceptions.toml"

@@ -15,7 +15,7 @@ from omegadot.commands.check.result import (
     error,
     skipped,
 )
-from omegadot.gates.exact_rows import exact_rows
+from omegadot.gates.exact import exact_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase

@@ -12,7 +12,7 @@ from omegadot.commands.choose.search import Edge, Search, Trials, edge_of, order
 from omegadot.commands.choose.trial import Row, Trial
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine
-from omegadot.workers.wire import state_from
+from omegadot.reference_impl.system import State
 
 LARGEST_TURN = math.pi  # rad a step; beyond half a turn attitudes cannot be distinguished
 FEWEST_STEPS = 2
@@ -105,7 +105,7 @@ class Candidate:
             return Trial(steps, sweep.timestep, {}, 0.0, 0)
         if not answer.ok:
             raise BrokenError(answer.outcome, answer.reason)
-        errors = self.ruler.errors(sweep, state_from(answer.result["state"]))
+        errors = self.ruler.errors(sweep, State(**answer.result["state"]))
         seconds = float(answer.result["seconds_per_step"])
         return Trial(steps, sweep.timestep, errors, seconds, len(sweep.times))
 

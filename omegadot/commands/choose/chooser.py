@@ -16,11 +16,10 @@ from omegadot.commands.choose.ruler import NoTruthError, Ruler
 from omegadot.commands.choose.trial import Trial
 from omegadot.commands.progress import Count, Progress, Reporter
 from omegadot.gates.case import Case
-from omegadot.harness.engines import Engines
+from omegadot.harness.engines import Engines, outcome_of
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import Array
-from omegadot.workers.harness_end.pool import outcome_of
 from omegadot.workers.harness_end.process import Answer
 
 FACTORS = (0.5, 2.0)

@@ -11,7 +11,7 @@ from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
 from omegadot.scenarios import Scenario, ScenarioLike, scenario_of
-from omegadot.scenarios.links import body_of_argument
+from omegadot.scenarios.links.body_file import body_of_argument
 from omegadot.scenarios.model import MOST_SAMPLES, MOST_STEPS
 from omegadot.scenarios.tensor import ALLOWED
 

@@ -12,7 +12,7 @@ from typing import Any, Literal
 from omegadot.commands.units import quantity
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios.errors import ScenarioError
-from omegadot.scenarios.toml_file import read_toml
+from omegadot.scenarios.files import read_toml
 
 Precision = Literal["double", "single"]
 # Requirement: the kind of its quantity, and the unit in which it is kept and shown.

@@ -20,7 +20,6 @@ from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State, System
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import state_from
 
 
 class Flips:
@@ -143,7 +142,7 @@ class Ruler:
         if not answer.ok:
             raise NoTruthError(f"no exact solution to measure by: {answer.reason}")
         found: dict[str, Any] = answer.result
-        state = state_from(found["state"])
+        state = State(**found["state"])
         return Exact(found["source"], state, found["omega_dot"], found["floor"])
 
     def sweep(self, steps: int, dense: bool = False) -> Sweep:

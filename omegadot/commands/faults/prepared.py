@@ -10,9 +10,8 @@ from omegadot.adapters.exact.adapter import ExactAdapter
 from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.gates.case import Case
-from omegadot.gates.evaluation_states import EvaluationStates, evaluation_states_of
-from omegadot.gates.measured_run import scheme_key
-from omegadot.gates.truth import Truth
+from omegadot.gates.equation import EvaluationStates, evaluation_states_of
+from omegadot.gates.truth import Truth, scheme_key
 from omegadot.harness.drive import Driver
 from omegadot.harness.in_process import driver_of
 from omegadot.harness.random_cases import features_of, random_case

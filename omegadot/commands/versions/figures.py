@@ -19,18 +19,20 @@ from omegadot.diagnosis.scheme_study.fingerprint import fingerprint
 from omegadot.diagnosis.scheme_study.orders import global_errors, observe
 from omegadot.diagnosis.scheme_study.probes import Probe
 from omegadot.diagnosis.scheme_study.study import Order, ProbeStudy
-from omegadot.diagnosis.scheme_study.subject import Stepper, is_finite
+from omegadot.diagnosis.scheme_study.subject import Stepper
 from omegadot.gates.case import Case
 from omegadot.gates.equation import forward_rows, inverse_rows
-from omegadot.gates.measured_run import CHANNELS, orders_for, scheme_key
+from omegadot.gates.measured_run import CHANNELS, orders_for
 from omegadot.gates.model import body_rows, state_rows
 from omegadot.gates.rows import Row
+from omegadot.gates.truth import scheme_key
 from omegadot.gates.verdicts import ORDER_TOLERANCE
+from omegadot.harness.judge import is_finite
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.growth import growth_along
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import acceleration_from, body_from, state_from
+from omegadot.workers.wire import body_from
 
 Figures = dict[Name, Figure]
 Wanted = Callable[[Name], bool]
@@ -118,12 +120,12 @@ def equation_figures(
     inverse = request("inverse", states=random, acceleration=exact.acceleration)
     rows: list[Row] = []
     if forward.ok:
-        rows += forward_rows(system, random, acceleration_from(forward.result), "residual")
+        rows += forward_rows(system, random, Acceleration(**forward.result), "residual")
     if inverse.ok:
         rows += inverse_rows(system, random, exact.acceleration, inverse.result["torque"])
     names = {name[-1]: name for name in equation_names(case)}
     found = {names[row.channel]: Figure(row.value, row.bound or 0.0) for row in rows}
     if model.ok:
-        bodies, state = model.result["bodies"], state_from(model.result["state"])
+        bodies, state = model.result["bodies"], State(**model.result["state"])
         rows = body_rows(case, body_from(bodies[0])) + state_rows(case, first, state) + rows
     return found, rows

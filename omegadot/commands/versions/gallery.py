@@ -18,7 +18,7 @@ from omegadot.commands.versions.metric import Name
 from omegadot.commands.versions.release import Product, version_of
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load
 from omegadot.gates.case import Case
-from omegadot.workers.harness_end.pool import outcome_of
+from omegadot.harness.engines import outcome_of
 from omegadot.workers.harness_end.process import WorkerProcess
 
 OWN = "given"

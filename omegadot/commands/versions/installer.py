@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from omegadot.commands.versions.release import Span, version_of
-from omegadot.workers.plain_text import one_line
+from omegadot.workers.wire import one_line
 
 SECONDS_TO_INSTALL = 900.0
 LONGEST_REASON = 300

@@ -10,8 +10,10 @@ from functools import cache
 import numpy as np
 
 from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
-from omegadot.diagnosis.scheme_study.subject import Stepper, is_finite
-from omegadot.gates.measured_run import CHANNELS, SchemeKey
+from omegadot.diagnosis.scheme_study.subject import Stepper
+from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.truth import SchemeKey
+from omegadot.harness.judge import is_finite
 from omegadot.reference_impl.companion import CompanionRun, Steps, companion
 from omegadot.reference_impl.coordinates import Coordinates, distinct
 from omegadot.reference_impl.schemes import SCHEMES
@@ -64,16 +66,12 @@ _computing = threading.Lock()  # engines are studied side by side and share what
 @cache
 def _computed(probe: Probe, key: SchemeKey, lanes: Lanes) -> list[CompanionRun]:
     plan = _plan(probe, lanes)
-    rate = truth_of(probe, _times(plan[0])).yardstick.rate
+    rate = truth_of(probe, tuple(plan[0].times.tolist())).yardstick.rate
     return companion(probe.system, probe.initial, key.scheme, rate, plan, key.coordinates)
 
 
 def _plan(probe: Probe, lanes: Lanes) -> list[Steps]:
     return [Steps(probe.timestep(angle), steps, every) for angle, steps, every in lanes]
-
-
-def _times(step: Steps) -> tuple[float, ...]:
-    return tuple((step.kept * step.timestep).tolist())
 
 
 def _compare(
@@ -92,8 +90,8 @@ def _compare(
     for step, run, measured in zip(_plan(probe, lanes), runs, measured_runs, strict=True):
         if not (np.all(np.isfinite(run.growth)) and is_finite(measured) and is_finite(run.state)):
             return np.inf, np.inf
-        yardstick = truth_of(probe, _times(step)).yardstick
-        bound = yardstick.round_off(step.timestep, step.kept, run.growth)
+        yardstick = truth_of(probe, tuple(step.times.tolist())).yardstick
+        bound = yardstick.round_off(step.timestep, step.sample_steps, run.growth)
         for channel in CHANNELS:
             distance = yardstick.distance(channel, measured, run.state)
             share = max(share, float(np.max(distance / (widened * bound[channel]))))

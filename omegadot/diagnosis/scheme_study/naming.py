@@ -31,17 +31,14 @@ def name_schemes(
     left = [kind for kind, found in matched.items() if found]
     named = []
     while left:
-
-        def covered(scheme: str, left: Sequence[str] = tuple(left)) -> tuple[str, ...]:
-            return tuple(kind for kind in left if scheme in matched[kind])
-
-        def merit(scheme: str) -> tuple[int, bool]:
-            kinds = covered(scheme)
-            return len(kinds), any(declared.get(kind) == scheme for kind in kinds)
-
-        best = max(SCHEMES, key=merit)
-        kinds = covered(best)
-        others = tuple(s for s in SCHEMES if s != best and covered(s) == kinds)
+        covered = {s: tuple(kind for kind in left if s in matched[kind]) for s in SCHEMES}
+        merits = {
+            scheme: (len(kinds), any(declared.get(kind) == scheme for kind in kinds))
+            for scheme, kinds in covered.items()
+        }
+        best = max(merits, key=merits.__getitem__)
+        kinds = covered[best]
+        others = tuple(s for s in SCHEMES if s != best and covered[s] == kinds)
         named.append(Naming(best, kinds, others))
         left = [kind for kind in left if kind not in kinds]
     unknown = tuple(kind for kind, found in matched.items() if not found)

@@ -17,9 +17,10 @@ from omegadot.diagnosis.scheme_study.orders import (
     sweep,
 )
 from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
-from omegadot.diagnosis.scheme_study.subject import Stepper, is_finite
+from omegadot.diagnosis.scheme_study.subject import Stepper
 from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.measures import Yardstick
+from omegadot.harness.judge import is_finite
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.series import solve_series
 from omegadot.reference_impl.system import State
@@ -51,10 +52,6 @@ class Leap:
     growth: float
 
 
-def _row(state: State, row: int) -> State:
-    return State(*(values[row] for values in vars(state).values()))
-
-
 @cache
 def _leaps(probe: Probe) -> tuple[Yardstick, tuple[Leap, ...]]:
     longest = probe.timestep(LONGEST)
@@ -63,12 +60,9 @@ def _leaps(probe: Probe) -> tuple[Yardstick, tuple[Leap, ...]]:
     spans = np.append(longest / 2.0 ** np.arange(MOST_HALVINGS + 1), 0.0)
     leaps = []
     for row in range(0, SAMPLES, SAMPLES // STARTS):
-        start = _row(measured.state, row)
+        start = measured.state[row]
         states = solve_series(probe.system, start, spans)
-        ends = tuple(
-            State(*(values[[-1, n]] for values in vars(states).values()))
-            for n in range(MOST_HALVINGS + 1)
-        )
+        ends = tuple(states[[-1, n]] for n in range(MOST_HALVINGS + 1))
         times = np.array([0.0, longest])
         growth = growth_along(probe.system, times, ends[0], measured.yardstick.rate)
         leaps.append(Leap(start, ends, float(growth[-1])))
@@ -101,11 +95,8 @@ def defects(probe: Probe, step: Stepper) -> dict[str, Defect]:
             for channel, square in squares.items()
         }
 
-    points = sweep(measure)
-    return {channel: _defect(points[channel], probe) for channel in CHANNELS}
-
-
-def _defect(points: list[Point], probe: Probe) -> Defect:
-    named = probe.timestep(LONGEST) / 2**NAMED_HALVINGS
-    values = [point.error for point in points if point.timestep == named]
-    return Defect(values[0] if values else None, observe(points))
+    found, named = {}, longest / 2**NAMED_HALVINGS
+    for channel, points in sweep(measure).items():
+        value = next((point.error for point in points if point.timestep == named), None)
+        found[channel] = Defect(value, observe(points))
+    return found

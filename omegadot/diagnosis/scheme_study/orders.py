@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
-from omegadot.diagnosis.scheme_study.subject import Stepper, is_finite
+from omegadot.diagnosis.scheme_study.subject import Stepper
 from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.verdicts import ORDER_TOLERANCE
+from omegadot.harness.judge import is_finite
 
 COARSEST = 0.4  # rad a step: an error of order 4 then has decades to go before it meets rounding
 SAMPLES = 10  # the steps of the coarsest run, all of them kept: 4 rad in all
@@ -20,7 +21,6 @@ MOST_HALVINGS = 9
 # of it will do.
 SPREADS = (ORDER_TOLERANCE / 2, ORDER_TOLERANCE)
 FEWEST_SLOPES = 3
-AT_THE_FLOOR = 2  # so many finest steps within rounding end a sweep
 
 
 @dataclass(frozen=True)
@@ -67,10 +67,8 @@ def observe(points: Iterable[Point]) -> Observed:
 
 def _settled(slopes: Sequence[float], spread: float) -> int:
     """How many slopes, from the finest on, spread by no more than this."""
-    count = 0
-    while count < len(slopes) and np.ptp(slopes[: count + 1]) <= spread:
-        count += 1
-    return count
+    counts = range(len(slopes))
+    return next((n for n in counts if np.ptp(slopes[: n + 1]) > spread), len(slopes))
 
 
 def _decided(points: Sequence[Point]) -> bool:

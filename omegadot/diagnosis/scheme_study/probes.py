@@ -34,16 +34,12 @@ class Probe:
         return angle / float(np.linalg.norm(self.initial.angular_velocity))
 
 
-def _vector(*values: float) -> Array:
-    return np.array(values)
-
-
 def _state(orientation: Sequence[float], angular_velocity: Sequence[float]) -> State:
     return State(
         orientation=normalize(np.array(orientation)),
         angular_velocity=np.array(angular_velocity),
-        position=_vector(0.4, -1.0, 2.0),
-        linear_velocity=_vector(0.5, 1.0, 1.5),
+        position=np.array([0.4, -1.0, 2.0]),
+        linear_velocity=np.array([0.5, 1.0, 1.5]),
     )
 
 
@@ -52,54 +48,45 @@ def _flyer(center_of_mass: Array) -> Body:
     return Body(np.array(2.0), center_of_mass, np.array(inertia))
 
 
-def _top() -> Body:
-    inertia = [[0.4, 0.03, -0.05], [0.03, 0.6, 0.02], [-0.05, 0.02, 0.3]]
-    return Body(np.array(1.5), _vector(0.05, -0.04, 0.2), np.array(inertia))
-
-
 # m/s^2. Stepped in body axes, a slower fall hides the energy's error of order 4 behind its part of
 # order 5 until both are lost in rounding; a faster one rounds omega-dot by its m |v|^2.
-_GRAVITY = _vector(0.0, 0.4, -1.4)
-_HEAVY = _vector(0.0, 0.0, -9.81)
-_PIVOT = _vector(0.02, 0.01, -0.1)
+_GRAVITY = np.array([0.0, 0.4, -1.4])
+_HEAVY = np.array([0.0, 0.0, -9.81])
+_PIVOT = np.array([0.02, 0.01, -0.1])
 _FREE = _state((0.5, 0.1, -0.7, 0.4), (0.8, 2.0, -0.5))
 _SPUN = _state((0.8, 0.3, -0.2, 0.1), (1.0, 2.0, 6.0))
+_DRIVEN = Load(
+    gravity=_GRAVITY,
+    damping=np.array(0.15),
+    torque_body=np.array([0.3, -0.2, 0.1]),
+    torque_world=np.array([-0.1, 0.4, 0.2]),
+)
+_SLOWED = Load(_HEAVY, _PIVOT, np.array(0.1), torque_body=np.array([0.2, 0.1, 0.3]))
+_TOP_INERTIA = np.array([[0.4, 0.03, -0.05], [0.03, 0.6, 0.02], [-0.05, 0.02, 0.3]])
+_TOP = Body(np.array(1.5), np.array([0.05, -0.04, 0.2]), _TOP_INERTIA)
 
 
-def _pivoted(system: System) -> State:
-    return place_on_pivot(system, _SPUN)
+def _top(kind: str, shows: str, load: Load) -> Probe:
+    system = System((_TOP,), load)
+    return Probe(kind, shows, system, place_on_pivot(system, _SPUN))
 
 
-def _probes() -> tuple[Probe, ...]:
-    offset = System((_flyer(_vector(0.05, -0.02, 0.1)),), Load(gravity=_GRAVITY))
-    driven = Load(
-        gravity=_GRAVITY,
-        damping=np.array(0.15),
-        torque_body=_vector(0.3, -0.2, 0.1),
-        torque_world=_vector(-0.1, 0.4, 0.2),
-    )
-    top = System((_top(),), Load(gravity=_HEAVY, pivot=_PIVOT))
-    slowed = Load(_HEAVY, _PIVOT, np.array(0.1), torque_body=_vector(0.2, 0.1, 0.3))
-    slowed_top = System((_top(),), slowed)
-    return (
-        Probe("free", "a tumbling body falls, its centre of mass off its origin", offset, _FREE),
-        Probe(
-            "damped",
-            "a body falls, its centre of mass at its origin, damped, driven in body and world axes",
-            System((_flyer(np.zeros(3)),), driven),
-            _FREE,
-        ),
-        Probe("pivoted", "a heavy asymmetric top on a pivot", top, _pivoted(top)),
-        Probe(
-            "pivoted-damped",
-            "the top, damped and driven in body axes",
-            slowed_top,
-            _pivoted(slowed_top),
-        ),
-    )
-
-
-PROBES = _probes()
+PROBES = (
+    Probe(
+        "free",
+        "a tumbling body falls, its centre of mass off its origin",
+        System((_flyer(np.array([0.05, -0.02, 0.1])),), Load(gravity=_GRAVITY)),
+        _FREE,
+    ),
+    Probe(
+        "damped",
+        "a body falls, its centre of mass at its origin, damped, driven in body and world axes",
+        System((_flyer(np.zeros(3)),), _DRIVEN),
+        _FREE,
+    ),
+    _top("pivoted", "a heavy asymmetric top on a pivot", Load(gravity=_HEAVY, pivot=_PIVOT)),
+    _top("pivoted-damped", "the top, damped and driven in body axes", _SLOWED),
+)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,15 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from omegadot.diagnosis.scheme_study.one_step import NAMED, Defect
+from omegadot.diagnosis.scheme_study.one_step import NAMED
 from omegadot.diagnosis.scheme_study.orders import Observed
 from omegadot.diagnosis.scheme_study.probes import PROBES
-from omegadot.diagnosis.scheme_study.study import (
-    EngineStudy,
-    IntegratorStudy,
-    Order,
-    ProbeStudy,
-)
+from omegadot.diagnosis.scheme_study.study import EngineStudy, IntegratorStudy, ProbeStudy
 
 SCHEMA = 1
 Record = dict[str, Any]
@@ -55,18 +50,15 @@ def _probe(study: ProbeStudy) -> Record:
         "declared": study.declared,
         "as_declared": study.as_declared,
         "matches": [vars(match) for match in study.matches],
-        "orders": {channel: _order(order) for channel, order in study.orders.items()},
-        "defects": {channel: _defect(defect) for channel, defect in study.defects.items()},
+        "orders": {
+            channel: {"declared": o.declared, "verdict": o.verdict, **_observed(o.observed)}
+            for channel, o in study.orders.items()
+        },
+        "defects": {
+            channel: {"value": defect.value, **_observed(defect.observed)}
+            for channel, defect in study.defects.items()
+        },
     }
-
-
-def _order(order: Order) -> Record:
-    seen = {"declared": order.declared, "verdict": order.verdict}
-    return {**seen, **_observed(order.observed)}
-
-
-def _defect(defect: Defect) -> Record:
-    return {"value": defect.value, **_observed(defect.observed)}
 
 
 def _observed(observed: Observed) -> Record:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass, field
 
-from omegadot.adapters.protocol import Description, Integrator
+from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.scheme_study.fingerprint import Match, fingerprint
 from omegadot.diagnosis.scheme_study.naming import Naming, name_schemes
 from omegadot.diagnosis.scheme_study.one_step import Defect, defects
 from omegadot.diagnosis.scheme_study.orders import Observed, global_errors, observe
 from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, Stepper, load, stepper_of
-from omegadot.gates.measured_run import CHANNELS, orders_for, scheme_key
+from omegadot.gates.measured_run import CHANNELS, orders_for
+from omegadot.gates.truth import scheme_key
 from omegadot.gates.verdicts import ORDER_TOLERANCE
-from omegadot.harness.arguments import check_integrators
+from omegadot.harness.arguments import integrators_chosen
 from omegadot.harness.plan import EngineChoice
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
@@ -128,12 +129,6 @@ def study_probe(probe: Probe, integrator: Integrator, step: Stepper) -> ProbeStu
     )
 
 
-def _chosen(choice: EngineChoice, description: Description) -> list[str]:
-    check_integrators(choice, description)
-    names = [integrator.name for integrator in description.integrators]
-    return [name for name in names if name in (choice.integrators or names)]
-
-
 def study_engine(
     choice: EngineChoice, worker: WorkerProcess, stopping: threading.Event | None = None
 ) -> EngineStudy:
@@ -148,7 +143,7 @@ def study_engine(
         if not started.ok:
             return EngineStudy(choice.name, started)
         description = description_of(started.result)
-        names = _chosen(choice, description)
+        names = [i.name for i in integrators_chosen(choice, description)]
         found: dict[str, dict[str, ProbeStudy]] = {name: {} for name in names}
         for probe in PROBES:
             for name in names:

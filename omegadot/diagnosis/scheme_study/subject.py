@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Protocol
-
-import numpy as np
+from collections.abc import Callable
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.reference_impl.system import State, System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
-from omegadot.workers.wire import description_of, state_from
+from omegadot.workers.wire import description_of
 
 
 class NoAnswerError(Exception):
@@ -20,12 +18,11 @@ class NoAnswerError(Exception):
         self.answer = answer
 
 
-class Stepper(Protocol):
-    """How an integrator is stepped."""
+Stepper = Callable[[State, float, int, int], State]
+"""Of initial, timestep, steps and every: the states at step 0, each `every`-th and the last.
 
-    def __call__(self, initial: State, timestep: float, steps: int, every: int) -> State:
-        """The states at step 0, each `every`-th and the last. Raises NoAnswerError."""
-        ...
+Raises NoAnswerError.
+"""
 
 
 def _requested(worker: WorkerProcess, operation: str, **fields: object) -> Answer:
@@ -54,15 +51,10 @@ def stepper_of(worker: WorkerProcess, integrator: str) -> Stepper:
     def step(initial: State, timestep: float, steps: int, every: int) -> State:
         plan = {"timestep": timestep, "steps": steps, "every": every}
         answer = _requested(worker, "run", initial=initial, integrator=integrator, **plan)
-        state, kept = state_from(answer.result["state"]), -(-steps // every) + 1
+        state, kept = State(**answer.result["state"]), -(-steps // every) + 1
         if len(state.orientation) != kept:
             came = f"{len(state.orientation)} samples came back, {kept} were requested"
             raise NoAnswerError(Answer("raised", came))
         return state
 
     return step
-
-
-def is_finite(state: State) -> bool:
-    """Whether every number of a trajectory is finite."""
-    return all(bool(np.all(np.isfinite(values))) for values in vars(state).values())

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from omegadot.scenarios.errors import ScenarioError, describe, printable
+from omegadot.scenarios.files import read_toml
 from omegadot.scenarios.links import sdf, urdf
 from omegadot.scenarios.links.link import Link, link_of
 from omegadot.scenarios.links.place import Place
 from omegadot.scenarios.links.xml_file import parsed, read_text, root_name
-from omegadot.scenarios.toml_file import read_toml
 
 FORMATS = {"robot": urdf.links, "sdf": sdf.links}
 MjcfReader = Callable[[Path, str], Sequence[Link]]

@@ -14,15 +14,14 @@ import numpy as np
 
 from omegadot.scenarios.links.link import Link
 from omegadot.scenarios.links.place import Place, numbers_in
-from omegadot.scenarios.links.turns import (
+from omegadot.scenarios.links.poses import (
+    MOMENTS,
     Matrix,
     of_quaternion,
     roll_pitch_yaw,
-    symmetric,
     turned_tensor,
 )
 
-MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 WITH_QUATERNIONS = ("1.1", "1.2")  # versions; others ignore the attribute
 
 
@@ -55,11 +54,11 @@ def _body(link: Element, version: str, place: Place) -> dict[str, Any]:
         lacking = "mass" if mass is None else "inertia"
         own.inner(lacking).refuse("missing", f"give <{lacking}>")
     center, rotation = _origin(own.only(inertial, "origin"), version, own.inner("origin"))
-    tensor = symmetric(*(own.inner("inertia").attribute(inertia, name) for name in MOMENTS))
+    moments = (own.inner("inertia").attribute(inertia, name) for name in MOMENTS)
     return {
         "mass": own.inner("mass").attribute(mass, "value"),
         "center_of_mass": center,
-        "inertia": turned_tensor(rotation, tensor),
+        "inertia": turned_tensor(rotation, moments),
     }
 
 

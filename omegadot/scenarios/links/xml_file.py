@@ -18,15 +18,13 @@ from defusedxml import DefusedXmlException
 from defusedxml.sax import parseString
 
 from omegadot.scenarios.errors import ScenarioError, printable
-from omegadot.scenarios.regular_file import read_bytes
+from omegadot.scenarios.files import read_bytes
 
 LARGEST_FILE = 20_000_000  # bytes; robots are described in a few hundred thousand
 DEEPEST = 500
 
 _DECLARATION = re.compile(r"\A\s*<\?xml\b(?:[^?]|\?(?!>))*\?>")
-_MARKUP = re.compile(
-    r"""<!--|<!\[CDATA\[|<[^!"'<>]*+(?:"[^"]*+"[^"'<>]*+|'[^']*+'[^"'<>]*+)*+>""",
-)
+_MARKUP = re.compile(r"""<!--|<!\[CDATA\[|<[^!"'<>]*+(?:"[^"]*+"[^"'<>]*+|'[^']*+'[^"'<>]*+)*+>""")
 _ROOT = re.compile(r"\s*(?:<[?!][^>]*>\s*)*<([^\s<>/]+)")
 _CLOSING = {"<!--": "-->", "<![CDATA[": "]]>"}
 _MARKS = {b"\xef\xbb\xbf": "utf-8", b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
@@ -60,7 +58,9 @@ def read_text(path: Path, file: str) -> str:
     Raises ScenarioError.
     """
     content = read_bytes(path, file, "URDF, MJCF or SDF", LARGEST_FILE)
-    text = _DECLARATION.sub(_blank, decoded(content), count=1)
+    text = decoded(content)
+    if found := _DECLARATION.match(text):  # its line ends stay, so that lines keep their numbers
+        text = "\n" * found[0].count("\n") + text[found.end() :]
     return _without_comments(text)
 
 
@@ -101,11 +101,6 @@ def _without_comments(text: str) -> str:
                 pieces += [text[kept : markup.start()], lines]
                 kept = position
     return "".join([*pieces, text[kept:]])
-
-
-def _blank(found: re.Match[str]) -> str:
-    """Line ends alone, so that the lines keep their numbers."""
-    return "\n" * found[0].count("\n")
 
 
 def decoded(content: bytes) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 import numpy as np
 
@@ -11,7 +11,13 @@ from omegadot.reference_impl.coordinates import COORDINATES
 from omegadot.reference_impl.system import Acceleration, Array, Body, State
 
 Shape = tuple[int, ...]
-STATE_WIDTHS = {"orientation": 4, "angular_velocity": 3, "position": 3, "linear_velocity": 3}
+Arrays = TypeVar("Arrays", bound=State | Acceleration | Body)
+_V: Shape = (3,)
+SHAPES: dict[type, dict[str, Shape]] = {
+    State: {"orientation": (4,), "angular_velocity": _V, "position": _V, "linear_velocity": _V},
+    Acceleration: {"angular": _V, "linear": _V},
+    Body: {"mass": (), "center_of_mass": _V, "inertia": (3, 3)},
+}
 CHANNELS = get_args(Channel)
 
 
@@ -38,14 +44,14 @@ def numbers(what: str, value: Any, shape: Shape) -> Array:
     return array.astype(float, copy=False)
 
 
-def checked_state(what: str, state: Any, lead: Shape) -> State:
-    """A state whose arrays have the leading axes `lead`."""
-    _expect(what, state, State)
+def checked(what: str, value: Any, kind: type[Arrays], lead: Shape) -> Arrays:
+    """A state, an acceleration or a body whose arrays have the leading axes `lead`."""
+    _expect(what, value, kind)
     fields = {
-        name: numbers(f"{what}.{name}", getattr(state, name), (*lead, width))
-        for name, width in STATE_WIDTHS.items()
+        name: numbers(f"{what}.{name}", getattr(value, name), (*lead, *shape))
+        for name, shape in SHAPES[kind].items()
     }
-    return State(**fields)
+    return kind(**fields)
 
 
 def checked_trajectory(trajectory: Any) -> Trajectory:
@@ -53,7 +59,7 @@ def checked_trajectory(trajectory: Any) -> Trajectory:
     _expect("run()", trajectory, Trajectory)
     count = np.size(trajectory.time)
     time = numbers("run().time", trajectory.time, (max(1, count),))
-    state = checked_state("run().state", trajectory.state, (count,))
+    state = checked("run().state", trajectory.state, State, (count,))
     return Trajectory(time, state, trajectory.seconds)
 
 
@@ -69,31 +75,14 @@ def checked_seconds(seconds: Any, whole: float) -> float:
     return found
 
 
-def checked_acceleration(found: Any, lead: Shape) -> Acceleration:
-    """Angular and linear acceleration at as many states as were given."""
-    what = "forward_dynamics()"
-    _expect(what, found, Acceleration)
-    angular = numbers(f"{what}.angular", found.angular, (*lead, 3))
-    return Acceleration(angular, numbers(f"{what}.linear", found.linear, (*lead, 3)))
-
-
-def checked_torque(found: Any, lead: Shape) -> Array:
-    """A torque for each state."""
-    return numbers("inverse_dynamics()", found, (*lead, 3))
-
-
 def checked_bodies(bodies: Any, count: int) -> tuple[Body, ...]:
     """As many bodies as were loaded, each with its mass, centre of mass and inertia."""
     _expect("model()", bodies, tuple)
     if len(bodies) != count:
         raise AnswerError(f"model() has {len(bodies)} bodies; answer with {count}")
-    found = []
     for body in bodies:
         _expect("a body of model()", body, Body)
-        mass = numbers("model().mass", body.mass, ())
-        center = numbers("model().center_of_mass", body.center_of_mass, (3,))
-        found.append(Body(mass, center, numbers("model().inertia", body.inertia, (3, 3))))
-    return tuple(found)
+    return tuple(checked("model()", body, Body, ()) for body in bodies)
 
 
 def checked_native(found: Any) -> dict[str, dict[str, str]]:

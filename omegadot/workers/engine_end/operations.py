@@ -12,19 +12,19 @@ from omegadot.adapters.protocol import Adapter, Trajectory, UnsupportedError
 from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.stepping import stack
+from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.engine_end.checked import (
-    checked_acceleration,
+    checked,
     checked_bodies,
     checked_description,
     checked_native,
     checked_seconds,
-    checked_state,
-    checked_torque,
     checked_trajectory,
+    numbers,
 )
 from omegadot.workers.engine_end.memory import peak_memory
-from omegadot.workers.wire import acceleration_from, state_from, system_from
+from omegadot.workers.wire import system_from
 
 Request = dict[str, Any]
 
@@ -42,33 +42,32 @@ def _load(adapter: Adapter, request: Request) -> Any:
 
 def _model(adapter: Adapter, request: Request) -> Any:
     """Bodies as the engine holds them, and a state after a round trip through it."""
-    state = state_from(request["state"])
+    state = State(**request["state"])
     adapter.set_state(state)
     bodies = checked_bodies(adapter.model(), 1)
     return {
         "bodies": bodies,
-        "state": checked_state("get_state()", adapter.get_state(), _lead(state)),
+        "state": checked("get_state()", adapter.get_state(), State, _lead(state)),
     }
 
 
 def _forward(adapter: Adapter, request: Request) -> Any:
-    states = state_from(request["states"])
-    return checked_acceleration(adapter.forward_dynamics(states), _lead(states))
+    return _accelerations(adapter, State(**request["states"]))
+
+
+def _accelerations(adapter: Adapter, states: State) -> Acceleration:
+    found = adapter.forward_dynamics(states)
+    return checked("forward_dynamics()", found, Acceleration, _lead(states))
 
 
 def _inverse(adapter: Adapter, request: Request) -> Any:
-    states = state_from(request["states"])
-    torque = adapter.inverse_dynamics(states, acceleration_from(request["acceleration"]))
-    return {"torque": checked_torque(torque, _lead(states))}
-
-
-def _is_finite(state: State) -> Any:
-    values = (state.orientation, state.angular_velocity, state.position, state.linear_velocity)
-    return np.all(np.concatenate([np.isfinite(v) for v in values], axis=-1), axis=-1)
+    states = State(**request["states"])
+    torque = adapter.inverse_dynamics(states, Acceleration(**request["acceleration"]))
+    return {"torque": numbers("inverse_dynamics()", torque, (*_lead(states), 3))}
 
 
 def _timed_run(adapter: Adapter, request: Request) -> tuple[Trajectory, float]:
-    initial = state_from(request["initial"])
+    initial = State(**request["initial"])
     step = (request["integrator"], request["timestep"])
     adapter.run(initial, *step, 1, 1)  # a warm-up, so that first-call costs are not counted
     started = time.perf_counter()
@@ -81,18 +80,12 @@ def _timed_run(adapter: Adapter, request: Request) -> tuple[Trajectory, float]:
 def _run(adapter: Adapter, request: Request) -> Any:
     """A run with the engine's own omega-dot at its samples; the time per step is its own."""
     trajectory, seconds_per_step = _timed_run(adapter, request)
-    finite = _is_finite(trajectory.state)
+    fields = vars(trajectory.state).values()
+    finite = np.all(np.concatenate([np.isfinite(f) for f in fields], axis=-1), axis=-1)
     angular = np.full(trajectory.state.angular_velocity.shape, np.nan)
     if "forward_dynamics" in adapter.description.features and finite.any():
-        state = trajectory.state
-        kept = State(
-            state.orientation[finite],
-            state.angular_velocity[finite],
-            state.position[finite],
-            state.linear_velocity[finite],
-        )
-        found = adapter.forward_dynamics(kept)
-        angular[finite] = checked_acceleration(found, _lead(kept)).angular
+        kept = State(*(f[finite] for f in fields))
+        angular[finite] = _accelerations(adapter, kept).angular
     return {
         "time": trajectory.time,
         "state": trajectory.state,
@@ -103,21 +96,22 @@ def _run(adapter: Adapter, request: Request) -> Any:
 
 def _first_steps(adapter: Adapter, request: Request) -> Any:
     """The states (m, k, ...) that single steps of (m, k) sizes lead to from m states."""
-    states, ends = state_from(request["states"]), []
-    for index, timesteps in enumerate(request["timesteps"]):
-        start = State(*(values[index] for values in vars(states).values()))
-        for timestep in timesteps:
-            run = adapter.run(start, request["integrator"], float(timestep), 1, 1)
-            state = checked_trajectory(run).state
-            ends.append([values[-1] for values in vars(state).values()])
-    shape = request["timesteps"].shape
-    stacked = (np.array(values) for values in zip(*ends, strict=True))
-    return State(*(values.reshape(*shape, -1) for values in stacked))
+    states, integrator = State(**request["states"]), request["integrator"]
+
+    def end(start: State, timestep: float) -> State:
+        return checked_trajectory(adapter.run(start, integrator, timestep, 1, 1)).state[-1]
+
+    return stack(
+        [
+            stack([end(states[index], timestep) for timestep in timesteps])
+            for index, timesteps in enumerate(request["timesteps"].tolist())
+        ]
+    )
 
 
 def _solve(_: Adapter, request: Request) -> Any:
     """The exact states, their floor, and exact omega-dot; no engine takes part."""
-    system, initial = system_from(request["system"]), state_from(request["initial"])
+    system, initial = system_from(request["system"]), State(**request["initial"])
     found = exact_solution(system, initial, request["times"])
     omega_dot = forward_dynamics(system, found.state).angular
     return {**vars(found), "omega_dot": omega_dot}
@@ -125,19 +119,11 @@ def _solve(_: Adapter, request: Request) -> Any:
 
 def _companion(_: Adapter, request: Request) -> Any:
     """The reference stepping one scheme over a sweep, with the growth of rounding."""
-    system, initial = system_from(request["system"]), state_from(request["initial"])
+    system, initial = system_from(request["system"]), State(**request["initial"])
     plan = [Steps(**step) for step in request["plan"]]
     how = (request["scheme"], request["rate"], plan, request["coordinates"])
     runs = companion(system, initial, *how)
-    return [
-        {
-            "time": run.time,
-            "state": run.state,
-            "growth": run.growth,
-            "omega_dot": forward_dynamics(system, run.state).angular,
-        }
-        for run in runs
-    ]
+    return [{**vars(run), "omega_dot": forward_dynamics(system, run.state).angular} for run in runs]
 
 
 def _native(adapter: Adapter, _: Request) -> Any:

@@ -21,8 +21,7 @@ from omegadot.adapters.registry import BUILT_IN, build_adapter
 from omegadot.workers.engine_end.checked import checked_description
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
-from omegadot.workers.plain_text import one_line
-from omegadot.workers.wire import encode_frame, read_frame
+from omegadot.workers.wire import encode_frame, one_line, read_frame
 
 # Given back when memory runs out, so that there is some to report it.
 _reserve = [bytearray(1 << 22)]

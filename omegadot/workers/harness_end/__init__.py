@@ -1,1 +1,1 @@
-"""The harness's end: processes, their pipes, and a pool of them."""
+"""The harness's end: processes and their pipes."""

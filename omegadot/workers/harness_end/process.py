@@ -8,6 +8,7 @@ import queue
 import signal
 import subprocess
 import sys
+import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,10 +16,9 @@ from typing import Any
 import psutil
 
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE
-from omegadot.workers.harness_end.family import end_family, marked, new_mark
-from omegadot.workers.harness_end.pipes import Lost, Pipes
+from omegadot.workers.harness_end.pipes import Lost, Pipes, marked
 from omegadot.workers.machine import memory_of_machine
-from omegadot.workers.plain_text import one_line
+from omegadot.workers.wire import one_line
 
 SECONDS_TO_LEAVE = 2.0
 # Importing an engine takes its time, however short the limit of a request.
@@ -68,51 +68,48 @@ class WorkerProcess:
         self._command = [*(command or python), target, setup]
         self._timeout = timeout
         self._memory = memory or memory_of_machine() // 2
-        self._process: subprocess.Popen[bytes] | None = None
         self._pipes: Pipes | None = None
-        self._mark = new_mark()
         self.deaths: list[str] = []
 
     @property
     def pid(self) -> int | None:
         """The process's number while it lives."""
-        process = self._process
-        return process.pid if process else None
+        pipes = self._pipes
+        return pipes.process.pid if pipes else None
 
     @property
     def started(self) -> bool:
         """Whether there is a process; one that died since then is found at the next request."""
-        return self._process is not None
+        return self._pipes is not None
 
     def start(self) -> Answer:
         """Start the process; the result is the engine's description."""
         self.stop()
-        self._mark = new_mark()
+        mark = uuid.uuid4().hex
         try:
             process = subprocess.Popen(
                 self._command,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                env=marked(_worker_environment(self._memory), self._mark),
+                env=marked(_worker_environment(self._memory), mark),
                 start_new_session=True,  # Ctrl-C is the harness's to handle
             )
         except OSError as error:
             return Answer("crashed", f"the worker could not be started: {error}")
-        pipes = Pipes(process, self._mark)
-        self._process, self._pipes = process, pipes
-        answer = self._wait(process, pipes, max(self._timeout, SECONDS_TO_START))
+        self._pipes = pipes = Pipes(process, mark)
+        answer = self._wait(pipes, max(self._timeout, SECONDS_TO_START))
         if not answer.ok:
             self.stop()
         return answer
 
     def request(self, operation: str, **fields: Any) -> Answer:
         """Put one request and wait for its answer, a death, or the time limit."""
-        process, pipes = self._process, self._pipes
-        if process is None or pipes is None:
+        pipes = self._pipes
+        if pipes is None:
             return Answer("crashed", "the worker is not running")
         pipes.send({"operation": operation, **fields})
-        return self._wait(process, pipes, self._timeout)
+        return self._wait(pipes, self._timeout)
 
     def peak_memory(self) -> int | None:
         """Bytes that the living process has held in memory at most; None where it is not known."""
@@ -122,32 +119,26 @@ class WorkerProcess:
             return getattr(psutil.Process(self.pid).memory_info(), "peak_wset", None)
         return answer.result if answer.ok else None
 
-    def _wait(self, process: subprocess.Popen[bytes], pipes: Pipes, seconds: float) -> Answer:
+    def _wait(self, pipes: Pipes, seconds: float) -> Answer:
         try:
             answer = pipes.answers.get(timeout=seconds)
         except queue.Empty:
             self.stop()
             return Answer("timeout", f"no answer within {seconds:g} s; the worker was ended")
         if isinstance(answer, Lost):
-            return Answer("crashed", self._post_mortem(process, pipes, answer.how))
-        if answer.get("leaves"):
+            return Answer("crashed", self._post_mortem(pipes, answer.how))
+        if answer.pop("leaves", False):
             self.stop()
-        return Answer(
-            answer["outcome"],
-            one_line(answer.get("reason", "")),
-            answer.get("result"),
-            answer.get("seconds", 0.0),
-        )
+        return Answer(**{**answer, "reason": one_line(answer.get("reason", ""))})
 
-    def _post_mortem(self, process: subprocess.Popen[bytes], pipes: Pipes, how: str) -> str:
+    def _post_mortem(self, pipes: Pipes, how: str) -> str:
         """State how a worker came to give no more answers. how: why it is ended, if it lives."""
         if how:
-            end_family(process, self._mark)
-            process.wait()
+            pipes.end()
             how += "; the worker was ended"
         else:
-            how = _ending(process.wait())
-        self._process = self._pipes = None
+            how = _ending(pipes.process.wait())
+        self._pipes = None
         text = pipes.last_output()
         found = f"{how}; its last output: {text}" if text else how
         self.deaths.append(found)
@@ -155,23 +146,22 @@ class WorkerProcess:
 
     def finish(self) -> None:
         """Let an idle worker leave by itself, so that it may tidy up; end it if it does not."""
-        process, pipes = self._process, self._pipes
-        if process is None or pipes is None:
+        pipes = self._pipes
+        if pipes is None:
             return
-        if process.poll() is not None:  # it died between requests
-            self._post_mortem(process, pipes, "")
+        if pipes.process.poll() is not None:  # it died between requests
+            self._post_mortem(pipes, "")
             return
         pipes.close_requests()
         with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(timeout=SECONDS_TO_LEAVE)
+            pipes.process.wait(timeout=SECONDS_TO_LEAVE)
         self.stop()
 
     def stop(self) -> None:
         """End the process and everything it started, at once."""
-        process, self._process, self._pipes = self._process, None, None
-        if process is not None:
-            end_family(process, self._mark)
-            process.wait()
+        pipes, self._pipes = self._pipes, None
+        if pipes is not None:
+            pipes.end()
 
 
 def _ending(code: int) -> str:
