@@ -7,7 +7,7 @@ import numpy as np
 from omegadot.reference_impl.schemes.jacobian import (
     acceleration_and_jacobian,
     natural_size,
-    solver_of_one_minus,
+    solve_one_minus,
 )
 from omegadot.reference_impl.schemes.motion import Motion, per_matrix
 from omegadot.reference_impl.schemes.scheme import Scheme, every_channel
@@ -24,7 +24,7 @@ def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, A
     a = motion.acceleration(q, v)
     push, size = h * a, natural_size(motion, v, a)
     _, jacobian = acceleration_and_jacobian(motion, q, np.zeros_like(v), size)
-    v = v + solver_of_one_minus(per_matrix(h) * jacobian)(push)
+    v = v + solve_one_minus(per_matrix(h) * jacobian, push)
     return motion.retract(q, h * v), v
 
 

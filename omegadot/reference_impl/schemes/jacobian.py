@@ -66,6 +66,16 @@ def natural_size(motion: Motion, v: Array, a: Array) -> Array:
     return size
 
 
+def solve_one_minus(matrix: Array, right: Array) -> Array:
+    """The x with ``(1 - M) x = b``, (..., n), in any precision: see `solver_of_one_minus`."""
+    if matrix.ndim == 2 and matrix.shape[0] == matrix.shape[1] and matrix.dtype == _DOUBLE:
+        try:  # an inverse, for one right-hand side, takes a quarter longer
+            return np.linalg.solve(_eye(len(matrix)) - matrix, right)
+        except np.linalg.LinAlgError:
+            return np.full_like(right, np.nan)
+    return solver_of_one_minus(matrix)(right)
+
+
 def solver_of_one_minus(matrix: Array) -> Callable[[Array], Array]:
     """What solves ``(1 - M) x = b`` for x, (..., n) to (..., n), in any precision.
 
