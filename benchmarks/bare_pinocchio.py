@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import repeat
+from math import atan, sqrt
 from typing import Any
 
 import numpy as np
@@ -21,9 +22,8 @@ def loops(
     system: System, initial: State, integrator: str, timestep: float, steps: int, every: int
 ) -> list[Bare]:
     """One loop, where a hand-written one is known for the scheme; steps is a multiple of every."""
-    make, load = _STEPS.get(integrator), system.load
-    turns = load.damping or np.any(load.torque_world)
-    if make is None or (make is _linearly_implicit and turns):
+    make = _STEPS.get(integrator)
+    if make is None:
         return []
     model = _model(system)
     step = make(model, model.createData(), system, timestep)
@@ -70,25 +70,47 @@ def _coordinates(system: System, state: State) -> tuple[Array, Array]:
     return np.array([*origin, x, y, z, scalar]), np.concatenate([velocity, w])
 
 
-def _acceleration(model: Any, data: Any, system: System) -> Callable[[Array, Array], Array]:
-    """``aba`` under the load; the array is Pinocchio's own."""
-    load, aba = system.load, pin.aba
+def _torque(model: Any, system: System) -> Array | Torque:
+    """What the load applies to the joint, (nv,): constant, or a function of q and v."""
+    load = system.load
     torque = np.zeros(model.nv)
     torque[-3:] = load.torque_body
     if load.damping:
         against = np.zeros(model.nv)
         against[-3:] = -load.damping
-        return lambda q, v: aba(model, data, q, v, against * v)
+        return lambda q, v: against * v
     if np.any(load.torque_world):
         in_world, quaternion = load.torque_world, pin.Quaternion
 
         def turned(q: Array, v: Array) -> Array:
             torque[-3:] = in_world @ quaternion(q[-4:]).toRotationMatrix()
-            found: Array = aba(model, data, q, v, torque)
-            return found
+            return torque
 
         return turned
+    return torque
+
+
+def _acceleration(model: Any, data: Any, system: System) -> Callable[[Array, Array], Array]:
+    """``aba`` under the load; the array is Pinocchio's own."""
+    aba, torque = pin.aba, _torque(model, system)
+    if callable(torque):
+        return lambda q, v: aba(model, data, q, v, torque(q, v))
     return lambda q, v: aba(model, data, q, v, torque)
+
+
+def _slopes(model: Any, data: Any, system: System) -> Callable[[Array, Array], Array]:
+    """The derivatives of ``aba`` by v, the load's among them; ``data.ddq`` is the acceleration."""
+    derive, torque, damping = pin.computeABADerivatives, _torque(model, system), system.load.damping
+    if not callable(torque):
+        return lambda q, v: derive(model, data, q, v, torque)[1]
+
+    def of_load(q: Array, v: Array) -> Array:
+        _, by_v, inverse_mass = derive(model, data, q, v, torque(q, v))
+        if damping:
+            by_v[:, -3:] -= damping * inverse_mass[:, -3:]
+        return by_v
+
+    return of_load
 
 
 def _semi_implicit(model: Any, data: Any, system: System, h: float) -> Step:
@@ -102,15 +124,53 @@ def _semi_implicit(model: Any, data: Any, system: System, h: float) -> Step:
 
 
 def _linearly_implicit(model: Any, data: Any, system: System, h: float) -> Step:
-    """The torque must not depend on the state: it is not differentiated."""
-    torque, one = np.zeros(model.nv), np.eye(model.nv)
-    torque[-3:] = system.load.torque_body
-    derive, integrate, solve = pin.computeABADerivatives, pin.integrate, np.linalg.solve
+    slopes, one = _slopes(model, data, system), np.eye(model.nv)
+    integrate, solve = pin.integrate, np.linalg.solve
 
     def step(q: Array, v: Array) -> tuple[Array, Array]:
-        by_v = derive(model, data, q, v, torque)[1]
+        by_v = slopes(q, v)
         v = v + solve(one - h * by_v, h * data.ddq)
         return integrate(model, q, h * v), v
+
+    return step
+
+
+def _implicit_midpoint(model: Any, data: Any, system: System, h: float) -> Step:
+    """Newton's method with the Jacobian of the step's start, until omega stands still."""
+    slopes, one, half = _slopes(model, data, system), np.eye(model.nv), 0.5 * h
+    acceleration, integrate, invert = (
+        _acceleration(model, data, system),
+        pin.integrate,
+        np.linalg.inv,
+    )
+    least = float(np.finfo(float).eps) ** 2
+
+    def increment(v: Array) -> Array:
+        """The vector whose exponential is Cayley's transform of h v."""
+        *linear, a, b, c = (h * v).tolist()
+        square = a * a + b * b + c * c
+        angle = sqrt(square)
+        s = 2 * atan(0.5 * angle) / angle
+        if not linear:
+            return np.array([s * a, s * b, s * c])
+        x, y, z = linear
+        along = (1 - s) * (x * a + y * b + z * c) / square
+        return np.array(
+            [s * x + along * a, s * y + along * b, s * z + along * c, s * a, s * b, s * c]
+        )
+
+    def step(q: Array, v: Array) -> tuple[Array, Array]:
+        inverse = invert(one - half * slopes(q, v))
+        w, last = v + inverse @ (half * data.ddq), np.inf
+        while True:
+            push = half * acceleration(integrate(model, q, 0.5 * increment(w)), w)
+            change = inverse @ (v + push - w)
+            w = w + change
+            turned, whole = change[-3:], w[-3:]
+            size = float(turned @ turned) / float(whole @ whole)
+            if size <= least or size >= last:
+                return integrate(model, q, increment(w)), 2 * w - v
+            last = size
 
     return step
 
@@ -131,6 +191,39 @@ def _rk4(model: Any, data: Any, system: System, h: float, rate: Any) -> Step:
         d = h * acceleration(integrate(model, q, u), v4)
         mean = (h / 6) * (v + 2 * (u2 + u3) + rate(u, v4))
         return integrate(model, q, mean), v + (a + 2 * (b + c) + d) / 6
+
+    return step
+
+
+def _rk4_quaternion(model: Any, data: Any, system: System, h: float) -> Step:
+    """RK4 on q and v, the quaternion as any four numbers, made unit for ``aba``."""
+    acceleration, normalize, half = _acceleration(model, data, system), pin.normalize, 0.5 * h
+
+    def rate(q: Array, v: Array) -> Array:
+        *place, x, y, z, w = q.tolist()
+        *linear, a, b, c = v.tolist()
+        if place:  # R u of a quaternion that need not be unit
+            (lx, ly, lz), s = linear, 2 / (w * w + x * x + y * y + z * z)
+            tx, ty, tz = s * (y * lz - z * ly), s * (z * lx - x * lz), s * (x * ly - y * lx)
+            linear = [
+                lx + w * tx + y * tz - z * ty,
+                ly + w * ty + z * tx - x * tz,
+                lz + w * tz + x * ty - y * tx,
+            ]
+        a, b, c = 0.5 * a, 0.5 * b, 0.5 * c
+        turning = (w * a + y * c - z * b, w * b + z * a - x * c, w * c + x * b - y * a)
+        return np.array([*linear, *turning, -x * a - y * b - z * c])
+
+    def step(q: Array, v: Array) -> tuple[Array, Array]:
+        q1, a1 = rate(q, v), h * acceleration(q, v)
+        p, u = q + half * q1, v + 0.5 * a1
+        q2, a2 = rate(p, u), h * acceleration(normalize(model, p), u)
+        p, u = q + half * q2, v + 0.5 * a2
+        q3, a3 = rate(p, u), h * acceleration(normalize(model, p), u)
+        p, u = q + h * q3, v + a3
+        q4, a4 = rate(p, u), h * acceleration(normalize(model, p), u)
+        q = q + (h / 6) * (q1 + 2 * (q2 + q3) + q4)
+        return normalize(model, q), v + (a1 + 2 * (a2 + a3) + a4) / 6
 
     return step
 
@@ -166,6 +259,8 @@ def _munthe_kaas(model: Any, data: Any, system: System, h: float) -> Step:
 _STEPS: dict[str, Callable[[Any, Any, System, float], Step]] = {
     "aba+semi-implicit-euler": _semi_implicit,
     "aba+linearly-implicit-euler": _linearly_implicit,
+    "aba+rk4-quaternion": _rk4_quaternion,
+    "aba+implicit-midpoint": _implicit_midpoint,
     "aba+lie-rk4-naive": _naive,
     "aba+lie-rk4": _munthe_kaas,
 }

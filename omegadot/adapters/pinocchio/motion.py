@@ -69,8 +69,9 @@ def joint_motion(pin: Any, model: Any, load: Load) -> Motion:
 
     def jacobian(q: Array, v: Array, _: Array | None) -> tuple[Array, Array]:
         _, by_v, inverse_mass = derivatives(model, data, q, v, torque(q, v))
-        by_v = by_v.copy()
-        by_v[:, -3:] -= damping * inverse_mass[:, -3:]
+        if damping:
+            by_v = by_v.copy()
+            by_v[:, -3:] -= damping * inverse_mass[:, -3:]
         return data.ddq, by_v
 
     return Motion(acceleration=acceleration, jacobian=jacobian, **parts)
