@@ -38,6 +38,7 @@ def test_an_engine_is_a_class_a_file_or_a_name(toy: Any, quick: Path) -> None:
     checks = {check["id"]: check["verdict"] for check in typed.json["checks"]}
     assert {i: result.verdict for i, result in by_class.results.items()} == checks
     assert next(iter(by_class.results)) == "toy-quick-model"
+    assert repr(by_class) == f"<omegadot check of {len(checks)}: {len(checks)} pass>"
     found = api.run(quick, [toy, "mujoco:Euler"], timesteps=np.array([0.02]))
     assert {task.engine for task in found.record.tasks} == {"toy", "mujoco"}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -53,6 +54,11 @@ class CheckResult:
     def passed(self) -> bool:
         """Whether every check holds and at least one was made."""
         return not self.failures and not self.only_skipped
+
+    def __repr__(self) -> str:
+        counts = Counter(result.verdict for result in self.by_check.values())
+        named = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
+        return f"<omegadot check of {len(self.by_check)}: {named}>"
 
 
 def check(

@@ -57,6 +57,10 @@ class SchemesResult:
         """Whether every engine answered and every integrator is as declared."""
         return self.answered and not self.departures
 
+    def __repr__(self) -> str:
+        count = sum(len(engine["integrators"]) for engine in self.record["engines"])
+        return f"<omegadot schemes of {count} integrators, {len(self.departures)} not as declared>"
+
 
 def schemes(
     engines: EngineLike | Sequence[EngineLike] = (),
