@@ -56,8 +56,11 @@ BROKEN = {
     "ReturnsNothing": ("raised", "run() is of type NoneType; answer with a Trajectory"),
     "WrongShape": ("raised", "run().state.orientation has the shape (11, 3); answer with (11, 4)"),
     "FewerStatesThanTimes": ("raised", "has the shape (10, 4); answer with (11, 4)"),
-    "ComplexNumbers": ("raised", "angular_velocity holds complex128; answer with real numbers"),
-    "Strings": ("raised", "run().state.angular_velocity holds str"),
+    "ComplexNumbers": (
+        "raised",
+        "angular_velocity is an array of complex128; answer with an array",
+    ),
+    "Strings": ("raised", "run().state.angular_velocity is an array of str"),
     "RaggedRows": ("raised", "run().state.angular_velocity is no array"),
     "NoSamples": ("raised", "run().time has the shape (0,)"),
     "TooFewSamples": ("ok", ""),

@@ -60,10 +60,10 @@ def test_single_precision_and_whole_numbers_are_numbers() -> None:
 @pytest.mark.parametrize(
     ("value", "text"),
     [
-        (None, "holds object"),
+        (None, "is NoneType; answer with an array of real numbers"),
         (np.ones(3), r"has the shape \(3,\); answer with \(2, 3\)"),
-        (np.ones((2, 3), complex), "holds complex128"),
-        (np.ones((2, 3), bool), "holds bool"),
+        (np.ones((2, 3), complex), "is an array of complex128"),
+        (np.ones((2, 3), bool), "is an array of bool"),
         ([[1.0], [1.0, 2.0]], "is no array"),
     ],
 )

@@ -38,7 +38,8 @@ def numbers(what: str, value: Any, shape: Shape) -> Array:
     except ValueError as error:  # rows of different lengths
         raise AnswerError(f"{what} is no array: {error}") from error
     if array.dtype.kind not in "fiu":
-        raise AnswerError(f"{what} holds {array.dtype.name}; answer with real numbers")
+        kind = type(value).__name__ if array.shape == () else f"an array of {array.dtype.name}"
+        raise AnswerError(f"{what} is {kind}; answer with an array of real numbers")
     if array.shape != shape:
         raise AnswerError(f"{what} has the shape {array.shape}; answer with {shape}")
     return array.astype(float, copy=False)
