@@ -20,6 +20,7 @@ ScenarioLike = str | os.PathLike[str] | Scenario | Mapping[str, Any]
 """A built-in's name, a path, a scenario, or its tables as the file has them."""
 
 IN_CODE = "the scenario given"
+ROBOT_FILE = re.compile(r"\.(urdf|sdf|mjcf|xml)(#.*)?$", re.IGNORECASE)
 
 
 def load_scenario(path: str | os.PathLike[str]) -> Scenario:
@@ -28,6 +29,11 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     Raises ScenarioError when the file cannot be read, is not TOML or is no valid scenario.
     """
     file = printable(os.fspath(path))
+    if ROBOT_FILE.search(os.fspath(path)):
+        found = "a robot file, not a scenario"
+        raise ScenarioError(
+            file, None, found, "omegadot choose --body FILE#LINK takes a link of it"
+        )
     return scenario_of(read_toml(Path(path), file), file)
 
 

@@ -47,12 +47,13 @@ def cases_of(motion: Motion) -> list[Case]:
 
 def _bare(motion: Motion) -> dict[str, Any]:
     """A free body that is thrown, with nothing acting on it."""
-    for given, option in (
-        (motion.angular_velocity, "--angular-velocity X Y Z"),
-        (motion.duration, "--duration S"),
-    ):
-        if given is None:
-            raise UsageError(f"--body: no scenario defines its motion; give one, or {option}.")
+    needed = {
+        "--angular-velocity X Y Z": motion.angular_velocity,
+        "--duration S": motion.duration,
+    }
+    missing = " and ".join(option for option, given in needed.items() if given is None)
+    if missing:
+        raise UsageError(f"--body: no scenario defines its motion; give one, or {missing}.")
     return {"schema": 1, "name": "body", "initial": {}, "run": {}}
 
 

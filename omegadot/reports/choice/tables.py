@@ -125,6 +125,8 @@ def print_choice(choice: Mapping[str, Any], console: Console | None = None) -> N
     console.print(Text(f"Required: {sentences.requested(choice)}."))
     for case in choice["scenarios"]:
         console.print()
+        if case["title"] != case["name"]:
+            console.print(Text(f"{case['name']}: {case['title']}"))
         for grid in (ranking(choice, case), refusals(case)):
             if grid.rows:
                 console.print(text_grid(*grid))
