@@ -23,7 +23,7 @@ from omegadot.commands.versions.command import versions
 
 app = typer.Typer(
     name="omegadot",
-    help="Cross-validate rigid-body engines against a readable Newton-Euler reference.",
+    help="Check rigid-body physics engines against exact solutions.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

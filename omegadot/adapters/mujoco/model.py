@@ -39,7 +39,7 @@ def import_mujoco() -> Any:
 def switched_off(mujoco: Any) -> tuple[str, ...]:
     """What the ``physics`` setup turns off in the installed version, one clause each."""
     known = [what for name, what in _DISABLED.items() if hasattr(mujoco.mjtDisableBit, name)]
-    return (*known, "off by default too: sleep, other optional flags, a viscous medium")
+    return (*known, "sleep, other optional flags and a viscous medium, which are off by default")
 
 
 def _nearest_to_identity(axes: Array) -> Array:

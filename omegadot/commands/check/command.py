@@ -13,7 +13,9 @@ from omegadot.commands.options import Text, Texts, option
 def check(
     engine: Annotated[
         str,
-        typer.Argument(metavar="ADAPTER", help="An engine's name, FILE.py:Class or module:Class."),
+        typer.Argument(
+            metavar="ADAPTER", help="An engine's name, FILE.py, FILE.py:Class or module:Class."
+        ),
     ],
     scenarios: Annotated[
         Texts,

@@ -23,20 +23,20 @@ def _of_a_scenario(found: Sequence[Change]) -> str:
     channels = {change.name.split()[1] for change in found}
     if any(change.name.startswith("equation") for change in found):
         if "omega_dot" in channels:
-            return "the equation of motion changed: omega-dot is another at identical states"
+            return "the equation of motion changed: omega-dot differs at identical states"
         part = "inverse dynamics" if "torque" in channels else "the acceleration of the body"
-        return f"the equation changed: {part} is another at identical states"
+        return f"the equation changed: {part} differs at identical states"
     if "model" in channels:
         return "the engine holds another mass, centre of mass or inertia than before"
-    return "states are read back otherwise: a frame or a reference point changed"
+    return "states that are read back changed: in their frame or reference point"
 
 
 def _of_a_run(found: Sequence[Change]) -> str:
     by_channel = {change.name.split()[0]: change for change in reversed(found)}
     if set(by_channel) <= TRANSLATION:
         return (
-            "the translation is stepped otherwise (at the origin or the centre of mass, or with "
-            "another rule), the turning is as before"
+            "the step of the translation changed (its reference point, or its rule); that of the "
+            "rotation did not"
         )
     if "omega" not in by_channel:
         return "the update of the attitude changed, that of omega did not"
@@ -46,7 +46,7 @@ def _of_a_run(found: Sequence[Change]) -> str:
     if not 1.0 / ANOTHER_INTEGRATOR < factor < ANOTHER_INTEGRATOR:
         how = f"grew {short(factor)}x" if factor > 1.0 else f"shrank {short(1.0 / factor)}x"
         how = how if 0.0 < factor < math.inf else "vanished or appeared"
-        return f"omega error {how}: the integrator changed"
+        return f"the integrator changed (the error of omega {how})"
     return "the order is the same: a default such as a tolerance, a damping or a limit changed"
 
 

@@ -58,7 +58,7 @@ def print_text(entries: Sequence[EngineEntry]) -> None:
         console.print(f"{head}  {own.precision}  {escape(own.licence)}")
         for integrator in own.integrators:
             console.print(f"  {escape(_integrator_line(integrator))}")
-        for title, clauses in (("keeps", own.conventions), ("switched off", own.switched_off)):
+        for title, clauses in (("convention", own.conventions), ("switched off", own.switched_off)):
             for clause in clauses:
                 console.print(f"  {title}: {escape(clause)}", style="dim")
 

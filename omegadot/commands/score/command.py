@@ -35,7 +35,7 @@ def score(
     ] = None,
     map_file: Annotated[Path | None, _option("FILE", "Columns and units in TOML.", "--map")] = None,
     time_unit: Annotated[Text, _option("UNIT", "Unit of time: s, ms, us, ns, min or h.")] = None,
-    angle_unit: Annotated[Text, _option("UNIT", "Unit of angles: rad, deg, mrad or rev.")] = None,
+    angle_unit: Annotated[Text, _option("UNIT", "Unit of angles: rad, deg, mrad, rev, ...")] = None,
     rate_unit: Annotated[Text, _option("UNIT", "Unit of omega: rad/s, deg/s, rpm, ...")] = None,
     length_unit: Annotated[
         Text, _option("UNIT", "Unit of lengths: m, ft, in, cm, mm or km.")
@@ -54,10 +54,10 @@ def score(
         Text, _option("POINT", "Point of the position: center-of-mass or origin.")
     ] = None,
     world_axes: Annotated[
-        Text, _option("x,-y,-z", "The scenario's world axes, named by the trace's.")
+        Text, _option("x,-y,-z", "The scenario's world axes, written in the trace's.")
     ] = None,
     body_axes: Annotated[
-        Text, _option("x,-y,-z", "The scenario's body axes, named by the trace's.")
+        Text, _option("x,-y,-z", "The scenario's body axes, written in the trace's.")
     ] = None,
     time_offset: Annotated[
         float | None, _option("S", "Time in the trace at which the scenario starts.")

@@ -49,7 +49,12 @@ def scheme_table(record: Record, sources: Sources) -> Table:
     return Table(
         ("engine", "integrator", "scheme"),
         (("implemented in", 1), ("max. deviation from the scheme", 3)),
-        ("runs, of judged", "fraction of round-off bound", "omega, relative", "attitude, rad"),
+        (
+            "runs that match, of those judged",
+            "fraction of round-off bound",
+            "omega, relative",
+            "attitude, rad",
+        ),
         tuple(rows),
     )
 
