@@ -80,7 +80,7 @@ class Driver:
 
     def _send(self, call: Callable[[], Answer]) -> Answer:
         """What a call to the worker comes to, when its turn has come."""
-        answer = self._in_turn(lambda: INTERRUPTED if self._stopping.is_set() else call())
+        answer = self._in_turn(call)
         if self._stopping.is_set() and not answer.ok:
             return INTERRUPTED
         late = answer.outcome == "timeout"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import TypeVar
 
 from omegadot.adapters.registry import BUILT_IN
 from omegadot.harness.arguments import integrators_chosen
-from omegadot.harness.drive import Driver
+from omegadot.harness.drive import INTERRUPTED, Driver
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
@@ -24,10 +24,14 @@ def outcome_of(future: Future[Result]) -> Result:
     """A future's result, waited for in short turns.
 
     A signal may reach another thread than the main one, which then sees it only when it wakes: a
-    single long wait would sleep through Ctrl-C.
+    single long wait would sleep through Ctrl-C. What is waited for is a bare lock: Ctrl-C as a
+    condition takes its lock back would become a RuntimeError.
     """
-    while not future.done():
-        wait([future], timeout=SECONDS_ASLEEP)
+    ready = threading.Lock()
+    ready.acquire()
+    future.add_done_callback(lambda _: ready.release())
+    while not ready.acquire(timeout=SECONDS_ASLEEP):
+        pass
     return future.result()
 
 
@@ -67,7 +71,9 @@ class Engines:
         integrator is requested that an engine does not have.
         """
         # By turns: many engines that start together would only be late together.
-        starts = {name: self._turns.submit(p.start) for name, p in self._processes.items()}
+        starts = {
+            name: self._turns.submit(self._called, p.start) for name, p in self._processes.items()
+        }
         answers = {name: outcome_of(future) for name, future in starts.items()}
         for name, answer in answers.items():
             choice, process = self._choices[name], self._processes[name]
@@ -88,7 +94,11 @@ class Engines:
 
     def _in_turn(self, call: Callable[[], Answer]) -> Answer:
         """A request's answer, once fewer than `jobs` others are being answered."""
-        return self._turns.submit(call).result()
+        return self._turns.submit(self._called, call).result()
+
+    def _called(self, call: Callable[[], Answer]) -> Answer:
+        """A call's answer; none is made whose turn comes when the run has been interrupted."""
+        return INTERRUPTED if self._stopping.is_set() else call()
 
     def submit(self, name: str, call: Callable[[], Result]) -> Future[Result]:
         """Have a call done on the engine's own thread, after what was submitted before."""
