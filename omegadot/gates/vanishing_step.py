@@ -23,9 +23,11 @@ from omegadot.gates.scales import (
     norm,
 )
 from omegadot.reference_impl.body_motion import attitude_motion
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, State, System
 
 GATE = "scheme"
@@ -105,24 +107,28 @@ class Limit:
 def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
     """The rates at no step by channel. stepped: (m, 9, ...), the states after one step each.
 
-    A step rounds what it steps by ``16 eps``, which is divided by the step.
+    A step rounds what it steps by ``16 eps``, which is divided by the step. What it steps may be
+    the angular momentum: omega is then rounded by ``16 eps |J omega| / lambda``, J the inertia and
+    lambda its least eigenvalue; and by velocities so rounded attitude and position move.
     """
     states, h = probe.states, probe.timesteps
     before = states[:, None]
-    true, lever = acceleration_of(system)(states), body_scale(system).lever
-    w, v = states.angular_velocity, states.linear_velocity
+    true, scale = acceleration_of(system)(states), body_scale(system)
+    w, v, lever = states.angular_velocity, states.linear_velocity, scale.lever
+    spinning = norm(apply(moving_inertia(system), w)) / scale.smallest
+    moving = norm(v) + lever * spinning
     step, evaluation = ROUNDINGS_PER_STEP * EPS, ROUNDINGS_PER_EVALUATION * EPS
     of_omega = evaluation * angular_size(system, states, true)
     of_velocity = evaluation * linear_size(system, states, true)
     turn = rotation_between(before.orientation, stepped.orientation)
     spin = stepped.angular_velocity - before.angular_velocity
     way, push = stepped.position - before.position, stepped.linear_velocity - before.linear_velocity
-    nothing = np.zeros(len(w))
-    parts = {  # what changes, its rate, and the roundings of a step and of an evaluation
-        "attitude": (turn, w, step + nothing, nothing),
-        "omega": (spin, true.angular, step * norm(w), of_omega),
-        "position": (way, v, step * (norm(states.position) + lever), nothing),
-        "linear_momentum": (push, true.linear, step * (norm(v) + lever * norm(w)), of_velocity),
+    place = norm(states.position) + lever
+    parts = {  # what changes, its rate, and the roundings of what is stepped and of the rate
+        "attitude": (turn, w, step * np.ones(len(w)), step * spinning),
+        "omega": (spin, true.angular, step * spinning, of_omega),
+        "position": (way, v, step * place, step * moving),
+        "linear_momentum": (push, true.linear, step * moving, of_velocity),
     }
     return {channel: _limit(h, *part) for channel, part in parts.items()}
 

@@ -6,11 +6,14 @@ nothing; steps that are long against the motion; a fault of one channel reported
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from omegadot.gates.scales import EPS
 from omegadot.gates.vanishing_step import (
     RADIANS,
     STEPS,
@@ -21,6 +24,7 @@ from omegadot.gates.vanishing_step import (
     probe_of,
     rows,
 )
+from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, Body, Load, State, System
@@ -80,7 +84,11 @@ def test_the_nearer_of_two_ranges_counts() -> None:
 
 
 def reported(
-    on: System, requested: Probe, stretch: float = 1.0, omega: float = 1.0
+    on: System,
+    requested: Probe,
+    stretch: float = 1.0,
+    omega: float = 1.0,
+    kept: Callable[[Array], Array] = lambda w: w,
 ) -> dict[str, str]:
     """The notes of failing channels where steps and omega's changes are longer than requested."""
 
@@ -93,7 +101,7 @@ def reported(
     lanes = [lane(k) for k in range(STEPS)]
     stepped = State(*(np.stack(v, 1) for v in zip(*(vars(s).values() for s in lanes), strict=True)))
     before: Array = requested.states.angular_velocity[:, None]
-    w = before + omega * (stepped.angular_velocity - before)
+    w = kept(before + omega * (stepped.angular_velocity - before))
     stepped = State(stepped.orientation, w, stepped.position, stepped.linear_velocity)
     assert set(limits(on, requested, stepped)) == {
         "attitude",
@@ -102,6 +110,38 @@ def reported(
         "linear_momentum",
     }
     return {row.channel: row.note for row in rows(on, requested, stepped) if row.verdict == "fail"}
+
+
+def test_velocities_kept_as_momenta_are_rounded_as_such() -> None:
+    # A thin bar askew: what rounds its momentum by eps turns omega by eps |J w| / lambda.
+    axes = rotation_matrix(np.array([0.5, 0.1, -0.7, 0.5]))
+    inertia = axes @ np.diag([1.0, 1.0, 1e-6]) @ axes.T
+    on = System((Body(np.array(1.0), np.zeros(3), 0.5 * (inertia + inertia.T)),), Load())
+    requested = probe(on, [0.4, -1.0, 0.7], [1.2, 0.3, -0.5])
+
+    def kept(w: Array) -> Array:
+        return np.linalg.solve(on.body.inertia, (on.body.inertia @ w[..., None]))[..., 0]
+
+    assert reported(on, requested, kept=kept) == {}
+    assert set(reported(on, requested, omega=1.01)) == {"omega"}
+
+
+def test_a_place_at_the_origin_is_rounded_by_its_velocity() -> None:
+    on = system(1.0, 2.0, 3.5)
+    found = probe(on, [0.4, -1.0, 0.7], [1.2, 0.3, -0.5])
+    speeds = np.resize([0.3, -2.0, 1.1, 0.7, 0.2, -0.9], (4, 3))
+    moving = replace(found.states, linear_velocity=speeds)
+    requested = Probe(moving, found.timesteps)
+
+    def carried(errors: float) -> State:
+        one = replace(moving[:, None], position=np.zeros((4, 1, 3)))
+        wide = State(*(np.repeat(v, STEPS, 1) for v in vars(one).values()))
+        h = requested.timesteps[..., None]
+        way = h * wide.linear_velocity * (1.0 + errors * EPS)
+        return replace(wide, position=way)
+
+    assert limits(on, requested, carried(4.0))["position"].shares().max() <= 1.0
+    assert limits(on, requested, carried(400.0))["position"].shares().max() > 1.0
 
 
 def test_what_is_reported_of_the_limit() -> None:
