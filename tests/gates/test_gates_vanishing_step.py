@@ -19,6 +19,7 @@ from omegadot.gates.vanishing_step import (
     STEPS,
     Limit,
     Probe,
+    _common_factor,
     _extrapolants,
     limits,
     probe_of,
@@ -142,6 +143,32 @@ def test_a_place_at_the_origin_is_rounded_by_its_velocity() -> None:
 
     assert limits(on, requested, carried(4.0))["position"].shares().max() <= 1.0
     assert limits(on, requested, carried(400.0))["position"].shares().max() > 1.0
+
+
+def test_what_starts_from_rest_is_rounded_by_its_torque() -> None:
+    on = system(1.0, 2.0, 3.5, torque_body=np.array([0.3, -0.2, 0.5]))
+    requested = probe(on, [0.0, 0.0, 0.0])
+    rate = np.array([0.3, -0.1, 0.5 / 3.5])
+
+    def pushed(errors: float) -> State:
+        one = requested.states[:, None]
+        wide = State(*(np.repeat(v, STEPS, 1) for v in vars(one).values()))
+        w = requested.timesteps[..., None] * rate * (1.0 + errors * EPS)
+        return replace(wide, angular_velocity=w)
+
+    assert limits(on, requested, pushed(32.0))["omega"].shares().max() <= 1.0
+    assert limits(on, requested, pushed(3200.0))["omega"].shares().max() > 1.0
+
+
+def test_a_factor_is_common_where_every_rate_is_off_by_it() -> None:
+    expected = np.array([[1.0, 0.0, 0.0]])
+
+    def limit(aside: float) -> Limit:
+        found = 1.001 * expected + np.array([0.0, aside, 0.0])
+        return Limit(np.stack([found, found]), expected, np.full((2, 1), 1e-6))
+
+    assert _common_factor({"attitude": limit(0.0), "omega": limit(0.9e-6)}) == pytest.approx(1.001)
+    assert _common_factor({"attitude": limit(0.0), "omega": limit(1.1e-6)}) is None
 
 
 def test_what_is_reported_of_the_limit() -> None:
