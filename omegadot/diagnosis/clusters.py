@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.gates.case import Sweep
-from omegadot.gates.likeness import ROTATION, likeness
+from omegadot.gates.likeness import likeness
+from omegadot.gates.measured_run import ROTATION
 from omegadot.gates.scales import norm
 from omegadot.gates.truth import Truth
 from omegadot.harness.outcome import EngineCase, JudgedCase

@@ -8,11 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.gates.case import Sweep
-from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.measured_run import CHANNELS, ROTATION
 from omegadot.gates.truth import SchemeKey, Truth
 from omegadot.reference_impl.system import Array, State
-
-ROTATION = ("omega", "attitude")
 
 
 @dataclass(frozen=True)

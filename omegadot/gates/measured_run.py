@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from omegadot.gates.case import Sweep
 from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
 from omegadot.gates.truth import Companion, Truth, scheme_key
 from omegadot.gates.verdicts import (
+    ORDER_TOLERANCE,
     VANISHED,
     Evidence,
     Finding,
@@ -22,6 +24,13 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
 
 CHANNELS = (*TRAJECTORY_UNITS, *INVARIANT_CHANNELS)
+ROTATION = ("omega", "attitude")
+# Beyond half a radian, or half its size, an error is no longer a power of the step: it saturates.
+SATURATED = 0.5
+# Rounding is then a tenth of the error at most, and its bound is seldom reached.
+CLEAR_OF_ROUNDING = 10.0
+HORIZONS = tuple(0.5**n for n in range(7))  # of a run's samples
+FEWEST_STEPS = 3  # two slopes, which must agree
 
 
 @dataclass(frozen=True)
@@ -61,19 +70,41 @@ def _sizes(
     return [(run, run.error[channel]) for run in measured_runs]
 
 
+def saturates(run: MeasuredRun, samples: int | None = None) -> bool:
+    """Whether a run is so far off, within its first samples, that no power of the step is seen."""
+    return not all(np.max(run.error[c][:samples]) <= SATURATED for c in ROTATION)
+
+
 def order_of(
     measured_runs: list[MeasuredRun], channel: str, *, left: bool = False
 ) -> ObservedOrder | None:
     """The order over the steps of one integrator, of errors that stand above rounding.
 
+    It is that of the whole run, where this shows one. Late errors may saturate, and late bounds of
+    rounding hide all but the coarsest steps: then a shorter horizon decides, the longest that can.
     left: of what is left after the declared scheme.
     """
-    steps, errors = [], []
-    for run, size in _sizes(measured_runs, channel, left):
-        if np.max(size) > np.max(run.round_off[channel]):
-            steps.append(run.sweep.timestep)
-            errors.append(float(np.max(size)))
-    return observed_order(steps, errors)
+    shown = None
+    for horizon in HORIZONS:
+        steps, errors, clear, saturated = [], [], 0, False
+        for run, size in _sizes(measured_runs, channel, left):
+            samples = math.ceil(horizon * len(size))
+            largest = float(np.max(size[:samples]))
+            bound = float(np.max(run.round_off[channel][:samples]))
+            if largest > bound:
+                steps.append(run.sweep.timestep)
+                errors.append(largest)
+            clear += largest > CLEAR_OF_ROUNDING * bound
+            saturated |= saturates(run, samples)
+        found = observed_order(steps, errors)
+        # Of errors that saturate, only those that do not shrink at all show something: no order.
+        usable = not saturated or (found is not None and found.value <= ORDER_TOLERANCE)
+        if found is not None and found.resolved and usable:
+            return found
+        shown = shown or (found and replace(found, resolved=False))
+        if clear >= FEWEST_STEPS and not saturated:
+            break  # nothing hides the order: the errors follow no power of the step
+    return shown
 
 
 def _order_shown(

@@ -8,8 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.likeness import ROTATION, Likeness, like_schemes, likeness
-from omegadot.gates.measured_run import CHANNELS, Declared, MeasuredRun, evidence_of, order_of
+from omegadot.gates.likeness import Likeness, like_schemes, likeness
+from omegadot.gates.measured_run import (
+    CHANNELS,
+    CLEAR_OF_ROUNDING,
+    Declared,
+    MeasuredRun,
+    evidence_of,
+    order_of,
+    saturates,
+)
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.gates.verdicts import ORDER_TOLERANCE, ObservedOrder, is_whole
@@ -18,10 +26,6 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
 
 GATE = "scheme"
-# Rounding is then a tenth of the error at most, and its bound is seldom reached.
-CLEAR_OF_ROUNDING = 10.0
-# Beyond half a radian, or half its size, an error is no longer a power of the step: it saturates.
-SATURATED = 0.5
 BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
 NOTHING = Likeness(float("nan"), "omega", float("nan"))
 
@@ -47,9 +51,7 @@ def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, Seen]:
     It can be judged where the two finest slopes agree, of errors that stand clear of rounding and
     come from runs that do not saturate.
     """
-    unsaturated = [
-        m for m in measured_runs if all(np.max(m.error[c]) <= SATURATED for c in ROTATION)
-    ]
+    unsaturated = [measured for measured in measured_runs if not saturates(measured)]
     saturate = len(unsaturated) < len(measured_runs)
     found = {}
     for channel in CHANNELS:

@@ -73,6 +73,47 @@ def test_the_order_of_a_sweep(order: int) -> None:
     assert order_of(sweep(order), "energy", left=True) is None
 
 
+SAMPLES = np.arange(65) / 64.0
+STEPS = (0.04, 0.02, 0.01)
+
+
+def over_time(sizes: dict[float, Array], bound: Array) -> list[MeasuredRun]:
+    """Runs with these errors along time, of all channels."""
+    return [
+        MeasuredRun(Sweep(h, 64, 1), dict.fromkeys(CHANNELS, size), dict.fromkeys(CHANNELS, bound))
+        for h, size in sizes.items()
+    ]
+
+
+def test_late_errors_that_saturate_hide_no_order() -> None:
+    late = np.where(SAMPLES > 0.3, np.array([0.9, 0.7, 0.6])[:, None], 0.0)
+    sizes = {h: h**2 * SAMPLES + more for h, more in zip(STEPS, late, strict=True)}
+    seen = order_of(over_time(sizes, np.full(65, BOUND)), "omega")
+    assert seen is not None
+    assert (seen.value, seen.resolved) == (pytest.approx(2.0), True)
+
+
+def test_late_bounds_of_rounding_hide_no_order() -> None:
+    sizes = {h: h**2 * SAMPLES * (1.0 + 200.0 * h * SAMPLES**2) for h in STEPS}
+    bound = np.where(SAMPLES > 0.2, 4e-4, BOUND)  # above the finest two
+    seen = order_of(over_time(sizes, bound), "omega")
+    assert seen is not None
+    assert (round(seen.value, 1), seen.resolved) == (2.0, True)
+
+
+def test_what_goes_wrong_late_is_not_passed_over_for_a_good_start() -> None:
+    # Clear of rounding and small, so nothing hides the order: late errors follow no power of h.
+    sizes = {h: h**2 * SAMPLES + np.where(SAMPLES > 0.8, 4e-4, 0.0) for h in STEPS}
+    seen = order_of(over_time(sizes, np.full(65, BOUND)), "omega")
+    assert seen is not None
+    assert not seen.resolved
+    # Where they saturate at once, and alike, the whole run shows that they do not shrink.
+    sizes = {h: h**2 * SAMPLES + np.where(SAMPLES > 0.8, 1.0, 0.0) for h in STEPS}
+    seen = order_of(over_time(sizes, np.full(65, BOUND)), "omega")
+    assert seen is not None
+    assert (round(seen.value, 1), seen.resolved) == (0.0, True)
+
+
 def test_errors_within_rounding_show_no_order() -> None:
     two = [measured(0.04, 4e-4), measured(0.02, 2e-4)]
     seen = order_of([*two, measured(0.01, BOUND)], "omega")
