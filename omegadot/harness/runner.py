@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 from functools import partial
 
@@ -58,15 +58,30 @@ class Runner:
     ) -> Future[Companions]:
         """The companions of these schemes, each from whichever of two processes is free.
 
-        They take longer than any engine, and the exact solution's process is soon idle.
+        They take longer than any engine, and the exact solution's process is soon idle. What that
+        gives no answer for is left to the reference's own.
         """
-        left = iter(keys)  # one iterator for both: each takes the next scheme
+        left, given_back = iter(keys), []  # one iterator for both: each takes the next scheme
 
-        def step(name: str) -> Companions:
-            return case_companions(self.engines.drivers[name], case, truth(), left, sweeps)
+        def step(name: str, schemes: Iterable[SchemeKey]) -> Companions:
+            return case_companions(self.engines.drivers[name], case, truth(), schemes, sweeps)
 
-        half = self.engines.submit("exact", lambda: step("exact"))
-        return self.engines.submit("reference", lambda: step("reference") | half.result())
+        def assist() -> Companions:
+            found: Companions = {}
+            for key in left:
+                own = step("exact", [key])
+                if not own:
+                    given_back.append(key)
+                    break
+                found |= own
+            return found
+
+        def finish() -> Companions:
+            own = step("reference", left)
+            return own | half.result() | step("reference", given_back)
+
+        half = self.engines.submit("exact", assist)
+        return self.engines.submit("reference", finish)
 
     def _add_companions(
         self, case: Case, truth: Truth, results: list[CaseResult], sweeps: list[Sweep]
