@@ -65,6 +65,22 @@ def test_the_last_output_of_a_dead_worker_are_kept(tmp_path: Path) -> None:
     assert reasons == {"ended by signal 9 (SIGKILL); its last output: assertion failed: mass > 0"}
 
 
+@pytest.mark.parametrize("name", ["OneSample", "EverySampleTwice"])
+def test_another_number_of_samples_costs_only_its_own_tasks(name: str, tmp_path: Path) -> None:
+    result = run_faulty(name, tmp_path)
+    assert result.code == 1, result.err
+    assert outcomes(tmp_path, "reference")
+    assert (tmp_path / "out" / "report.html").exists()
+    engines = ("--adapter", f"{FAULTY}:{name}", "--engine", "reference:lie-rk4")
+    chosen = omegadot(
+        "choose", "quick.toml", "--attitude", "1deg", *engines, "--budget", 0.05, folder=tmp_path
+    )
+    assert chosen.code == 3, chosen.err
+    assert "where" in chosen.out
+    assert "were requested" in chosen.out
+    assert "reference:lie-rk4" in chosen.out
+
+
 def test_a_flood_on_both_streams_garbles_nothing(tmp_path: Path) -> None:
     result = run_faulty("Chatty", tmp_path)
     assert result.code == 0, result.err

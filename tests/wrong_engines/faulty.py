@@ -85,6 +85,21 @@ class Diverges(Faulty):
         )
 
 
+class OneSample(Faulty):
+    """Returns the start alone."""
+
+    def fail(self, trajectory: Trajectory) -> Trajectory:
+        return Trajectory(trajectory.time[:1], trajectory.state[:1])
+
+
+class EverySampleTwice(Faulty):
+    """Returns twice as many samples as were requested."""
+
+    def fail(self, trajectory: Trajectory) -> Trajectory:
+        twice = np.repeat(np.arange(len(trajectory.time)), 2)
+        return Trajectory(trajectory.time[twice], trajectory.state[twice])
+
+
 class Chatty(Faulty):
     """Floods standard output and error; its answers are sound."""
 

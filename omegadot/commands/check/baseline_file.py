@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from omegadot.harness.usage import UsageError
-from omegadot.reports.record.whole_file import write_whole
+from omegadot.reports.record.whole_file import make_folder, write_whole
 
 SCHEMA = 1
 DIGITS = 3
@@ -95,7 +95,7 @@ def to_text(engine: str, baseline: Mapping[str, ScenarioFigures]) -> str:
 def write_baseline(folder: Path, engine: str, baseline: Mapping[str, ScenarioFigures]) -> Path:
     """Write an engine's figures, whole or not at all. Raises RecordError."""
     path = path_of(folder, engine)
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     return write_whole(path, to_text(engine, baseline))
 
 

@@ -105,6 +105,10 @@ class Candidate:
             return Trial(steps, sweep.timestep, {}, 0.0, 0)
         if not answer.ok:
             raise BrokenError(answer.outcome, answer.reason)
+        samples, requested = len(answer.result["time"]), len(sweep.times)
+        if samples != requested:
+            reason = f"run() gave {samples} samples where {requested} were requested"
+            raise BrokenError("raised", reason)
         errors = self.ruler.errors(sweep, State(**answer.result["state"]))
         seconds = float(answer.result["seconds_per_step"])
         return Trial(steps, sweep.timestep, errors, seconds, len(sweep.times))

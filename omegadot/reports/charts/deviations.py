@@ -95,7 +95,7 @@ def _with_truth(trajectories: pl.DataFrame) -> pl.DataFrame:
 def _charts(measured: pl.DataFrame, units: Mapping[str, dict[str, str]]) -> dict[str, Chart]:
     index, count = pl.int_range(pl.len()).over("run"), pl.len().over("run")
     thinned = pl.when(count > POINTS).then(
-        (index * (POINTS - 1) / (count - 1)).ceil().cast(pl.Int64)
+        (index * (POINTS - 1) / (count - 1).clip(1)).ceil().cast(pl.Int64)
     )
     channels = [pl.col(channel) for channel in CHANNELS]
     points = (
