@@ -22,6 +22,7 @@ from omegadot.commands.check.baseline_file import (
 from omegadot.commands.check.compare import compare, meaning
 from omegadot.commands.check.result import Check, Subject
 from omegadot.harness.usage import UsageError
+from omegadot.reports.record.schema import RecordError
 
 RUN = RunKey("RK4", 0.01)
 STORED = ScenarioFigures(
@@ -59,6 +60,12 @@ def test_what_is_written_is_read_and_sorted(tmp_path: Path) -> None:
     assert [file.name for file in path.parent.iterdir()] == ["mujoco.toml"]
     assert to_text("mujoco", from_text(text)) == text
     assert read_baseline(tmp_path, "dart") is None
+
+
+def test_a_folder_that_is_a_file_is_one_sentence(tmp_path: Path) -> None:
+    (tmp_path / "taken").touch()
+    with pytest.raises(RecordError, match="taken: cannot be written to"):
+        write_baseline(tmp_path / "taken", "toy", {})
 
 
 def test_what_nothing_can_be_held_to_is_not_stored() -> None:
