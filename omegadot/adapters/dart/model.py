@@ -13,9 +13,9 @@ SWITCHED_OFF = (
     "deactivation of slow bodies (World.setDeactivationOptions, where the version has it)",
     "enforcement of joint limits (Joint.setLimitEnforcement)",
     "collision: bodies have no shapes",
-    "joint frames in line with the world: they are turned by 120 degrees about (1, 1, 1), so that "
-    "attitudes near the identity are not rotation vectors below 1e-3 rad, which DART expands to "
-    "second order",
+    "the alignment of joint frames with the world: they are turned by 120 degrees about (1, 1, 1), "
+    "so that attitudes near the identity are not rotation vectors below 1e-3 rad, which DART "
+    "expands to second order",
 )
 # math::expMapRot takes 1 + [r] + [r]^2/2 for |r| < 1e-3, off by |r|^3/6. A permutation of the axes
 # turns without rounding.

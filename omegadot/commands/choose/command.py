@@ -20,7 +20,7 @@ def choose(
         Text,
         option(
             "FILE#LINK",
-            "A body: a link of a URDF, MJCF or SDF file, or a TOML file. "
+            "A body: FILE#LINK of a URDF, MJCF or SDF file, or FILE for a TOML file. "
             "Without a scenario also give --angular-velocity and --duration.",
         ),
     ] = None,
@@ -78,13 +78,18 @@ def choose(
     ] = None,
     adapters: options.Adapters = None,
     budget: Annotated[
-        float, option("S", "Time limit in s for one run of the search.", min=0.01)
+        float,
+        option(
+            "S",
+            "Longest time in s for one trial run; what would take longer is not tried.",
+            min=0.01,
+        ),
     ] = 2.0,
     timeout: options.Timeout = 60.0,
     jobs: options.Jobs = None,
     out: Annotated[
         Path | None,
-        option("DIR", "Folder for the choice; in a run's folder it becomes part of its report."),
+        option("DIR", "Folder for the result; with a run's folder, it is added to its report."),
     ] = None,
     output: options.Output = options.Format.text,
 ) -> None:

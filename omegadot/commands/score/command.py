@@ -29,8 +29,9 @@ def score(
         list[str] | None,
         _option(
             "ROLE=NAME",
-            "Assign a column to a role: t, wx.., qw.., e1.. (or yaw, pitch, roll), r11.., "
-            "px.., vx.., ax.. (omega-dot), or a group, as w=A,B,C; #3 is the third. Repeatable.",
+            "The column that holds a quantity, such as wx=gyro_x, or a group: w=A,B,C. A name "
+            "may be a number: #3. Quantities: t; wx wy wz (omega); ax ay az (omega-dot); qw qx qy "
+            "qz; e1 e2 e3 or yaw pitch roll; r11 to r33; px py pz; vx vy vz. Repeatable.",
         ),
     ] = None,
     map_file: Annotated[Path | None, _option("FILE", "Columns and units in TOML.", "--map")] = None,
@@ -54,10 +55,10 @@ def score(
         Text, _option("POINT", "Point of the position: center-of-mass or origin.")
     ] = None,
     world_axes: Annotated[
-        Text, _option("x,-y,-z", "The scenario's world axes, written in the trace's.")
+        Text, _option("x,-y,-z", "The scenario's world axes x, y, z, each as an axis of the trace.")
     ] = None,
     body_axes: Annotated[
-        Text, _option("x,-y,-z", "The scenario's body axes, written in the trace's.")
+        Text, _option("x,-y,-z", "The scenario's body axes x, y, z, each as an axis of the trace.")
     ] = None,
     time_offset: Annotated[
         float | None, _option("S", "Time in the trace at which the scenario starts.")
@@ -70,7 +71,7 @@ def score(
     omega: Annotated[Text, _option("1e-3deg/s", "Required: the largest omega error.")] = None,
     position: Annotated[Text, _option("1mm", "Required: the largest position error.")] = None,
     energy: Annotated[Text, _option("1e-6", "Required: the largest relative energy error.")] = None,
-    momentum: Annotated[Text, _option("1e-6", "Required: of angular momentum, relative.")] = None,
+    momentum: Annotated[Text, _option("1e-6", "Required: largest relative momentum error.")] = None,
     flip_time: Annotated[
         Text, _option("1ms", "Required: the largest error of a flip time.")
     ] = None,

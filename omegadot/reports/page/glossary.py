@@ -57,18 +57,18 @@ passes and failures.
 = verdict `declared`
 
 defect (defects)
-What a single step from an exact state does wrong. Its order is one more than that of the error that
-accumulates over a run.
+The error of a single step from an exact state (local truncation error). Its order is one more than
+that of the error that accumulates over a run.
 = |x₁ − x(h)| ∝ h^(p+1), for a scheme of order p
 
 divergence (diverges)
 A run diverges at the first sample whose attitude is more than 1° from the exact one. The outcome
-diverged means more: the state is no longer finite.
+diverged is different: the state is no longer finite.
 = s, or outcome `diverged`
 
 exact solution (exact solutions)
 The motion that every run is compared with: a closed form where one is known, otherwise a Taylor
-series of the same equations with extra digits. It never comes from another engine.
+series of the same equations in extended precision. It never comes from another engine.
 = closed-form or series
 
 explained (source of error)

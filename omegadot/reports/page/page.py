@@ -30,7 +30,7 @@ from omegadot.reports.summary.summary import STATUSES, summarise
 _JUDGED_SHOWN = 50
 
 CHART_TITLES = {
-    "omega_dot": ("Omega-dot divergence", "|ω̇ − ω̇ exact| along the run"),
+    "omega_dot": ("Omega-dot error", "|ω̇ − ω̇ exact| along the run"),
     "energy": ("Energy error", "|E − E exact| along the run"),
     "angular_momentum": ("Angular-momentum error", "|H − H exact|, world axes"),
     "linear_momentum": ("Linear-momentum error", "|p − p exact|, world axes"),

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 # The title, and what is drawn.
 CHANNELS = {
-    "omega_dot": ("Omega-dot divergence along the run", "|ω̇ − ω̇ exact|"),
+    "omega_dot": ("Omega-dot error along the run", "|ω̇ − ω̇ exact|"),
     "energy": ("Energy error", "|E − E exact|"),
     "angular_momentum": ("Angular-momentum error", "|H − H exact|"),
     "linear_momentum": ("Linear-momentum error", "|p − p exact|"),
