@@ -165,10 +165,10 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
     """How many times larger a step's error is than the errors at finer steps let it be.
 
     With e1, e2, e3 at the next finer steps the error follows from e1 by an order: the declared one,
-    or the slope s12 from e1 to e2 where that is higher, and one more, since the error may be twice
-    what its leading term makes it. A slope may differ from the next by four times what that differs
-    from the one after. Where no slope is known an error may be of an order more than declared, as
-    many are where something is conserved. Zero for the finest step.
+    or the slope s12 from e1 to e2 where that is higher, and two more, since next terms may be a few
+    times the leading one, and where something is conserved an error gains an order. A slope may
+    differ from the next by four times what that differs from the one after. Zero for the finest
+    step.
     """
     finer = sorted((one for one in sweep if one.timestep < own.timestep), key=lambda e: -e.timestep)
     count = min(own.saturates_at + own.turning, len(own.size))
@@ -176,7 +176,7 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
         return 0.0
     until = own.times[:count]
     near = [_at(one, until) for one in finer[:3]]
-    order = np.full(count, declared + 1.0)
+    order = np.full(count, float(declared))
     if len(near) > 1:
         first = _slopes(finer[0], finer[1], near[0], near[1])
         second = _slopes(finer[1], finer[2], near[1], near[2]) if len(near) > 2 else first * np.nan
@@ -188,7 +188,7 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
         error = np.minimum(error, SATURATED)
     least = CLEAR_OF_ROUNDING * np.maximum.accumulate(own.bound[:count])
     with np.errstate(all="ignore"):
-        allowed = near[0][0] * (own.timestep / finer[0].timestep) ** (order + 1.0)
+        allowed = near[0][0] * (own.timestep / finer[0].timestep) ** (order + 2.0)
         excess = error / np.maximum(allowed, least)
     return float(np.max(np.nan_to_num(excess, nan=0.0, posinf=np.inf)))
 
