@@ -1,4 +1,4 @@
-"""Gate 3 for an unknown scheme: steps made ever smaller must follow the equation.
+"""Gate 3: steps made ever smaller must follow the equation.
 
 One step from a state x leads to ``Phi_h(x)``, and for every consistent scheme, whatever its order,
 ``(Phi_h(x) - x) / h`` tends to the equation's rate at x. The limit is extrapolated from halved

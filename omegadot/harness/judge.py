@@ -16,7 +16,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.unknown_schemes import rows_of_unknown
+from omegadot.harness.step_probes import rows_of_probes
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.harness_end.process import Answer
 from omegadot.workers.wire import body_from
@@ -144,7 +144,7 @@ def _judge_integrator(
             yield _diverged(integrator, sweep, answer, measured, findings)
             continue
         match = scheme.match_row(truth, integrator, measured, state, known)
-        unknown = rows_of_unknown(truth, integrator, sweep, result)
+        unknown = rows_of_probes(truth, integrator, sweep, result)
         rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
         misreported = trajectory.reported_rows(truth, measured, state, result.precision)
         misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
