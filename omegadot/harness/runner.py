@@ -25,8 +25,8 @@ from omegadot.harness.outcome import (
 )
 from omegadot.harness.plan import Engine
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
-from omegadot.harness.truth_requests import Companions, case_companions, case_truth, reference_runs
 from omegadot.harness.step_probes import probe_steps
+from omegadot.harness.truth_requests import Companions, case_companions, case_truth, reference_runs
 
 
 class Runner:
