@@ -182,6 +182,8 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
         second = _slopes(finer[1], finer[2], near[1], near[2]) if len(near) > 2 else first * np.nan
         second = np.where(np.isnan(second), np.fmin(first, declared), second)
         change = 4.0 * np.abs(first - second)
+        # What is hidden by rounding at one time may show at another.
+        order = np.maximum(order, np.max(first, where=~np.isnan(first), initial=declared))
         order = np.where(np.isnan(first), order, np.maximum(first, declared) + change)
     error = np.maximum.accumulate(own.size[:count])
     if own.turning:
