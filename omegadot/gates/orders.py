@@ -24,6 +24,7 @@ SATURATED = 0.5
 CLEAR_OF_ROUNDING = 10.0
 HORIZONS = tuple(0.5**n for n in range(7))  # of a run's samples
 FEWEST_STEPS = 3  # two slopes, which must agree
+FEWEST_SAMPLES = 5  # an error may be nothing at one sample, as its sign changes there
 # From one sample to the next, what stepping adds may be this many times all that it added before.
 LARGEST_RISE = 100.0
 SATURATE, NEAR_ROUNDING = "errors saturate", "errors are close to rounding"
@@ -165,18 +166,21 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
     """How many times larger a step's error is than the errors at finer steps let it be.
 
     With e1, e2, e3 at the next finer steps the error follows from e1 by an order: the declared one,
-    or the slope s12 from e1 to e2 where that is higher, and two more, since next terms may be a few
-    times the leading one, and where something is conserved an error gains an order. A slope may
-    differ from the next by four times what that differs from the one after. Zero for the finest
-    step.
+    or the slope s12 from e1 to e2 where that is higher. It may be two orders more in omega and
+    attitude, since next terms may be a few times the leading one, and three in what follows from
+    these, where leading terms cancel. A slope may differ from the next by four times what that
+    differs from the one after. This must hold up to where the error saturates, and up to parts of
+    that time. Zero for the finest step.
     """
     finer = sorted((one for one in sweep if one.timestep < own.timestep), key=lambda e: -e.timestep)
     count = min(own.saturates_at + own.turning, len(own.size))
     if not finer or count == 0:
         return 0.0
-    until = own.times[:count]
+    ends = np.unique([max(FEWEST_SAMPLES, round(part * count)) for part in HORIZONS])
+    ends = np.minimum(ends, count) - 1
+    until = own.times[ends]
     near = [_at(one, until) for one in finer[:3]]
-    order = np.full(count, float(declared))
+    order = np.full(len(ends), float(declared))
     if len(near) > 1:
         first = _slopes(finer[0], finer[1], near[0], near[1])
         second = _slopes(finer[1], finer[2], near[1], near[2]) if len(near) > 2 else first * np.nan
@@ -185,12 +189,13 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
         # What is hidden by rounding at one time may show at another.
         order = np.maximum(order, np.max(first, where=~np.isnan(first), initial=declared))
         order = np.where(np.isnan(first), order, np.maximum(first, declared) + change)
-    error = np.maximum.accumulate(own.size[:count])
+    error = np.maximum.accumulate(own.size)[ends]
     if own.turning:
         error = np.minimum(error, SATURATED)
-    least = CLEAR_OF_ROUNDING * np.maximum.accumulate(own.bound[:count])
+    least = CLEAR_OF_ROUNDING * np.maximum.accumulate(own.bound)[ends]
+    more = 2.0 if own.turning else 3.0
     with np.errstate(all="ignore"):
-        allowed = near[0][0] * (own.timestep / finer[0].timestep) ** (order + 2.0)
+        allowed = near[0][0] * (own.timestep / finer[0].timestep) ** (order + more)
         excess = error / np.maximum(allowed, least)
     return float(np.max(np.nan_to_num(excess, nan=0.0, posinf=np.inf)))
 

@@ -114,7 +114,7 @@ def excess(sizes: dict[float, Array], declared: int, bound: Array | None = None)
 
 @pytest.mark.parametrize(("true", "declared"), [(1, 1), (2, 1), (4, 4), (5, 4), (4, 2)])
 def test_errors_of_an_order_or_of_a_higher_one_have_no_excess(true: int, declared: int) -> None:
-    assert max(excess(powers(true, (0.08, *STEPS)), declared)) < 1.0
+    assert max(excess(powers(true, (0.08, *STEPS)), declared)) <= 1.0 + 1e-9
 
 
 def test_next_terms_are_no_excess() -> None:
@@ -151,7 +151,7 @@ def test_other_sample_times_are_compared_up_to_the_same_time() -> None:
     coarse = Errors(0.5, SAMPLES[::8], np.full(9, 0.1), np.full(9, BOUND), np.full(9, 0.1), True)
     fine = Errors(0.25, SAMPLES, 0.1 * SAMPLES, np.full(65, BOUND), 0.1 * SAMPLES, True)
     found = excess_of(coarse, [coarse, fine], 1)
-    assert found == pytest.approx(1.0 / (10 * BOUND / 0.1 * 8))  # at once, where fine has no error
+    assert found == pytest.approx(0.1 / (0.05 * 2**3))  # half-way, at the fifth sample
 
 
 @pytest.mark.parametrize(
