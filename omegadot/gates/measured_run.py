@@ -17,6 +17,8 @@ from omegadot.reference_impl.system import Array, State, System
 
 CHANNELS = (*TRAJECTORY_UNITS, *INVARIANT_CHANNELS)
 ROTATION = ("omega", "attitude")
+# The state; energy and angular momentum follow from it, and their errors cancel now and then.
+STATE = (*ROTATION, "position", "linear_momentum")
 
 
 @dataclass(frozen=True)
@@ -86,9 +88,9 @@ def evidence_of(
         errors = [errors_of(run, channel, left=part) for run in measured_runs]
         known = [one for one in errors if one is not None]
         orders.append(order_of(known))
-        own = next(one for one in known if one.timestep == measured.sweep.timestep)
-        least = 1 if declared is None else declared
-        excess = max(excess, excess_of(own, known, least + part))
+        if channel in STATE and declared is not None:
+            own = next(one for one in known if one.timestep == measured.sweep.timestep)
+            excess = max(excess, excess_of(own, known, declared + part))
     bound, floor = measured.round_off[channel], measured.floor.get(channel)
     settled = finer >= FEWEST_STEPS
     return Evidence(measured.error[channel], bound, left, tuple(orders), floor, excess, settled)

@@ -73,12 +73,14 @@ class Yardstick:
         Each step adds ``c eps (1 + h A / rate)`` (A the greatest size of omega-dot, so that an
         ill-conditioned inertia counts), and what was added earlier grows by at most `growth`:
         ``theta = c eps (n + 1) (1 + h A / rate) growth``, for attitude in rad and for
-        omega / rate alike. The others follow from it to first order.
+        omega / rate alike. The others follow from it to first order; a velocity that is kept in
+        body axes is turned by theta.
         """
         amount = ROUNDINGS_PER_STEP * EPS * (steps + 1.0)
         theta = amount * (1.0 + timestep * self.acceleration / self.rate) * growth
         time = timestep * steps
         speed = amount * (self.speed + self.gravity * time) + theta * self.rate * self.scale.lever
+        speed = speed + theta * self.speed
         reach = amount * self.reach + time * speed + theta * self.scale.lever
         return {
             "omega": theta,

@@ -25,6 +25,7 @@ CLEAR_OF_ROUNDING = 10.0
 HORIZONS = tuple(0.5**n for n in range(7))  # of a run's samples
 FEWEST_STEPS = 3  # two slopes, which must agree
 FEWEST_SAMPLES = 5  # an error may be nothing at one sample, as its sign changes there
+EXCESS_ORDERS = 3.0  # by which an error may exceed what finer steps and their order explain
 # From one sample to the next, what stepping adds may be this many times all that it added before.
 LARGEST_RISE = 100.0
 SATURATE, NEAR_ROUNDING = "errors saturate", "errors are close to rounding"
@@ -166,11 +167,11 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
     """How many times larger a step's error is than the errors at finer steps let it be.
 
     With e1, e2, e3 at the next finer steps the error follows from e1 by an order: the declared one,
-    or the slope s12 from e1 to e2 where that is higher. It may be two orders more in omega and
-    attitude, since next terms may be a few times the leading one, and three in what follows from
-    these, where leading terms cancel. A slope may differ from the next by four times what that
-    differs from the one after. This must hold up to where the error saturates, and up to parts of
-    that time. Zero for the finest step.
+    or the slope s12 from e1 to e2 where that is higher. It may be three orders more, since leading
+    terms may nearly cancel, and a slope may differ from the next by four times what that differs
+    from the one after. This must hold up to where the error saturates, and up to parts of that
+    time; there e1 is the largest up to twice that time, as an error may pass through nothing. Zero
+    for the finest step.
     """
     finer = sorted((one for one in sweep if one.timestep < own.timestep), key=lambda e: -e.timestep)
     count = min(own.saturates_at + own.turning, len(own.size))
@@ -180,10 +181,13 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
     ends = np.minimum(ends, count) - 1
     until = own.times[ends]
     near = [_at(one, until) for one in finer[:3]]
+    e1, _ = _at(finer[0], np.minimum(2.0 * until, own.times[count - 1]))
     order = np.full(len(ends), float(declared))
     if len(near) > 1:
         first = _slopes(finer[0], finer[1], near[0], near[1])
-        second = _slopes(finer[1], finer[2], near[1], near[2]) if len(near) > 2 else first * np.nan
+        second = np.full(len(ends), np.nan)
+        if len(near) > 2:
+            second = _slopes(finer[1], finer[2], near[1], near[2])
         second = np.where(np.isnan(second), np.fmin(first, declared), second)
         change = 4.0 * np.abs(first - second)
         # What is hidden by rounding at one time may show at another.
@@ -193,9 +197,8 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
     if own.turning:
         error = np.minimum(error, SATURATED)
     least = CLEAR_OF_ROUNDING * np.maximum.accumulate(own.bound)[ends]
-    more = 2.0 if own.turning else 3.0
     with np.errstate(all="ignore"):
-        allowed = near[0][0] * (own.timestep / finer[0].timestep) ** (order + more)
+        allowed = e1 * (own.timestep / finer[0].timestep) ** (order + EXCESS_ORDERS)
         excess = error / np.maximum(allowed, least)
     return float(np.max(np.nan_to_num(excess, nan=0.0, posinf=np.inf)))
 

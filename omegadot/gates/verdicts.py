@@ -83,7 +83,8 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
         return Finding("beyond", "not judged: the scheme itself blows up at so large a step")
     if np.all(evidence.error <= evidence.round_off) and bounded.all():
         return Finding("round-off", "within round-off")
-    if evidence.left is not None and np.all(evidence.left <= evidence.round_off):
+    known = bool(np.all(np.isfinite(evidence.error[bounded])))
+    if known and evidence.left is not None and np.all(evidence.left <= evidence.round_off):
         largest = float(np.max(evidence.left[bounded]))
         until = "" if bounded.all() else ", until the scheme blows up"
         return Finding("explained", f"explained by {scheme}, to {largest:.1e}{until}")
