@@ -71,13 +71,13 @@ def test_the_orders_of_an_error_and_of_what_is_left_of_it(order: int) -> None:
 
 
 def test_each_run_has_an_excess_of_its_own() -> None:
-    runs = [measured(h, h**2 + (0.1 if h == 0.04 else 0.0)) for h in (0.04, 0.02, 0.01, 0.005)]
+    runs = [measured(h, h**2 + (0.4 if h == 0.04 else 0.0)) for h in (0.04, 0.02, 0.01, 0.005)]
     excess = [evidence_of(run, runs, "omega", 2).excess for run in runs]
     assert excess[0] > 10.0
     assert all(one < 1.0 for one in excess[1:])
     assert [evidence_of(run, runs, "omega", 2).settled for run in runs] == [True] + 3 * [False]
     found = findings_of(runs[0], Declared(None, dict.fromkeys(CHANNELS, 2)), runs)["omega"]
-    assert found.note.startswith("at this step the error is 1")
+    assert found.note.startswith("at this step the error is 3.1e+01 times")
 
 
 def test_evidence_holds_what_was_measured() -> None:
