@@ -150,9 +150,13 @@ def reported_rows(system: System, states: State, omega_dot: Array) -> list[Row]:
 
 
 def inverse_rows(
-    system: System, states: State, requested: Acceleration, torque: Array
+    system: System,
+    states: State,
+    requested: Acceleration,
+    torque: Array,
+    metric: str = "residual",
 ) -> list[Row]:
     """Inverse dynamics: ``|tau - reference|`` relative to the terms of equation (8) by size."""
     true = inverse_dynamics(extended(system), extended(states), extended(requested))
     size = torque_size(system, states, requested)
-    return [_row("torque", "residual", _apart(torque, true), size)]
+    return [_row("torque", metric, _apart(torque, true), size)]
