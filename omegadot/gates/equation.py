@@ -32,6 +32,10 @@ GATE = "equation"
 BOUND = ROUNDINGS_PER_EVALUATION * EPS
 RANDOM_STATES = 200
 PATH_STATES = 200
+NOTES = {
+    "residual_alone": "one state by itself",
+    "residual_reloaded": "after another system was loaded in between",
+}
 
 
 @dataclass(frozen=True)
@@ -105,7 +109,7 @@ def _row(channel: str, metric: str, residual: Array, size: Array, condition: flo
     with np.errstate(divide="ignore", invalid="ignore"):
         value = np.where(residual == 0.0, 0.0, residual / size)
     largest = float(np.max(value)) if np.all(np.isfinite(residual)) else float("nan")
-    return within(GATE, channel, metric, largest, "1", BOUND * condition)
+    return within(GATE, channel, metric, largest, "1", BOUND * condition, NOTES.get(metric, ""))
 
 
 def forward_rows(system: System, states: State, found: Acceleration, metric: str) -> list[Row]:
