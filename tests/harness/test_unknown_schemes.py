@@ -149,7 +149,7 @@ def judged(pool: Pool, adapter: Adapter, needs: set[str]) -> Judgement:
 
 
 def test_a_conserving_method_of_its_own_is_not_accused(pool: Pool) -> None:
-    found = judged(pool, Projected(), {"torque-free", "asymmetric"})
+    found = judged(pool, Projected(), {"torque-free", "asymmetric", "free"})
     assert failures(found) == []
     energy = [r for r in found.rows if (r.channel, r.metric) == ("energy", "drift_full")]
     assert {row.note for row in energy} == {"within round-off"}

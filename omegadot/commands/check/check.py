@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import shlex
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 from omegadot.adapters.registry import registered
 from omegadot.commands.check.result import Check, Result, Subject, Tally
-from omegadot.commands.check.select import Arguments, select
-from omegadot.commands.check.suite import Suite
+from omegadot.commands.check.select import Arguments, Selection, select
+from omegadot.commands.check.shrink import Failing, kinds_of_failure
+from omegadot.commands.check.shrink import shrink as shrink_check
+from omegadot.commands.check.suite import SEED, Suite
 from omegadot.commands.progress import Count, Reporting, reporting
 from omegadot.harness.arguments import adapters_named, several
 from omegadot.harness.engine_target import EngineLike, target_of
@@ -26,14 +29,17 @@ class CheckResult:
     """What came of one engine's checks.
 
     by_check: every check with its result.  subjects: the engine, its version and integrators; none
-    where it did not start.  only_skipped: a sentence where every check was skipped, which is no
-    pass.  baselines: the files that were written.
+    where it did not start.  drawn: the random systems among the scenarios that were not named.
+    only_skipped: a sentence where every check was skipped, which is no pass.  baselines: the files
+    that were written.  failing: for each kind of failure, three at most, the simplest system found.
     """
 
     by_check: Mapping[Check, Result]
     subjects: tuple[Subject, ...]
+    drawn: frozenset[str] = frozenset()
     only_skipped: tuple[str, ...] = ()
     baselines: tuple[Path, ...] = ()
+    failing: tuple[Failing, ...] = ()
 
     @cached_property
     def results(self) -> dict[str, Result]:
@@ -65,23 +71,30 @@ def check(
     engine: EngineLike,
     *,
     scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
+    random: int | None = None,
+    seed: int = 0,
     integrators: str | Sequence[str] = (),
     exceptions: str | Path | Sequence[str | Path] = (),
     baseline: str | Path | None = None,
     update_baseline: bool = False,
     timeout: float = 60.0,
+    shrink: bool = True,
     progress: Reporting = False,
 ) -> CheckResult:
     """Put one engine, built in or your own, through every check.
 
     engine: a name, ``FILE.py:Class``, ``module:Class`` or an adapter's class.  scenarios: built-in
-    names, paths, scenarios or their tables; all built-in ones without any.  integrators: all
-    without any.  exceptions: files of declared exceptions.  baseline: a folder of figures to
-    compare with, or to store them in.  timeout: s, for one request to the engine.
+    names, ``random-SEED-INDEX``, paths, scenarios or their tables; all built-in ones without any.
+    random: so many random systems of this seed besides; None for 24, or for none where scenarios
+    are given.  integrators: all without any.  exceptions: files of declared exceptions.
+    baseline: a folder of figures to compare with, or to store them in.  timeout: s, for one request
+    to the engine.  shrink: look for the simplest systems that fail, where some do.
     Raises UsageError, ScenarioError, RecordError and NoTruthError.
     """
     arguments = Arguments(
         scenarios=several(scenarios),
+        random=random,
+        seed=seed,
         exceptions=several(exceptions),
         baseline=baseline,
         update=update_baseline,
@@ -102,7 +115,29 @@ def check(
     for one, result in results.items():
         tally.add(one.engine, result.verdict, result.message)
     skipped = tally.only_skipped(choice.name for choice in selection.choices)
-    return CheckResult(results, suite.registry.subjects, tuple(skipped), tuple(suite.store()))
+    return CheckResult(
+        results,
+        suite.registry.subjects,
+        selection.drawn,
+        tuple(skipped),
+        tuple(suite.store()),
+        tuple(_shrunk(engine, selection, results)) if shrink else (),
+    )
+
+
+def _shrunk(
+    engine: EngineLike, selection: Selection, results: Mapping[Check, Result]
+) -> Iterator[Failing]:
+    """The simplest system for each kind of failure of the one engine."""
+    cases = {case.name: case for case in selection.cases}
+    given = engine if isinstance(engine, str) else target_of(engine)
+    for one in kinds_of_failure(results, cases):
+        words = ["omegadot", "check", given]
+        words += ["--integrator", one.integrator] if one.integrator else []
+        choice = next(choice for choice in selection.choices if choice.name == one.engine)
+        how = (selection.arguments.timeout, SEED, shlex.join(words))
+        if found := shrink_check(one, cases[one.scenario], choice, *how):
+            yield found
 
 
 def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Arguments) -> Arguments:

@@ -21,10 +21,16 @@ def check(
         Texts,
         option(
             "NAME",
-            "A built-in name or a path; repeatable. Default: all built-in scenarios.",
+            "A built-in name, random-SEED-INDEX or a path; repeatable. Default: all built-in "
+            "scenarios, and random systems.",
             "--scenario",
         ),
     ] = None,
+    random: Annotated[
+        int | None,
+        option("N", "Random systems. Default: 24, or none where a scenario is given.", min=0),
+    ] = None,
+    seed: Annotated[int, option("INTEGER", "Seed of the random systems.", min=0)] = 0,
     integrators: options.Integrators = None,
     exceptions: options.Exceptions = None,
     baseline: Annotated[Text, option("DIR", "Compare with the values stored in DIR.")] = None,
@@ -35,6 +41,13 @@ def check(
         ),
     ] = False,
     timeout: options.Timeout = 60.0,
+    shrink: Annotated[
+        bool,
+        typer.Option(
+            "--shrink/--no-shrink",
+            help="Look for the simplest system on which a gate fails, where one does.",
+        ),
+    ] = True,
     output: options.Output = options.Format.text,
 ) -> None:
     """Check one engine, built in or your own, at every gate.

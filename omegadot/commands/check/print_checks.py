@@ -14,8 +14,9 @@ from rich.text import Text
 
 from omegadot.commands.check.check import CheckResult
 from omegadot.commands.check.result import Check, Result, Verdict, coverage
+from omegadot.commands.check.shrink import Failing
 from omegadot.commands.options import exit_code
-from omegadot.reports.text.numbers import times
+from omegadot.reports.text.numbers import listed, times
 
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
 STYLES = {"error": "bold magenta", "fail": "bold red", "declared": "yellow", "skip": "dim"}
@@ -32,12 +33,16 @@ def _cell(verdicts: Counter[Verdict]) -> Text:
     return Text(sentence, STYLES.get(worst, "green"))
 
 
-def _table(results: Mapping[Check, Result]) -> Table:
-    scenarios = list(dict.fromkeys(check.scenario for check in results if check.scenario))
-    gates = list(dict.fromkeys(check.gate for check in results if check.scenario))
+def _table(found: CheckResult) -> Table:
+    """A row for a scenario, and one for all random systems that were not named."""
+    together = f"{len(found.drawn)} random systems"
+    results = {c: result for c, result in found.by_check.items() if c.scenario}
+    names = {c.scenario: together if c.scenario in found.drawn else c.scenario for c in results}
+    scenarios = list(dict.fromkeys(names.values()))
+    gates = list(dict.fromkeys(check.gate for check in results))
     cells: dict[tuple[str, str], Counter[Verdict]] = defaultdict(Counter)
     for check, result in results.items():
-        cells[check.scenario, check.gate][result.verdict] += 1
+        cells[names[check.scenario], check.gate][result.verdict] += 1
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
     for name in ("scenario", *gates):
         table.add_column(name, no_wrap=True)
@@ -65,6 +70,18 @@ def print_json(found: CheckResult) -> None:
         "engines": [vars(subject) for subject in found.subjects],
         "verdicts": {v: counts[v] for v in ("pass", "fail", "declared", "skip", "error")},
         "only_skipped": found.only_skipped,
+        "failing": [
+            {
+                "check": one.check.id,
+                "message": one.message,
+                "has": one.has,
+                "scenario": one.toml,
+                "command": one.command,
+                "trials": one.trials,
+                "finished": one.finished,
+            }
+            for one in found.failing
+        ],
         "checks": [{"id": c.id, **vars(c), **vars(r)} for c, r in found.by_check.items()],
     }
     typer.echo(json.dumps(printed, indent=2))
@@ -77,7 +94,7 @@ def print_checks(found: CheckResult) -> None:
     for line in coverage(found.subjects, list(results)):
         console.print(Text(line, "bold"))
     if any(check.scenario for check in results):
-        console.print(_table(results))
+        console.print(_table(found))
     for verdict in ("error", "fail", "declared"):
         for message, checks in _grouped(results, verdict).items():
             for check in checks:
@@ -87,7 +104,19 @@ def print_checks(found: CheckResult) -> None:
         console.print(Text(f"skip  {times(len(checks), 'check')}: {reason}", "dim"))
     for line in (*found.only_skipped, *(f"Baseline written: {path}" for path in found.baselines)):
         console.print(Text(line))
+    for one in found.failing:
+        _print_failing(console, one)
     counts = Counter(result.verdict for result in results.values())
     parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
     total = f"{times(len(results), 'check')}: {parts}."
     console.print(Text(total if parts else "There is nothing to check.", "bold"))
+
+
+def _print_failing(console: Console, found: Failing) -> None:
+    """The simplest failing system as a file, what is left in it, and how to run it alone."""
+    left = listed(list(found.has)) if found.has else "a free body on which nothing acts"
+    searched = "" if found.finished else f" (the search ended after {found.trials} systems)"
+    console.print(Text(f"Smallest failing system of {found.check.id}{searched}:", "bold"))
+    console.print(Text(f"    It has {left}. {found.message}"))
+    console.print(Text(f"    Save as {found.scenario.name}.toml, then: {found.command}"))
+    console.print(Text(found.toml))
