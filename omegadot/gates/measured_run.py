@@ -17,6 +17,7 @@ from omegadot.reference_impl.system import Array, State, System
 
 CHANNELS = (*TRAJECTORY_UNITS, *INVARIANT_CHANNELS)
 ROTATION = ("omega", "attitude")
+SATURATING = (*ROTATION, "linear_momentum")
 # The state; energy and angular momentum follow from it, and their errors cancel now and then.
 STATE = (*ROTATION, "position", "linear_momentum")
 
@@ -32,9 +33,9 @@ class MeasuredRun:
     floor: dict[str, Array] = field(default_factory=dict)
 
     @property
-    def turning_error(self) -> Array:
-        """(n,), the larger error of omega and attitude."""
-        worst: Array = np.maximum(*(self.error[channel] for channel in ROTATION))
+    def saturating_error(self) -> Array:
+        """(n,), the largest error of those that saturate where they are as large as the motion."""
+        worst: Array = np.maximum.reduce([self.error[channel] for channel in SATURATING])
         return worst
 
 
@@ -50,7 +51,8 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
         return {c: _sizes(yardstick.distance(c, state, other)) for c in CHANNELS}
 
     growth = own.growth if own else truth.growth[rows]
-    bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth)
+    faster = yardstick.faster(own.state) if own else 1.0
+    bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth, faster)
     return MeasuredRun(
         sweep=sweep,
         error=apart(exact),
@@ -70,8 +72,8 @@ def errors_of(run: MeasuredRun, channel: str, *, left: bool = False) -> Errors |
         return None
     size = run.against_scheme[channel] if left else run.error[channel]
     bound = np.maximum(run.round_off[channel], run.floor.get(channel, 0.0))
-    turning = channel in ROTATION
-    return Errors(run.sweep.timestep, run.sweep.times, size, bound, run.turning_error, turning)
+    largest, saturates = run.saturating_error, channel in SATURATING
+    return Errors(run.sweep.timestep, run.sweep.times, size, bound, largest, saturates)
 
 
 def evidence_of(

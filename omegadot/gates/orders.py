@@ -54,26 +54,27 @@ VANISHED = ObservedOrder(float("inf"), True)
 class Errors:
     """One channel of one run: the step, and (n,) each: times, errors, and bounds of rounding.
 
-    turned: (n,), the larger error of omega and attitude.  turning: whether this is one of the two.
+    overall: (n,), the largest error of omega, attitude and velocity, which saturate where they are
+    as large as the motion.  saturates: whether this is one of them.
     """
 
     timestep: float
     times: Array
     size: Array
     bound: Array
-    turned: Array
-    turning: bool
+    overall: Array
+    saturates: bool
 
     def largest(self, horizon: float) -> tuple[float, float, bool]:
         """Error and bound over a part of the samples, and whether errors saturate there."""
         samples = int(np.ceil(horizon * len(self.size)))
         error, bound = np.max(self.size[:samples]), np.max(self.bound[:samples])
-        return float(error), float(bound), not np.max(self.turned[:samples]) <= SATURATED
+        return float(error), float(bound), not np.max(self.overall[:samples]) <= SATURATED
 
     @property
     def saturates_at(self) -> int:
         """The first sample whose error saturates; the number of samples if none does."""
-        beyond = ~(self.turned <= SATURATED)
+        beyond = ~(self.overall <= SATURATED)
         return int(np.argmax(beyond)) if beyond.any() else len(beyond)
 
 
@@ -158,7 +159,7 @@ def _jumps(sweep: Sequence[Errors]) -> bool:
     at = finest.saturates_at
     if not 1 < at < len(finest.size):
         return False
-    before, bound = np.max(finest.turned[:at]), finest.bound
+    before, bound = np.max(finest.overall[:at]), finest.bound
     growth = bound[at] / bound[at - 1]
     return bool(LARGEST_RISE * growth * before < SATURATED)
 
@@ -174,7 +175,7 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
     for the finest step.
     """
     finer = sorted((one for one in sweep if one.timestep < own.timestep), key=lambda e: -e.timestep)
-    count = min(own.saturates_at + own.turning, len(own.size))
+    count = min(own.saturates_at + own.saturates, len(own.size))
     if not finer or count == 0:
         return 0.0
     ends = np.unique([max(FEWEST_SAMPLES, round(part * count)) for part in HORIZONS])
@@ -194,7 +195,7 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
         order = np.maximum(order, np.max(first, where=~np.isnan(first), initial=declared))
         order = np.where(np.isnan(first), order, np.maximum(first, declared) + change)
     error = np.maximum.accumulate(own.size)[ends]
-    if own.turning:
+    if own.saturates:
         error = np.minimum(error, SATURATED)
     least = CLEAR_OF_ROUNDING * np.maximum.accumulate(own.bound)[ends]
     with np.errstate(all="ignore"):

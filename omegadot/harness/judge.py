@@ -107,7 +107,7 @@ def _diverged(
     findings: dict[str, Finding],
 ) -> JudgedRun:
     """A run whose state ceases to be finite; what its scheme does as well is not judged."""
-    finite = np.isfinite(measured.turning_error) & np.isfinite(answer.result["time"])
+    finite = np.isfinite(measured.saturating_error) & np.isfinite(answer.result["time"])
     bad = np.flatnonzero(~finite)
     when = f" from t = {sweep.times[bad[0]]:g} s" if len(bad) else ""
     note = f"the state is not finite{when}"
