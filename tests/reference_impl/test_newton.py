@@ -67,3 +67,14 @@ def test_only_the_spin_is_judged():
     found = mean_velocity_of(push, first, start, same, slice(3, None))
     assert np.allclose(found[3:], START + 1.0 / 0.9)
     assert np.all(np.abs(found[:3]) <= 1e-19)
+
+
+def test_velocities_that_settle_later_than_the_spin_are_waited_for():
+    """In body axes a linear velocity is turned by the spin, and may settle long after it."""
+
+    def push(w):
+        return np.concatenate((0.4 * (w[:3] - START) + 1.0, np.zeros(3)))
+
+    first, start = np.concatenate((np.ones(3), np.zeros(3))), np.concatenate((START, START))
+    found = mean_velocity_of(push, first, start, same, slice(3, None))
+    assert np.allclose(found[:3], START + 1.0 / 0.6, rtol=1e-14, atol=0.0)

@@ -24,25 +24,46 @@ def mean_velocity_of(
     """The v_m with ``v_m = v₀ + h/2 v̇(v_m)``, (..., n).
 
     push: ``h/2 v̇`` at a v_m.  first: the same at v₀.  solve: by ``1 - h/2 J``, with J the Jacobian
-    in v of the step's start.  spin: the velocities that are judged.
-    It ends where they stand still to round-off, which may be that of an engine: a fast body's
+    in v of the step's start.  spin: the angular velocities; the others, where there are any, are
+    judged apart, since in body axes they may settle later.
+    It ends where both stand still to round-off, which may be that of an engine: a fast body's
     bias forces, ``m |v|²``, can leave far fewer digits of ω̇ than the number format has. A lane
     that has not settled comes back as NaN: its step is too large.
     """
     v = v0 + solve(first)
-    eps, last = _eps(v.dtype), np.inf
-    root = eps**0.5
+    eps, last, before = _eps(v.dtype), np.inf, np.inf
+    rest = _others(spin, v.shape[-1])
     for _ in range(MOST_ITERATIONS):
         change = solve(v0 + push(v) - v)
         v = v + change
-        size = (_square(change, spin) / (_square(v, spin) + 1e-300)) ** 0.5
-        # among rounding a change need not shrink each time; above it, slow is not yet settled
-        shrinks = size < last * (1 - 0.5 * (size <= root))
-        if _all((size <= eps) | (shrinks ^ True)):
+        size = _relative(change, v, spin)
+        still = _stands_still(size, last, eps)
+        if rest is not None and _all(still):
+            other = _relative(change, v, rest)
+            still, before = _stands_still(other, before, eps), other
+        if _all(still):
             break
         last = size
     settled = size <= UNSETTLED
     return v if _all(settled) else np.where(np.asarray(settled)[..., None], v, np.nan)
+
+
+def _others(spin: slice, n: int) -> slice | None:
+    start, stop, _ = spin.indices(n)
+    return None if stop - start == n else slice(0, start) if start else slice(stop, n)
+
+
+def _relative(change: Array, v: Array, part: slice) -> Any:
+    return (_square(change, part) / (_square(v, part) + 1e-300)) ** 0.5
+
+
+def _stands_still(size: Any, last: Any, eps: float) -> Any:
+    """Whether changes of this size are rounding, `last` being the one before.
+
+    Among rounding a change need not shrink each time; above it, slow is not yet settled.
+    """
+    shrinks = size < last * (1 - 0.5 * (size <= eps**0.5))
+    return (size <= eps) | (shrinks ^ True)
 
 
 def _square(vector: Array, spin: slice) -> Any:
