@@ -69,9 +69,7 @@ def test_each_fault_is_seen_by_its_request(
 
 
 def test_what_is_left_of_another_system_is_seen_without_one_before(pool: Pool) -> None:
-    prepared = pool.prepare(
-        next(n for n in range(BLOCK) if "gravity" not in pool._draw(n)[1])
-    )
+    prepared = pool.prepare(next(n for n in range(BLOCK) if "gravity" not in pool._draw(n)[1]))
     found = judged(pool, prepared, wrong.KeepsGravity())
     assert "residual_reloaded" in failed(found)
     assert "residual" not in failed(found)

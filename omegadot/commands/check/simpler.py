@@ -76,12 +76,17 @@ def scaled(tables: Tables, mass: float, size: float, time: float) -> Tables:
 
 
 def _in_its_own_units(tables: Tables, units: str) -> Tables:
-    """A mass, a size and a rate of one, or some of the three."""
+    """A mass of one, a size and a rate of about one, or some of the three.
+
+    A size of one is that of moments 1, 2, 3 at a mass of one.
+    """
     body, rate = tables["body"], float(np.linalg.norm(tables["initial"]["angular_velocity"]))
-    size = float(np.sqrt(np.trace(body["inertia"]) / body["mass"]))
+    size = float(np.sqrt(np.trace(body["inertia"]) / body["mass"] / 6.0))
     time = 1.0 / rate if rate else tables["run"]["duration"]
     own = {"mass": body["mass"], "size": size, "time": time}
-    return scaled(tables, **{k: own[k] if k in units else 1.0 for k in own})
+    near = {"mass": 0.0, "size": 0.7, "time": 0.7}  # of a decimal logarithm
+    far = {k: k in units and abs(np.log10(own[k])) > near[k] for k in own}
+    return scaled(tables, **{k: own[k] if far[k] else 1.0 for k in own})
 
 
 def _without(tables: Tables, loads: Sequence[str] = LOADS) -> Tables:
