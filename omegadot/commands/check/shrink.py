@@ -161,4 +161,5 @@ def _search(runner: Runner, check: Check, case: Case, command: str) -> Failing |
             break
     found = scenario_of(simplest, name)
     alone = f"{command} --scenario {name}.toml"
-    return Failing(check, found, failure(last), ingredients(found), trials, finished, alone)
+    left = ingredients(found, stepped=check.gate in GATES_OF_A_RUN)
+    return Failing(check, found, failure(last), left, trials, finished, alone)

@@ -16,6 +16,8 @@ Simpler = Callable[[Tables], Tables]
 
 ZERO = [0.0, 0.0, 0.0]
 IDENTITY = [1.0, 0.0, 0.0, 0.0]
+UNUSUAL = 0.7  # decades from one, for a size or a rate to be left as it is
+LARGE_TURN = 0.3  # rad
 LOADS = ("torque", "gravity", "damping", "pivot", "center_of_mass")
 NO_TORQUE: Tables = {"frame": "body", "value": ZERO}
 VECTORS = (
@@ -84,7 +86,7 @@ def _in_its_own_units(tables: Tables, units: str) -> Tables:
     size = float(np.sqrt(np.trace(body["inertia"]) / body["mass"] / 6.0))
     time = 1.0 / rate if rate else tables["run"]["duration"]
     own = {"mass": body["mass"], "size": size, "time": time}
-    near = {"mass": 0.0, "size": 0.7, "time": 0.7}  # of a decimal logarithm
+    near = {"mass": 0.0, "size": UNUSUAL, "time": UNUSUAL}
     far = {k: k in units and abs(np.log10(own[k])) > near[k] for k in own}
     return scaled(tables, **{k: own[k] if far[k] else 1.0 for k in own})
 
@@ -201,12 +203,18 @@ SIMPLER: tuple[Simpler, ...] = (
 """In the order in which they are tried: what leaves out the most, or makes runs cheap, first."""
 
 
-def ingredients(found: Scenario) -> tuple[str, ...]:
-    """What is left in a system, besides a free body of moments 1, 2, 3 and a mass of one."""
+def ingredients(found: Scenario, stepped: bool = False) -> tuple[str, ...]:
+    """What is left in a system, besides a free body of moments 1, 2, 3 and a mass of one.
+
+    stepped: a gate of its runs fails, so that their steps belong to it.
+    """
     body, load, start = found.body, found.load, found.initial
     tensor = np.array(body.inertia)
     moments, pull = np.diag(tensor), np.array(load.gravity)
     gravity = "gravity" if pull[2] == -np.linalg.norm(pull) else "gravity that is not along -z"
+    rate = float(np.linalg.norm(start.angular_velocity))
+    longest = max(found.run.timesteps)
+    steps = max(1, round(found.run.duration / longest))
     named = {
         f"a mass of {body.mass:g} kg": body.mass != 1.0,
         "products of inertia": np.any(tensor != np.diag(moments)),
@@ -220,6 +228,9 @@ def ingredients(found: Scenario) -> tuple[str, ...]:
         "a turned start": list(start.orientation) != IDENTITY,
         "a start at rest": not any(start.angular_velocity),
         "a start of several components of omega": sum(map(bool, start.angular_velocity)) > 1,
+        f"an omega of {rate:g} rad/s": rate > 0.0 and abs(np.log10(rate)) > UNUSUAL,
         "a moving centre of mass": any(start.linear_velocity),
+        f"{steps} steps": stepped and steps > 1,
+        f"a turn of {longest * rate:.2g} rad a step": stepped and longest * rate > LARGE_TURN,
     }
     return tuple(name for name, holds in named.items() if holds)
