@@ -16,7 +16,7 @@ import pytest
 
 from omegadot.adapters.protocol import Adapter
 from omegadot.adapters.reference.adapter import ReferenceAdapter
-from omegadot.commands.faults.detect import Judgement, judge
+from omegadot.commands.faults.detect import Judgement, Nameless, judge
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.case import Sweep
 from omegadot.harness.repeats import OTHERS, short_sweep
@@ -82,6 +82,17 @@ def test_a_sound_engine_gives_the_same_to_the_bit(pool: Pool, prepared: Prepared
     assert {row.value for row in rows if row.metric != "negated"} == {0.0}
     schemes = len(ReferenceAdapter().description.integrators)
     assert len(rows) == 3 * schemes
+
+
+def test_an_unknown_scheme_may_have_two_points_for_an_attitude(
+    pool: Pool, prepared: Prepared
+) -> None:
+    found = judged(pool, prepared, Nameless(wrong.Sound()))
+    rows = [row for row in found.rows if row.metric in ("repeated", "negated", "reloaded")]
+    assert {(row.metric, row.verdict) for row in rows} == {
+        ("repeated", "pass"),
+        ("reloaded", "pass"),
+    }
 
 
 def test_a_run_that_fails_the_second_time_is_reported(pool: Pool, prepared: Prepared) -> None:
