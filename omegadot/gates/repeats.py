@@ -3,8 +3,8 @@
 Neither earlier runs nor the system that was loaded before may change a run. Where the scheme is
 known, neither may the sign of the start's quaternion: q and -q are one attitude. (An unknown scheme
 may step coordinates that have two points for it, such as modified Rodrigues parameters, and what a
-step leaves out then differs.) Each of two runs lies within the round-off bound of one trajectory, so
-that they differ by twice that at most.
+step leaves out then differs.) Each of two runs lies within the round-off bound of one trajectory,
+so that they differ by twice that at most.
 """
 
 from __future__ import annotations
