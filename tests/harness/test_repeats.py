@@ -38,7 +38,7 @@ def pool() -> Pool:
 
 @pytest.fixture(scope="module")
 def prepared(pool: Pool) -> Prepared:
-    needs = {"asymmetric", "free", "offset", "scalar-negative", "damping"}
+    needs = {"asymmetric", "free", "scalar-negative", "coarse"}
     return pool.prepare(pool.having(needs, 1)[0])
 
 
@@ -66,6 +66,23 @@ def test_each_fault_is_seen_by_its_request(
     assert metrics <= failed(found)
     if name in ("OneStateAlone", "FirstRunAfterLoad"):  # nothing else shows it
         assert failed(found) == metrics
+
+
+@pytest.mark.parametrize(
+    ("name", "feature", "gate"),
+    [
+        ("LastIntervalWhole", "short-interval", "trajectory"),
+        ("DampingClamped", "damping-above-1", "equation"),
+        ("GravityAlwaysDown", "gravity-not-down", "equation"),
+        ("DampedForgetsTorque", "torque", "equation"),
+    ],
+)
+def test_what_random_systems_have_in_them_shows_the_fault(
+    name: str, feature: str, gate: str, pool: Pool
+) -> None:
+    number = pool.having({feature, "damping", "asymmetric"}, 1)[0]
+    assert number < BLOCK
+    assert gate in judged(pool, pool.prepare(number), getattr(wrong, name)()).failed
 
 
 def test_what_is_left_of_another_system_is_seen_without_one_before(pool: Pool) -> None:

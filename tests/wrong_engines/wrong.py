@@ -256,3 +256,36 @@ class KeepsGravity(Wrong):
         if np.any(system.load.gravity):
             self.gravity = system.load.gravity
         super().load(replace(system, load=replace(system.load, gravity=self.gravity)))
+
+
+class LastIntervalWhole(Wrong):
+    """The last interval between samples is taken to be as long as the others."""
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        found = super().run(initial, integrator, timestep, steps, every)
+        whole = -(-steps // every) * every
+        last = super().run(initial, integrator, timestep, whole, every).state[-1:]
+
+        def ended(values: Array, end: Array) -> Array:
+            return np.concatenate([values[:-1], end])
+
+        pairs = zip(vars(found.state).values(), vars(last).values(), strict=True)
+        return Trajectory(found.time, State(*(ended(*pair) for pair in pairs)))
+
+
+class DampingClamped(Wrong):
+    """A damping of more than 1 N m s/rad is taken for 1."""
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        least = np.minimum(system.load.damping, 1.0)
+        return acceleration_of(replace(system, load=replace(system.load, damping=least)))
+
+
+class GravityAlwaysDown(Wrong):
+    """Gravity has the size requested, and points along -z."""
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        down = np.array([0.0, 0.0, -np.linalg.norm(system.load.gravity)])
+        return acceleration_of(replace(system, load=replace(system.load, gravity=down)))

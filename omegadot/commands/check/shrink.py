@@ -83,7 +83,7 @@ def shrink(
     choice: the engine.  seed: of the evaluation states.  command: the words before the scenario.
     """
     chosen = replace(choice, integrators=(check.integrator,) if check.integrator else ())
-    request = RunRequest([], [chosen], seed=seed, timeout=timeout)
+    request = RunRequest([], [chosen], seed=seed, timeout=min(timeout, SECONDS))
     runner = Runner(request)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
