@@ -23,14 +23,15 @@ from omegadot.commands.check.print_checks import print_checks, print_json
 from omegadot.commands.check.result import PASSED, Check, Result
 from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.shrink import _candidates, kinds_of_failure
-from omegadot.commands.check.simpler import SIMPLER, ingredients, scaled, tables_of
+from omegadot.commands.check.simpler import SIMPLER
+from omegadot.commands.check.tables import ingredients, scaled, tables_of
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of
 from omegadot.harness.random_cases import random_case
 from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.scenarios import load_scenario, scenario, scenario_of
-from omegadot.scenarios.random_systems import BLOCK
+from omegadot.scenarios.random_traits import BLOCK
 from omegadot.scenarios.writing import to_toml
 
 FORGETS = f"{WRONG}:DampedForgetsTorque"

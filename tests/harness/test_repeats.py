@@ -20,7 +20,7 @@ from omegadot.commands.faults.detect import Judgement, Nameless, judge
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.case import Sweep
 from omegadot.harness.repeats import OTHERS, short_sweep
-from omegadot.scenarios.random_systems import BLOCK
+from omegadot.scenarios.random_traits import BLOCK
 
 FILE = Path(__file__).parents[1] / "wrong_engines" / "wrong.py"
 spec = importlib.util.spec_from_file_location("wrong_for_repeats", FILE)

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 
 from omegadot.commands.check.judge import failure
 from omegadot.commands.check.result import GATES_OF_A_RUN, GATES_OF_A_SCENARIO, Check, Result
-from omegadot.commands.check.simpler import SIMPLER, Tables, ingredients, tables_of
+from omegadot.commands.check.simpler import SIMPLER
+from omegadot.commands.check.tables import Tables, ingredients, tables_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.gates.verdicts import UNDECIDED
