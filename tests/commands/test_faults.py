@@ -16,7 +16,7 @@ from omegadot.commands.faults.fault import Fault
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.diagnosis.diagnose import diagnose
 from omegadot.harness.random_cases import features_of, random_case
-from omegadot.scenarios.random_systems import BLOCK
+from omegadot.scenarios.random_traits import BLOCK
 
 SEED = 20
 BODIES = 2

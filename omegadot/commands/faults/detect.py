@@ -14,6 +14,7 @@ from omegadot.gates.verdicts import UNDECIDED
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.in_process import driver_of
 from omegadot.harness.judge import JudgedRun, judge_case, shared_rows
+from omegadot.harness.repeats import request_again
 from omegadot.harness.step_probes import probe_steps
 
 GATES = ("model", "equation", "scheme", "invariants", "trajectory")
@@ -85,6 +86,7 @@ def judge(
     pool.step_companions(prepared, result.integrators)
     result.runs.update(driver.run_all(case, lambda: None))
     probe_steps(driver, case, prepared.evaluation_states, result)
+    request_again(driver, case, prepared.evaluation_states, result)
     with np.errstate(all="ignore"):  # a wrong engine may give any numbers
         shared = shared_rows(case, prepared.evaluation_states, result)
         runs = judge_case(prepared.truth, case, result, {})
