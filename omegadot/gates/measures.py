@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from omegadot.gates.scales import EPS, ROUNDINGS_PER_STEP, BodyScale, angular_size, body_scale, norm
@@ -19,11 +21,12 @@ class Yardstick:
     """The sizes of one exact motion, against which its imitations are measured.
 
     rate: rad/s, the greatest |omega|; where the body never turns, the rate that its greatest
-    omega-dot would reach over the motion.
+    omega-dot would reach over the motion.  eps: that of the precision which the imitations are
+    computed in.
     """
 
     def __init__(self, system: System, times: Array, exact: State) -> None:
-        self.system = system
+        self.system, self.eps = system, EPS
         self.scale: BodyScale = body_scale(system)
         acceleration = forward_dynamics(system, exact)
         self.acceleration = float(np.max(angular_size(system, exact, acceleration)))
@@ -44,6 +47,12 @@ class Yardstick:
             # a body that stays in place has that of its turning
             "linear_momentum": moving or mass * self.rate * gyration,
         }
+
+    def with_eps(self, eps: float) -> Yardstick:
+        """The same sizes for imitations in another precision."""
+        other = copy(self)
+        other.eps = eps
+        return other
 
     def distance(self, channel: str, one: State, other: State) -> Array:
         """(n,): |one - other| in this channel.
@@ -75,7 +84,7 @@ class Yardstick:
         ``theta = c eps (n + 1) (1 + h A / rate) growth``, for attitude in rad and for
         omega / rate alike. The others follow from it to first order.
         """
-        amount = ROUNDINGS_PER_STEP * EPS * (steps + 1.0)
+        amount = ROUNDINGS_PER_STEP * self.eps * (steps + 1.0)
         theta = amount * (1.0 + timestep * self.acceleration / self.rate) * growth
         time = timestep * steps
         speed = amount * (self.speed + self.gravity * time) + theta * self.rate * self.scale.lever

@@ -33,12 +33,36 @@ from omegadot.reference_impl.system import Array, State, System
 GATE = "scheme"
 METRIC = "rate_at_no_step"
 PROBES = 6  # of the random states, and as many along the exact trajectory
-# Of five steps, what is left is about the longest's radians to the fifth power over 2^10.
-RADIANS = 2.0**-7
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Halved steps: the radians r of the longest, and the ranges of five that a limit is taken from.
+
+    Relative to a rate, five steps leave about ``r^5 / 2^10`` of the scheme's own terms, and
+    ``80 * 16 eps / r`` of rounding. The two are equal at 0.026 rad in double and at 0.73 rad in
+    single precision; about a third of that is taken.
+    """
+
+    radians: float
+    ranges: tuple[slice, ...]
+
+    @property
+    def count(self) -> int:
+        """How many steps there are."""
+        return int(self.ranges[-1].stop)
+
+
 # A scheme may take short turns by a shorter formula, which breaks the smoothness at one length of
 # step. Such a break lies in one of two ranges of steps only, and a fault shows in both.
-RANGES = (slice(0, 5), slice(4, 9))
-STEPS = 9
+DOUBLE = Ladder(2.0**-7, (slice(0, 5), slice(4, 9)))
+# Shorter steps are hidden by rounding here, and so is the break of a formula that is sound.
+SINGLE = Ladder(2.0**-2, (slice(0, 5),))
+
+
+def ladder_of(eps: float) -> Ladder:
+    """The steps for engines of this precision."""
+    return DOUBLE if eps <= EPS else SINGLE
 
 
 @dataclass(frozen=True)
@@ -49,8 +73,8 @@ class Probe:
     timesteps: Array
 
 
-def probe_of(system: System, evaluation_states: EvaluationStates) -> Probe:
-    """States to step from, (m,), and steps (m, 9) s, short against all that goes on there."""
+def probe_of(system: System, evaluation_states: EvaluationStates, eps: float = EPS) -> Probe:
+    """States to step from, (m,), and steps (m, k) s, short against all that goes on there."""
     count = len(evaluation_states.path.angular_velocity)
     along = np.unique(np.linspace(0, count - 1, PROBES).round().astype(int))
     random, path = vars(evaluation_states.random), vars(evaluation_states.path)
@@ -60,8 +84,9 @@ def probe_of(system: System, evaluation_states: EvaluationStates) -> Probe:
     w_dot, jacobian = acceleration_and_jacobian(attitude_motion(system), *turning)
     slopes = np.max(np.abs(jacobian), axis=(-1, -2))
     rate = np.maximum.reduce((norm(states.angular_velocity), np.sqrt(norm(w_dot)), slopes))
-    longest = RADIANS / np.where(rate > 0.0, rate, 1.0)
-    return Probe(states, longest[:, None] / 2.0 ** np.arange(STEPS))
+    ladder = ladder_of(eps)
+    longest = ladder.radians / np.where(rate > 0.0, rate, 1.0)
+    return Probe(states, longest[:, None] / 2.0 ** np.arange(ladder.count))
 
 
 def _extrapolants(quotients: Array) -> tuple[Array, Array, Array]:
@@ -78,9 +103,9 @@ _WEIGHTS = np.abs(_extrapolants(np.eye(5))[0])
 
 @dataclass(frozen=True)
 class Limit:
-    """One quantity's rate at no step by each range of steps, (2, m, 3), and the equation's (m, 3).
+    """One quantity's rate at no step by each range of steps, (r, m, 3), and the equation's (m, 3).
 
-    bound: (2, m), how far the extrapolants differ, and what rounding makes of it. Where they
+    bound: (r, m), how far the extrapolants differ, and what rounding makes of it. Where they
     converge, the difference of two is the error of the worse.
     """
 
@@ -104,8 +129,8 @@ class Limit:
         return float(apart / max(float(norm(self.expected[place])), float(np.finfo(float).tiny)))
 
 
-def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
-    """The rates at no step by channel. stepped: (m, 9, ...), the states after one step each.
+def limits(system: System, probe: Probe, stepped: State, eps: float = EPS) -> dict[str, Limit]:
+    """The rates at no step by channel. stepped: (m, k, ...), the states after one step each.
 
     A step rounds what it steps by ``16 eps``, which is divided by the step. What it steps may be
     the angular momentum: omega is then rounded by ``16 eps |J omega| / lambda``, J the inertia and
@@ -117,7 +142,7 @@ def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
     w, v, lever = states.angular_velocity, states.linear_velocity, scale.lever
     spinning = norm(apply(moving_inertia(system), w)) / scale.smallest
     moving = norm(v) + lever * spinning
-    step, evaluation = ROUNDINGS_PER_STEP * EPS, ROUNDINGS_PER_EVALUATION * EPS
+    step, evaluation = ROUNDINGS_PER_STEP * eps, ROUNDINGS_PER_EVALUATION * eps
     of_omega = evaluation * angular_size(system, states, true)
     of_velocity = evaluation * linear_size(system, states, true)
     turn = rotation_between(before.orientation, stepped.orientation)
@@ -130,12 +155,20 @@ def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
         "position": (way, v, step * place, step * moving),
         "linear_momentum": (push, true.linear, step * moving, of_velocity),
     }
-    return {channel: _limit(h, *part) for channel, part in parts.items()}
+    ranges = ladder_of(eps).ranges
+    return {channel: _limit(ranges, h, *part) for channel, part in parts.items()}
 
 
-def _limit(h: Array, change: Array, expected: Array, rounding: Array, per_rate: Array) -> Limit:
+def _limit(
+    ranges: tuple[slice, ...],
+    h: Array,
+    change: Array,
+    expected: Array,
+    rounding: Array,
+    per_rate: Array,
+) -> Limit:
     found, bounds = [], []
-    for steps in RANGES:
+    for steps in ranges:
         best, worse, worst = _extrapolants(change[:, steps] / h[:, steps, None])
         rounded = rounding * np.sum(_WEIGHTS / h[:, steps], axis=-1)
         found.append(best)
@@ -153,10 +186,10 @@ def _common_factor(found: dict[str, Limit]) -> float | None:
     return factor if all(np.all(one.shares(factor) <= 1.0) for one in found.values()) else None
 
 
-def rows(system: System, probe: Probe, stepped: State) -> list[Row]:
+def rows(system: System, probe: Probe, stepped: State, eps: float = EPS) -> list[Row]:
     """Per channel, how far the steps' own rate is from the equation's, in parts of its bound."""
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-        found = limits(system, probe, stepped)
+        found = limits(system, probe, stepped, eps)
         shares = {channel: float(np.max(one.shares())) for channel, one in found.items()}
         wrong = not all(share <= 1.0 for share in shares.values())
         factor = _common_factor(found) if wrong else None

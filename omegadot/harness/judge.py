@@ -13,6 +13,7 @@ from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
 from omegadot.gates.rows import Row
+from omegadot.gates.scales import eps_of
 from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
 from omegadot.harness.drive import CaseResult
@@ -38,21 +39,22 @@ class JudgedRun:
 def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[Row]:
     """The rows that belong to engine and scenario, whatever the integrator."""
     rows: list[Row] = []
+    eps = eps_of(result.precision)
     if result.model.ok:
         answer = result.model.result
         for body in answer["bodies"]:
-            rows += model.body_rows(case, body_from(body))
-        rows += model.state_rows(case, evaluation_states.random[0], State(**answer["state"]))
+            rows += model.body_rows(case, body_from(body), eps)
+        rows += model.state_rows(case, evaluation_states.random[0], State(**answer["state"]), eps)
     named = {"residual": (result.forward, evaluation_states.random)}
     named["residual_on_path"] = (result.path, evaluation_states.path)
     for metric, (found, states) in named.items():
         if found.ok:
             acceleration = Acceleration(**found.result)
-            rows += equation.forward_rows(case.system, states, acceleration, metric)
+            rows += equation.forward_rows(case.system, states, acceleration, metric, eps)
     if result.inverse.ok:
         torque = result.inverse.result["torque"]
         rows += equation.inverse_rows(
-            case.system, evaluation_states.random, evaluation_states.acceleration, torque
+            case.system, evaluation_states.random, evaluation_states.acceleration, torque, eps
         )
     return rows
 
@@ -86,11 +88,11 @@ def _measured_runs(
     return measured_runs
 
 
-def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
+def _failed(integrator: Integrator, sweep: Sweep, answer: Answer, eps: float) -> JudgedRun:
     """A task without a trajectory to measure: its outcome, and the verdict on its times."""
     if not answer.ok:
         return JudgedRun(integrator, sweep, answer.outcome, answer.reason)
-    rows = [trajectory.time_row(sweep, answer.result["time"])]
+    rows = [trajectory.time_row(sweep, answer.result["time"], eps)]
     state = State(**answer.result["state"])
     if is_finite(state):
         return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
@@ -114,14 +116,14 @@ def _judge_integrator(
     """Judge every step size of one integrator; finer ones only serve to see its order."""
     answers = [(sweep, result.runs[integrator.name, sweep.timestep]) for sweep in sweeps]
     measured_runs = _measured_runs(truth, integrator, [*answers, *finer])
-    system = truth.yardstick.system
+    system, eps = truth.yardstick.system, truth.yardstick.eps
     declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
     seen = scheme.orders_seen(known)
     for sweep, answer in answers:
         measured = measured_runs.get(sweep.timestep)
         if measured is None:
-            yield _failed(integrator, sweep, answer)
+            yield _failed(integrator, sweep, answer, eps)
             continue
         state = State(**answer.result["state"])
         findings = findings_of(measured, declared, known)
@@ -129,9 +131,9 @@ def _judge_integrator(
         unknown = rows_of_unknown(truth, integrator, sweep, result)
         rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
         misreported = trajectory.reported_rows(truth, measured, state, result.precision)
-        misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
+        misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"], eps)
         rows += invariants.rows(measured, findings, sweep.times)
-        rows.append(trajectory.time_row(sweep, answer.result["time"]))
+        rows.append(trajectory.time_row(sweep, answer.result["time"], eps))
         rows += [*misreported, *trajectory.rows(measured, findings)]
         rows += phase.rows(truth, measured, state)
         rows += cost.rows(sweep.timestep, answer.result["seconds_per_step"])
@@ -148,6 +150,7 @@ def judge_case(
     refinements: dict[str, dict[float, tuple[Sweep, Answer]]],
 ) -> list[JudgedRun]:
     """Judge every task of one engine on one scenario."""
+    truth = truth.in_precision(result.precision)
     return [
         judged
         for integrator in result.integrators
