@@ -57,7 +57,7 @@ class Ladder:
 # step. Such a break lies in one of two ranges of steps only, and a fault shows in both.
 DOUBLE = Ladder(2.0**-7, (slice(0, 5), slice(4, 9)))
 # Shorter steps are hidden by rounding here, and so is the break of a formula that is sound.
-SINGLE = Ladder(2.0**-2, (slice(0, 5),))
+SINGLE = Ladder(2.0**-1, (slice(0, 5),))
 
 
 def ladder_of(eps: float) -> Ladder:

@@ -8,7 +8,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import cost, equation, invariants, model, phase, scheme, trajectory
+from omegadot.gates import (
+    cost,
+    equation,
+    invariants,
+    model,
+    phase,
+    rounding_step,
+    scheme,
+    trajectory,
+)
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
@@ -119,7 +128,7 @@ def _judge_integrator(
     system, eps = truth.yardstick.system, truth.yardstick.eps
     declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
-    seen = scheme.orders_seen(known)
+    seen, grows = scheme.orders_seen(known), rounding_step.rows(known, declared, eps)
     for sweep, answer in answers:
         measured = measured_runs.get(sweep.timestep)
         if measured is None:
@@ -129,7 +138,7 @@ def _judge_integrator(
         findings = findings_of(measured, declared, known)
         match = scheme.match_row(truth, integrator, measured, state, known)
         unknown = rows_of_unknown(truth, integrator, sweep, result)
-        rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
+        rows = [match, *scheme.order_rows(seen, declared, measured), *grows, *unknown]
         misreported = trajectory.reported_rows(truth, measured, state, result.precision)
         misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"], eps)
         rows += invariants.rows(measured, findings, sweep.times)
@@ -138,7 +147,7 @@ def _judge_integrator(
         rows += phase.rows(truth, measured, state)
         rows += cost.rows(sweep.timestep, answer.result["seconds_per_step"])
         broken = [row.note for row in (*misreported, match, *unknown) if row.verdict == "fail"]
-        why = broken[0] if broken else _why(findings)
+        why = broken[0] if broken else "; ".join([_why(findings), *(r.note for r in grows[:1])])
         unresolved = any(f.kind == "unresolved" for f in findings.values())
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
 
