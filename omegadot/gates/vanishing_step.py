@@ -41,11 +41,13 @@ class Ladder:
 
     Relative to a rate, five steps leave about ``r^5 / 2^10`` of the scheme's own terms, and
     ``80 * 16 eps / r`` of rounding. The two are equal at 0.026 rad in double and at 0.73 rad in
-    single precision; about a third of that is taken.
+    single precision, and a part of that is taken.
+    digits: those of a step's length that rounding leaves certain.
     """
 
     radians: float
     ranges: tuple[slice, ...]
+    digits: int
 
     @property
     def count(self) -> int:
@@ -55,9 +57,9 @@ class Ladder:
 
 # A scheme may take short turns by a shorter formula, which breaks the smoothness at one length of
 # step. Such a break lies in one of two ranges of steps only, and a fault shows in both.
-DOUBLE = Ladder(2.0**-7, (slice(0, 5), slice(4, 9)))
+DOUBLE = Ladder(2.0**-7, (slice(0, 5), slice(4, 9)), 4)
 # Shorter steps are hidden by rounding here, and so is the break of a formula that is sound.
-SINGLE = Ladder(2.0**-1, (slice(0, 5),))
+SINGLE = Ladder(2.0**-1, (slice(0, 5),), 2)
 
 
 def ladder_of(eps: float) -> Ladder:
@@ -194,16 +196,25 @@ def rows(system: System, probe: Probe, stepped: State, eps: float = EPS) -> list
         wrong = not all(share <= 1.0 for share in shares.values())
         factor = _common_factor(found) if wrong else None
         return [
-            within(GATE, channel, METRIC, share, "1", 1.0, _note(found[channel], factor))
+            within(
+                GATE,
+                channel,
+                METRIC,
+                share,
+                "1",
+                1.0,
+                _note(found[channel], factor, ladder_of(eps).digits),
+            )
             for channel, share in shares.items()
         ]
 
 
-def _note(limit: Limit, factor: float | None) -> str:
+def _note(limit: Limit, factor: float | None, digits: int) -> str:
     if factor == 0.0:
         return "a run of one step does not move"
     if factor is not None:
-        return f"steps are {100 * abs(factor - 1.0):.4g} % too {'long' if factor > 1 else 'short'}"
+        off = f"{100 * abs(factor - 1.0):.{digits}g} %"
+        return f"steps are {off} too {'long' if factor > 1 else 'short'}"
     return (
         f"as the step vanishes, its rate is not the equation's: the relative error is "
         f"{limit.off:.1e}"
