@@ -32,6 +32,7 @@ from omegadot.reference_impl.system import Array, State, System
 
 GATE = "scheme"
 METRIC = "rate_at_no_step"
+UNDETERMINED = "not judged: in this precision the inverse of the inertia has no digit"
 PROBES = 6  # of the random states, and as many along the exact trajectory
 
 
@@ -189,22 +190,22 @@ def _common_factor(found: dict[str, Limit]) -> float | None:
 
 
 def rows(system: System, probe: Probe, stepped: State, eps: float = EPS) -> list[Row]:
-    """Per channel, how far the steps' own rate is from the equation's, in parts of its bound."""
+    """Per channel, how far the steps' own rate is from the equation's, in parts of its bound.
+
+    Where ``64 eps J / lambda`` reaches one, rounding leaves no digit of the inertia's inverse.
+    """
+    scale, digits = body_scale(system), ladder_of(eps).digits
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
         found = limits(system, probe, stepped, eps)
         shares = {channel: float(np.max(one.shares())) for channel, one in found.items()}
         wrong = not all(share <= 1.0 for share in shares.values())
         factor = _common_factor(found) if wrong else None
+        if wrong and ROUNDINGS_PER_EVALUATION * eps * scale.largest >= scale.smallest:
+            worst = max(shares, key=lambda channel: shares[channel])
+            return [Row(GATE, worst, METRIC, shares[worst], "1", 1.0, "info", UNDETERMINED)]
+        notes = {channel: _note(one, factor, digits) for channel, one in found.items()}
         return [
-            within(
-                GATE,
-                channel,
-                METRIC,
-                share,
-                "1",
-                1.0,
-                _note(found[channel], factor, ladder_of(eps).digits),
-            )
+            within(GATE, channel, METRIC, share, "1", 1.0, notes[channel])
             for channel, share in shares.items()
         ]
 

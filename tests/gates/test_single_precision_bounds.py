@@ -22,6 +22,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.scales import EPS, eps_of
 from omegadot.gates.truth import Truth
 from omegadot.gates.vanishing_step import DOUBLE, SINGLE, Probe, ladder_of, probe_of
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.system import Array, Body, Load, State, System
@@ -62,16 +63,30 @@ def test_rounding_and_floors_are_in_proportion_to_eps(truth: Truth) -> None:
     single = truth.in_precision("float32")
     assert single.in_precision("float64").yardstick.eps == EPS
     assert single.companions is truth.companions
-    assert vars(single.yardstick) == vars(truth.yardstick) | {"eps": SINGLES}
-    how = (0.25, np.arange(6.0), truth.growth)
-    double = truth.yardstick.round_off(*how)
-    found = single.yardstick.round_off(*how)
-    assert set(found) == set(CHANNELS)
-    for channel, bound in found.items():
-        np.testing.assert_array_equal(bound, RATIO * double[channel])
-    least, own = floors(truth), floors(single)
-    for channel, values in own.items():
+    own = {"eps": SINGLES, "per_rounding": single.yardstick.per_rounding}
+    assert vars(single.yardstick) == vars(truth.yardstick) | own
+    least = floors(truth)
+    for channel, values in floors(single).items():
         np.testing.assert_allclose(values, RATIO * least[channel], rtol=8 * EPS)
+
+
+def test_rounding_of_a_run_is_in_proportion_to_eps_and_that_of_its_momentum() -> None:
+    ball = System((Body(np.array(2.0), np.zeros(3), 2.0 * np.eye(3)),))
+    how = (0.25, np.arange(6.0), np.linspace(1.0, 7.0, 6))
+    round_ball, bar = (Yardstick(system, TIMES, STATES) for system in (ball, SYSTEM))
+    double, single = (round_ball.with_eps(eps).round_off(*how) for eps in (EPS, SINGLES))
+    assert set(single) == set(CHANNELS)
+    for channel, bound in single.items():
+        np.testing.assert_array_equal(bound, RATIO * double[channel])
+    inertia = moving_inertia(SYSTEM)
+    spin = np.max(np.linalg.norm(SPIN @ inertia, axis=-1)) / np.linalg.eigvalsh(inertia)[0]
+    found = bar.with_eps(SINGLES)
+    assert found.per_rounding > 1.0
+    assert found.per_rounding == pytest.approx(spin / bar.rate)
+    each = found.per_rounding + 0.25 * bar.acceleration / bar.rate
+    expected = 16 * SINGLES * (how[1] + 1.0) * each * how[2]
+    np.testing.assert_allclose(found.round_off(*how)["attitude"], expected, rtol=8 * EPS)
+    assert found.with_eps(EPS).per_rounding == 1.0
 
 
 def gate_rows(eps: float) -> dict[str, list[Row]]:
@@ -160,6 +175,22 @@ def test_what_the_limit_leaves_open_is_little(eps: float, part: float, fault: fl
     assert np.all(np.min(found.bound, axis=0) < part * np.linalg.norm(true.angular, axis=-1))
     wrong = vanishing_step.limits(SYSTEM, probe, stepped((1 + fault) * true.angular), eps)["omega"]
     assert np.min(wrong.shares()) > 1.0
+
+
+def test_no_limit_is_sought_where_the_inverse_of_the_inertia_has_no_digit() -> None:
+    def verdicts(least: float, eps: float) -> set[str]:
+        body = Body(np.array(1.0), np.zeros(3), np.diag([1.0, 1.0, least]))
+        system = System((body,))
+        states = SimpleNamespace(random=STATES, path=STATES)
+        probe = probe_of(system, states, eps)  # type: ignore[arg-type]
+        stays = State(
+            *(v[:, None] + 0 * probe.timesteps[..., None] for v in vars(probe.states).values())
+        )
+        return {row.verdict for row in vanishing_step.rows(system, probe, stays, eps)}
+
+    assert "fail" in verdicts(65 * SINGLES, SINGLES)
+    assert verdicts(63 * SINGLES, SINGLES) == {"info"}
+    assert "fail" in verdicts(63 * SINGLES, EPS)
 
 
 def sweep_of_errors(*errors: float, bound: float = 1e-3) -> list[MeasuredRun]:

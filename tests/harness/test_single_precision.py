@@ -17,6 +17,7 @@ from single_engines import (
     DeclaredEuler,
     Single,
     SingleEuler,
+    SingleMomentum,
     SingleRodrigues,
     StoredSingle,
     declared_double,
@@ -34,7 +35,7 @@ from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.scenarios import scenario
 
-SOUND = (Single, SingleEuler, DeclaredEuler, StoredSingle, SingleRodrigues)
+SOUND = (Single, SingleEuler, DeclaredEuler, StoredSingle, SingleMomentum, SingleRodrigues)
 EULER = (SingleEuler, DeclaredEuler, StoredSingle)
 POOL = Pool(0)
 AXES = rotation_matrix(np.array([0.5, 0.1, -0.7, 0.5]))
@@ -54,6 +55,10 @@ CASES: dict[str, Any] = {
         },
     },
     "pivoted": {"initial": TURN, "load": {"gravity": DOWN, "pivot": [-0.3, 0.2, 0.1]}},
+    "slender": {
+        "initial": TURN,
+        "body": {"mass": 1.7, "inertia": [[1.0, 0.0, 0.0], [0.0, 0.5, 0.49], [0.0, 0.49, 0.5]]},
+    },
     # 10 km away, where a millimetre is an ulp
     "far": {
         "initial": TURN | {"position": [1e4, -2e3, 5e3], "linear_velocity": [30.0, 1.0, -4.0]},

@@ -164,9 +164,12 @@ class SingleEuler(Single):
 
     order = 1
 
+    def turned_on(self, q: Floats, w: Floats, h: np.floating) -> Floats:
+        return w + h * self.angular(q, w)
+
     def step(self, y: Floats, h: np.floating) -> Floats:
         q, w, x, v = np.split(y, (-9, -6, -3))
-        w = w + h * self.angular(q, w)
+        w = self.turned_on(q, w, h)
         half = h * w / 2
         angle = np.sqrt(half @ half)
         part = half * (np.sin(angle) / angle if angle else 1)
@@ -179,6 +182,15 @@ class DeclaredEuler(SingleEuler):
     """The same, with its scheme declared: the reference's run of it is in double."""
 
     declared = "semi-implicit-euler"
+
+
+class SingleMomentum(SingleEuler):
+    """The angular momentum is what is stepped and rounded; omega follows from it."""
+
+    def turned_on(self, q: Floats, w: Floats, h: np.floating) -> Floats:
+        momentum = w @ self.inertia
+        torque = sum(self.forces(q)) - self.d * w - cross(w, momentum)
+        return (momentum + h * torque) @ self.inverse
 
 
 class StoredSingle(SingleEuler):
