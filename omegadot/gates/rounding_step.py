@@ -11,12 +11,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from omegadot.gates.measured_run import ROTATION, Declared, MeasuredRun, saturates
+from omegadot.gates.measured_run import ROTATION, Declared, MeasuredRun
 from omegadot.gates.rows import Row
 from omegadot.gates.scales import EPS
 
 GATE = "scheme"
 METRIC = "rounding_step"
+SATURATED = 0.5  # rad, or of the rate: beyond it an error is no power of the step
 
 
 def rows(measured_runs: Sequence[MeasuredRun], declared: Declared, eps: float) -> list[Row]:
@@ -32,7 +33,7 @@ def _row(measured_runs: Sequence[MeasuredRun], channel: str, order: int | None) 
 
     Its bound takes for e_f the round-off bound of the coarsest run: the step is that long at most.
     """
-    unsaturated = [run for run in measured_runs if not saturates(run)]
+    unsaturated = [run for run in measured_runs if np.max(run.error[channel]) <= SATURATED]
     finest_first = sorted(unsaturated, key=lambda run: run.sweep.timestep)
     steps = [run.sweep.timestep for run in finest_first]
     errors = [float(np.max(run.error[channel])) for run in finest_first]
