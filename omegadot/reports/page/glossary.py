@@ -82,9 +82,9 @@ the difference of its time from the exact one.
 = s
 
 floor
-How far a perfect answer in double precision may be from the exact solution (in single precision 2^29
-times as far), because the inputs are rounded and the motion magnifies that. An error below the floor
-is not judged.
+How far a perfect answer in double precision may be from the exact solution (in single precision
+2^29 times as far), because the inputs are rounded and the motion magnifies that. An error below the
+floor is not judged.
 = same unit as the error: rad, rad/s, m, or relative
 
 gate (gates)
