@@ -66,6 +66,7 @@ class Integrator:
 class Description:
     """What an engine is.
 
+    precision: of the numbers that it keeps and computes with, by which rounding is judged.
     conventions: how the engine itself keeps states (frames, orders), one clause each.
     switched_off: defaults that disturb the motion and were turned off for the ``physics`` setup.
     features: what it can do, of "free", "pivot", "gravity", "damping", "torque", "full_inertia",

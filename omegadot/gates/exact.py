@@ -15,7 +15,6 @@ from omegadot.gates.case import Case, Sweep
 from omegadot.gates.measured_run import MeasuredRun
 from omegadot.gates.measures import INVARIANT_CHANNELS
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import EPS
 from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
 from omegadot.reference_impl.motion import forward_dynamics
@@ -41,15 +40,16 @@ def floors(truth: Truth) -> dict[str, Array]:
     invariants as rounding's does (`Yardstick.round_off`), velocities and positions being off by
     one rounding; omega-dot by its derivatives in omega and in the attitude.
     """
-    yardstick, omega, attitude = truth.yardstick, truth.floor["omega"], truth.floor["attitude"]
+    yardstick, eps = truth.yardstick, truth.yardstick.eps
+    omega, attitude = truth.floor["omega"], truth.floor["attitude"]
     by_omega, by_attitude = slopes(yardstick.system, truth.state, yardstick.rate)
     theta = np.maximum(omega, attitude)
-    speed = EPS * yardstick.speed + theta * yardstick.rate * yardstick.scale.lever
-    reach = EPS * yardstick.reach + theta * yardstick.scale.lever
+    speed = eps * yardstick.speed + theta * yardstick.rate * yardstick.scale.lever
+    reach = eps * yardstick.reach + theta * yardstick.scale.lever
     return {
         **truth.floor,
-        "omega_dot": by_omega * yardstick.rate * (omega + EPS) + by_attitude * (attitude + EPS),
-        **yardstick.invariant_round_off(theta + EPS, speed, reach),
+        "omega_dot": by_omega * yardstick.rate * (omega + eps) + by_attitude * (attitude + eps),
+        **yardstick.invariant_round_off(theta + eps, speed, reach),
     }
 
 

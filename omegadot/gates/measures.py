@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from omegadot.gates.scales import EPS, ROUNDINGS_PER_STEP, BodyScale, angular_size, body_scale, norm
 from omegadot.reference_impl.energy import kinetic_energy, total_energy
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, State, System
 
 TRAJECTORY_UNITS = {"omega": "1", "attitude": "rad", "position": "m"}
@@ -19,11 +23,13 @@ class Yardstick:
     """The sizes of one exact motion, against which its imitations are measured.
 
     rate: rad/s, the greatest |omega|; where the body never turns, the rate that its greatest
-    omega-dot would reach over the motion.
+    omega-dot would reach over the motion.  eps: that of the precision which the imitations are
+    computed in.  per_rounding: by how much omega turns, relative, where what is stepped is off by
+    one part.
     """
 
     def __init__(self, system: System, times: Array, exact: State) -> None:
-        self.system = system
+        self.system, self.eps, self.per_rounding = system, EPS, 1.0
         self.scale: BodyScale = body_scale(system)
         acceleration = forward_dynamics(system, exact)
         self.acceleration = float(np.max(angular_size(system, exact, acceleration)))
@@ -37,6 +43,8 @@ class Yardstick:
         turning = float(np.max(norm(angular_momentum(system, exact))))
         moving = float(np.max(norm(linear_momentum(system, exact))))
         smallest, mass = self.scale.smallest, self.scale.mass
+        spin = norm(apply(moving_inertia(system), exact.angular_velocity))
+        self._momentum = max(1.0, float(np.max(spin)) / (smallest * self.rate))
         gyration = float(np.sqrt(float(np.trace(system.body.inertia)) / mass))
         self.sizes = {
             "energy": kinetic or 0.5 * smallest * self.rate**2,
@@ -44,6 +52,16 @@ class Yardstick:
             # a body that stays in place has that of its turning
             "linear_momentum": moving or mass * self.rate * gyration,
         }
+
+    def with_eps(self, eps: float) -> Yardstick:
+        """The same sizes for imitations in another precision.
+
+        In single precision the rounding of every step shows, and what is stepped may be the angular
+        momentum: omega is then off by ``|J omega| / lambda``, lambda J's least eigenvalue.
+        """
+        other = copy(self)
+        other.eps, other.per_rounding = eps, self._momentum if eps > EPS else 1.0
+        return other
 
     def distance(self, channel: str, one: State, other: State) -> Array:
         """(n,): |one - other| in this channel.
@@ -79,15 +97,16 @@ class Yardstick:
     ) -> dict[str, Array]:
         """(n,) per channel: how far rounding may take a sound engine after so many steps.
 
-        Each step adds ``c eps (1 + h A / rate)`` (A the greatest size of omega-dot, so that an
-        ill-conditioned inertia counts), and what was added earlier grows by at most `growth`:
-        ``theta = c eps (n + 1) (1 + h A / rate) growth``, for attitude in rad and for
-        omega / rate alike. The others follow from it to first order; a velocity that is kept in
+        Each step adds ``c eps (k + h A / rate)`` (k is `per_rounding`, and A the greatest size of
+        omega-dot, so that an ill-conditioned inertia counts), and what was added earlier grows by
+        at most `growth`: ``theta = c eps (n + 1) (k + h A / rate) growth``, for attitude in rad and
+        for omega / rate alike. The others follow from it to first order; a velocity that is kept in
         body axes is turned by theta. faster: of a scheme whose velocity grows beyond the exact one,
         and rounding with it, see `faster`; ``m |v|^2`` may be among the terms of omega-dot.
         """
-        amount = ROUNDINGS_PER_STEP * EPS * (steps + 1.0)
-        theta = amount * (1.0 + timestep * self.acceleration * faster**2 / self.rate) * growth
+        amount = ROUNDINGS_PER_STEP * self.eps * (steps + 1.0)
+        turning = timestep * self.acceleration * faster**2 / self.rate
+        theta = amount * (self.per_rounding + turning) * growth
         time = timestep * steps
         swift = self.speed * faster
         speed = amount * (swift + self.gravity * time) + theta * self.rate * self.scale.lever

@@ -24,7 +24,7 @@ def _spectral_norm(matrix: Array) -> float:
     return float(np.linalg.norm(matrix, 2)) if np.all(np.isfinite(matrix)) else float("nan")
 
 
-def body_rows(case: Case, body: Body) -> list[Row]:
+def body_rows(case: Case, body: Body, eps: float = EPS) -> list[Row]:
     """Mass, centre of mass and inertia read back, against what was requested.
 
     The inertia's bound counts an eigendecomposition and its inverse, at the size of the tensor.
@@ -35,13 +35,13 @@ def body_rows(case: Case, body: Body) -> list[Row]:
     size = _spectral_norm(requested.inertia)
     inertia = _spectral_norm(np.asarray(body.inertia) - requested.inertia) / size
     return [
-        within(GATE, "model", "mass", mass, "1", ROUNDINGS * EPS),
-        within(GATE, "model", "center_of_mass", offset, "m", ROUNDINGS * EPS * scale.lever),
-        within(GATE, "model", "inertia", inertia, "1", ROUNDINGS_PER_EVALUATION * EPS),
+        within(GATE, "model", "mass", mass, "1", ROUNDINGS * eps),
+        within(GATE, "model", "center_of_mass", offset, "m", ROUNDINGS * eps * scale.lever),
+        within(GATE, "model", "inertia", inertia, "1", ROUNDINGS_PER_EVALUATION * eps),
     ]
 
 
-def state_rows(case: Case, requested: State, back: State) -> list[Row]:
+def state_rows(case: Case, requested: State, back: State, eps: float = EPS) -> list[Row]:
     """A state after a round trip through the engine, against what went in."""
     lever = body_scale(case.system).lever
     rate, reach = norm(requested.angular_velocity), norm(requested.position) + lever
@@ -56,6 +56,6 @@ def state_rows(case: Case, requested: State, back: State) -> list[Row]:
         "linear_momentum": (norm(back.linear_velocity - requested.linear_velocity), "m/s", speed),
     }
     return [
-        within(GATE, channel, "state", _largest(value), unit, ROUNDINGS * EPS * _largest(size))
+        within(GATE, channel, "state", _largest(value), unit, ROUNDINGS * eps * _largest(size))
         for channel, (value, unit, size) in values.items()
     ]

@@ -137,7 +137,7 @@ def rows(truth: Truth, measured: MeasuredRun, state: State) -> list[Row]:
     times, omega_dot = truth.times[place], truth.omega_dot[place]
     exact = Hermite(times, truth.state.angular_velocity[place], omega_dot)
     rate, bounds = truth.yardstick.rate, measured.round_off["omega"]
-    rounding = rate * float(np.max(bounds[np.isfinite(bounds)], initial=EPS))
+    rounding = rate * float(np.max(bounds[np.isfinite(bounds)], initial=truth.yardstick.eps))
     change = float(np.sqrt(np.mean(np.sum(omega_dot**2, axis=-1))))
     if len(times) < 5 or not change * float(times[-1]) > rounding:
         return []

@@ -22,6 +22,15 @@ ROUNDINGS_PER_EVALUATION = 64
 ROUNDINGS_PER_STEP = 16
 
 
+def eps_of(precision: str) -> float:
+    """From 1 to the next number of "float64" (2^-52) or "float32" (2^-23): what rounding counts in.
+
+    A number that is rounded on its way into an engine, or at the end of a step, is off by half of
+    it. Every bound here is in proportion to it.
+    """
+    return float(np.finfo(np.dtype(precision)).eps)
+
+
 def norm(vectors: Array) -> Array:
     """Euclidean length over the last axis, (..., n) to (...)."""
     length: Array = np.sqrt(np.sum(vectors * vectors, axis=-1))

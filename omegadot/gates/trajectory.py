@@ -24,14 +24,17 @@ from omegadot.reference_impl.system import Array, State, System
 GATE = "trajectory"
 
 
-def time_row(sweep: Sweep, times: Array) -> Row:
-    """Whether the samples stand at the engine's own steps: n times the step, none missing."""
+def time_row(sweep: Sweep, times: Array, eps: float = EPS) -> Row:
+    """Whether the samples stand at the engine's own steps: n times the step, none missing.
+
+    The step is rounded to the engine's numbers, and so is its product with n: an eps of the time.
+    """
     expected = sweep.times
     if len(times) != len(expected):
         note = f"{len(times)} samples came back, {len(expected)} were requested"
         return Row(GATE, "time", "sample_times", float("inf"), "s", 0.0, "fail", note)
     late = float(np.max(np.abs(times - expected)))
-    return within(GATE, "time", "sample_times", late, "s", 2 * EPS * float(expected[-1]))
+    return within(GATE, "time", "sample_times", late, "s", 2 * eps * float(expected[-1]))
 
 
 def rows(measured: MeasuredRun, findings: dict[str, Finding]) -> list[Row]:
@@ -52,7 +55,7 @@ def rows(measured: MeasuredRun, findings: dict[str, Finding]) -> list[Row]:
 
 def reported_rows(truth: Truth, measured: MeasuredRun, state: State, precision: str) -> list[Row]:
     """The start, the quaternion's length and, where it is found, single precision."""
-    found = [_start(measured), _length(measured.sweep, state)]
+    found = [_start(measured), _length(measured.sweep, state, truth.yardstick.eps)]
     if precision == "float64" and _is_single(state, truth.at(measured.sweep)):
         note = "the state is kept in single precision, and double is declared"
         eps = float(np.finfo(np.float32).eps)
@@ -60,9 +63,10 @@ def reported_rows(truth: Truth, measured: MeasuredRun, state: State, precision: 
     return found
 
 
-def omega_dot_rows(system: System, state: State, omega_dot: Array) -> list[Row]:
+def omega_dot_rows(system: System, state: State, omega_dot: Array, eps: float = EPS) -> list[Row]:
     """The omega-dot reported along a run, held to the equation's bound at the states it reports."""
-    found = [replace(row, gate=GATE) for row in equation.reported_rows(system, state, omega_dot)]
+    rows_of = equation.reported_rows(system, state, omega_dot, eps)
+    found = [replace(row, gate=GATE) for row in rows_of]
     note = "the omega-dot reported along the run is not that of its states"
     return [replace(row, note=note) if row.verdict == "fail" else row for row in found]
 
@@ -79,10 +83,10 @@ def _start(measured: MeasuredRun) -> Row:
     return within(GATE, worst, "start", float(shares[worst]), "1", 1.0, note)
 
 
-def _length(sweep: Sweep, state: State) -> Row:
+def _length(sweep: Sweep, state: State, eps: float) -> Row:
     """How far a quaternion is from unit length; each step may round it by ``16 eps``."""
     off = np.abs(norm(state.orientation) - 1.0)
-    allowed = ROUNDINGS_PER_STEP * EPS * (sweep.sample_steps + 1.0)
+    allowed = ROUNDINGS_PER_STEP * eps * (sweep.sample_steps + 1.0)
     place = int(np.argmax(off / allowed))
     worst, bound = float(off[place]), float(allowed[place])
     note = f"the quaternion is not of unit length: it is off by {worst:.1e}"

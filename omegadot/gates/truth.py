@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Sweep
 from omegadot.gates.measures import Yardstick
+from omegadot.gates.scales import eps_of
 from omegadot.reference_impl.coordinates import Coordinates, canonical
 from omegadot.reference_impl.system import Array, State, System
 
@@ -43,8 +44,8 @@ class Truth:
     """The exact solution of one case.
 
     source: "closed-form" or "series".  growth: (n,), of rounding along the exact trajectory.
-    floor: (n,) per channel, how far a perfect answer in double may be off: omega relative to the
-    yardstick's rate, attitude in rad.
+    floor: (n,) per channel, how far a perfect answer in the yardstick's precision may be off: omega
+    relative to the yardstick's rate, attitude in rad.
     """
 
     source: str
@@ -55,6 +56,20 @@ class Truth:
     floor: dict[str, Array]
     yardstick: Yardstick
     companions: dict[tuple[SchemeKey, float], Companion] = field(default_factory=dict)
+
+    def in_precision(self, precision: str) -> Truth:
+        """What an engine is held against that computes in "float64" or "float32".
+
+        The exact motion and the companions are in double all the same. Rounding and floor are in
+        proportion to eps, to first order: the start is rounded to the engine's numbers, and so are
+        mass, inertia, centre of mass, loads and the step.
+        """
+        eps = eps_of(precision)
+        if eps == self.yardstick.eps:
+            return self
+        ratio = eps / self.yardstick.eps
+        floor = {channel: ratio * values for channel, values in self.floor.items()}
+        return replace(self, floor=floor, yardstick=self.yardstick.with_eps(eps))
 
     def rows(self, sweep: Sweep) -> NDArray[np.intp]:
         """Where the samples of one sweep are among the times."""

@@ -32,13 +32,40 @@ from omegadot.reference_impl.system import Array, State, System
 
 GATE = "scheme"
 METRIC = "rate_at_no_step"
+UNDETERMINED = "not judged: in this precision the inverse of the inertia has no digit"
 PROBES = 6  # of the random states, and as many along the exact trajectory
-# Of five steps, what is left is about the longest's radians to the fifth power over 2^10.
-RADIANS = 2.0**-7
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Halved steps: the radians r of the longest, and the ranges of five that give a limit each.
+
+    Relative to a rate, five steps leave about ``r^5 / 2^10`` of the scheme's own terms, and
+    ``80 * 16 eps / r`` of rounding. The two are equal at 0.026 rad in double and at 0.73 rad in
+    single precision, and a part of that is taken.
+    digits: those of a step's length that rounding leaves certain.
+    """
+
+    radians: float
+    ranges: tuple[slice, ...]
+    digits: int
+
+    @property
+    def count(self) -> int:
+        """How many steps there are."""
+        return int(self.ranges[-1].stop)
+
+
 # A scheme may take short turns by a shorter formula, which breaks the smoothness at one length of
 # step. Such a break lies in one of two ranges of steps only, and a fault shows in both.
-RANGES = (slice(0, 5), slice(4, 9))
-STEPS = 9
+DOUBLE = Ladder(2.0**-7, (slice(0, 5), slice(4, 9)), 4)
+# Shorter steps are hidden by rounding here, and so is the break of a formula that is sound.
+SINGLE = Ladder(2.0**-1, (slice(0, 5),), 2)
+
+
+def ladder_of(eps: float) -> Ladder:
+    """The steps for engines of this precision."""
+    return DOUBLE if eps <= EPS else SINGLE
 
 
 @dataclass(frozen=True)
@@ -49,8 +76,8 @@ class Probe:
     timesteps: Array
 
 
-def probe_of(system: System, evaluation_states: EvaluationStates) -> Probe:
-    """States to step from, (m,), and steps (m, 9) s, short against all that goes on there."""
+def probe_of(system: System, evaluation_states: EvaluationStates, eps: float = EPS) -> Probe:
+    """States to step from, (m,), and steps (m, k) s, short against all that goes on there."""
     count = len(evaluation_states.path.angular_velocity)
     along = np.unique(np.linspace(0, count - 1, PROBES).round().astype(int))
     random, path = vars(evaluation_states.random), vars(evaluation_states.path)
@@ -60,8 +87,9 @@ def probe_of(system: System, evaluation_states: EvaluationStates) -> Probe:
     w_dot, jacobian = acceleration_and_jacobian(attitude_motion(system), *turning)
     slopes = np.max(np.abs(jacobian), axis=(-1, -2))
     rate = np.maximum.reduce((norm(states.angular_velocity), np.sqrt(norm(w_dot)), slopes))
-    longest = RADIANS / np.where(rate > 0.0, rate, 1.0)
-    return Probe(states, longest[:, None] / 2.0 ** np.arange(STEPS))
+    ladder = ladder_of(eps)
+    longest = ladder.radians / np.where(rate > 0.0, rate, 1.0)
+    return Probe(states, longest[:, None] / 2.0 ** np.arange(ladder.count))
 
 
 def _extrapolants(quotients: Array) -> tuple[Array, Array, Array]:
@@ -79,9 +107,9 @@ _AMPLIFIED = float(np.sum(_WEIGHTS))  # what the extrapolation makes of rounding
 
 @dataclass(frozen=True)
 class Limit:
-    """One quantity's rate at no step by each range of steps, (2, m, 3), and the equation's (m, 3).
+    """One quantity's rate at no step by each range of steps, (r, m, 3), and the equation's (m, 3).
 
-    bound: (2, m), how far the extrapolants differ, and what rounding makes of it. Where they
+    bound: (r, m), how far the extrapolants differ, and what rounding makes of it. Where they
     converge, the difference of two is the error of the worse.
     """
 
@@ -105,8 +133,8 @@ class Limit:
         return float(apart / max(float(norm(self.expected[place])), float(np.finfo(float).tiny)))
 
 
-def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
-    """The rates at no step by channel. stepped: (m, 9, ...), the states after one step each.
+def limits(system: System, probe: Probe, stepped: State, eps: float = EPS) -> dict[str, Limit]:
+    """The rates at no step by channel. stepped: (m, k, ...), the states after one step each.
 
     A step rounds what it steps by ``16 eps``, which is divided by the step. What it steps may be
     the angular momentum: omega is then rounded by ``16 eps |J omega| / lambda``, J the inertia and
@@ -119,14 +147,14 @@ def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
     w, v, lever = states.angular_velocity, states.linear_velocity, scale.lever
     spinning = norm(apply(moving_inertia(system), w)) / scale.smallest
     moving = norm(v) + lever * spinning
-    step, evaluation = ROUNDINGS_PER_STEP * EPS, ROUNDINGS_PER_EVALUATION * EPS
+    step, evaluation = ROUNDINGS_PER_STEP * eps, ROUNDINGS_PER_EVALUATION * eps
     of_omega = evaluation * angular_size(system, states, true)
     of_velocity = evaluation * linear_size(system, states, true)
     turn = rotation_between(before.orientation, stepped.orientation)
     spin = stepped.angular_velocity - before.angular_velocity
     way, push = stepped.position - before.position, stepped.linear_velocity - before.linear_velocity
     # Turns much shorter than this are taken by their series, which is no turn about an axis.
-    least_turn = EPS**0.25 / h[:, 0]
+    least_turn = eps**0.25 / h[:, 0]
     place = norm(states.position) + lever + norm(v) / np.maximum(norm(w), least_turn)
     parts = {  # what changes, its rate, and the roundings of what is stepped and of the rate
         "attitude": (turn, w, step * np.ones(len(w)), step * spinning),
@@ -134,12 +162,20 @@ def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
         "position": (way, v, step * place, step * moving),
         "linear_momentum": (push, true.linear, step * moving, of_velocity),
     }
-    return {channel: _limit(h, *part) for channel, part in parts.items()}
+    ranges = ladder_of(eps).ranges
+    return {channel: _limit(ranges, h, *part) for channel, part in parts.items()}
 
 
-def _limit(h: Array, change: Array, expected: Array, rounding: Array, per_rate: Array) -> Limit:
+def _limit(
+    ranges: tuple[slice, ...],
+    h: Array,
+    change: Array,
+    expected: Array,
+    rounding: Array,
+    per_rate: Array,
+) -> Limit:
     found, bounds = [], []
-    for steps in RANGES:
+    for steps in ranges:
         best, worse, worst = _extrapolants(change[:, steps] / h[:, steps, None])
         rounded = rounding * np.sum(_WEIGHTS / h[:, steps], axis=-1)
         found.append(best)
@@ -157,24 +193,33 @@ def _common_factor(found: dict[str, Limit]) -> float | None:
     return factor if all(np.all(one.shares(factor) <= 1.0) for one in found.values()) else None
 
 
-def rows(system: System, probe: Probe, stepped: State) -> list[Row]:
-    """Per channel, how far the steps' own rate is from the equation's, in parts of its bound."""
+def rows(system: System, probe: Probe, stepped: State, eps: float = EPS) -> list[Row]:
+    """Per channel, how far the steps' own rate is from the equation's, in parts of its bound.
+
+    Where ``64 eps J / lambda`` reaches one, rounding leaves no digit of the inertia's inverse.
+    """
+    scale, digits = body_scale(system), ladder_of(eps).digits
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-        found = limits(system, probe, stepped)
+        found = limits(system, probe, stepped, eps)
         shares = {channel: float(np.max(one.shares())) for channel, one in found.items()}
         wrong = not all(share <= 1.0 for share in shares.values())
         factor = _common_factor(found) if wrong else None
+        if wrong and ROUNDINGS_PER_EVALUATION * eps * scale.largest >= scale.smallest:
+            worst = max(shares, key=lambda channel: shares[channel])
+            return [Row(GATE, worst, METRIC, shares[worst], "1", 1.0, "info", UNDETERMINED)]
+        notes = {channel: _note(one, factor, digits) for channel, one in found.items()}
         return [
-            within(GATE, channel, METRIC, share, "1", 1.0, _note(found[channel], factor))
+            within(GATE, channel, METRIC, share, "1", 1.0, notes[channel])
             for channel, share in shares.items()
         ]
 
 
-def _note(limit: Limit, factor: float | None) -> str:
+def _note(limit: Limit, factor: float | None, digits: int) -> str:
     if factor == 0.0:
         return "a run of one step does not move"
     if factor is not None:
-        return f"steps are {100 * abs(factor - 1.0):.4g} % too {'long' if factor > 1 else 'short'}"
+        off = f"{100 * abs(factor - 1.0):.{digits}g} %"
+        return f"steps are {off} too {'long' if factor > 1 else 'short'}"
     return (
         f"as the step vanishes, its rate is not the equation's: the relative error is "
         f"{limit.off:.1e}"

@@ -8,11 +8,21 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import cost, equation, invariants, model, phase, scheme, trajectory
+from omegadot.gates import (
+    cost,
+    equation,
+    invariants,
+    model,
+    phase,
+    rounding_step,
+    scheme,
+    trajectory,
+)
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
 from omegadot.gates.rows import Row
+from omegadot.gates.scales import eps_of
 from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
 from omegadot.harness.drive import CaseResult
@@ -39,11 +49,12 @@ class JudgedRun:
 def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[Row]:
     """The rows that belong to engine and scenario, whatever the integrator."""
     rows: list[Row] = []
+    eps = eps_of(result.precision)
     if result.model.ok:
         found = result.model.result
         for body in found["bodies"]:
-            rows += model.body_rows(case, body_from(body))
-        rows += model.state_rows(case, evaluation_states.random[0], State(**found["state"]))
+            rows += model.body_rows(case, body_from(body), eps)
+        rows += model.state_rows(case, evaluation_states.random[0], State(**found["state"]), eps)
     random = evaluation_states.random
     named = {
         "residual": (result.forward, random),
@@ -54,7 +65,7 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
     for metric, (answer, states) in named.items():
         if answer.ok:
             acceleration = Acceleration(**answer.result)
-            rows += equation.forward_rows(case.system, states, acceleration, metric)
+            rows += equation.forward_rows(case.system, states, acceleration, metric, eps)
     for metric, answer, count in (
         ("residual", result.inverse, None),
         ("residual_alone", result.inverse_alone, 1),
@@ -62,7 +73,7 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
         if answer.ok:
             states, acceleration = random[:count], evaluation_states.acceleration[:count]
             torque = answer.result["torque"]
-            rows += equation.inverse_rows(case.system, states, acceleration, torque, metric)
+            rows += equation.inverse_rows(case.system, states, acceleration, torque, metric, eps)
     return rows
 
 
@@ -105,6 +116,7 @@ def _diverged(
     answer: Answer,
     measured: MeasuredRun,
     findings: dict[str, Finding],
+    eps: float,
 ) -> JudgedRun:
     """A run whose state ceases to be finite; what its scheme does as well is not judged."""
     finite = np.isfinite(measured.saturating_error) & np.isfinite(answer.result["time"])
@@ -113,18 +125,18 @@ def _diverged(
     note = f"the state is not finite{when}"
     worst = min(findings.values(), key=lambda f: _FINDINGS.index(f.kind))
     rows = [
-        trajectory.time_row(sweep, answer.result["time"]),
+        trajectory.time_row(sweep, answer.result["time"], eps),
         Row("trajectory", "omega", "error_max", float("nan"), "1", None, worst.verdict, worst.note),
     ]
     why = note if worst.verdict == "fail" else worst.note
     return JudgedRun(integrator, sweep, "diverged", note, rows, why, worst.open)
 
 
-def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
+def _failed(integrator: Integrator, sweep: Sweep, answer: Answer, eps: float) -> JudgedRun:
     """A task without a trajectory to measure: its outcome, and the verdict on its times."""
     if not answer.ok:
         return JudgedRun(integrator, sweep, answer.outcome, answer.reason)
-    rows = [trajectory.time_row(sweep, answer.result["time"])]
+    rows = [trajectory.time_row(sweep, answer.result["time"], eps)]
     return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
 
 
@@ -138,33 +150,33 @@ def _judge_integrator(
     """Judge every step size of one integrator; finer ones only serve to see its order."""
     answers = [(sweep, result.runs[integrator.name, sweep.timestep]) for sweep in sweeps]
     measured_runs = _measured_runs(truth, integrator, [*answers, *finer])
-    system = truth.yardstick.system
+    system, eps = truth.yardstick.system, truth.yardstick.eps
     declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
-    seen = scheme.orders_seen(known)
+    seen, grows = scheme.orders_seen(known), rounding_step.rows(known, declared, eps)
     for sweep, answer in answers:
         measured = measured_runs.get(sweep.timestep)
         if measured is None:
-            yield _failed(integrator, sweep, answer)
+            yield _failed(integrator, sweep, answer, eps)
             continue
         state = State(**answer.result["state"])
         findings = findings_of(measured, declared, known)
         if not is_finite(state):
-            yield _diverged(integrator, sweep, answer, measured, findings)
+            yield _diverged(integrator, sweep, answer, measured, findings, eps)
             continue
         match = scheme.match_row(truth, integrator, measured, state, known)
         unknown = rows_of_probes(truth, integrator, sweep, result)
-        rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
+        rows = [match, *scheme.order_rows(seen, declared, measured), *grows, *unknown]
         misreported = trajectory.reported_rows(truth, measured, state, result.precision)
-        misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
+        misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"], eps)
         misreported += rows_again(truth, integrator, sweep, result, measured)
         rows += invariants.rows(measured, findings, sweep.times)
-        rows.append(trajectory.time_row(sweep, answer.result["time"]))
+        rows.append(trajectory.time_row(sweep, answer.result["time"], eps))
         rows += [*misreported, *trajectory.rows(measured, findings)]
         rows += phase.rows(truth, measured, state)
         rows += cost.rows(sweep.timestep, answer.result["seconds_per_step"])
         broken = [row.note for row in (*misreported, match, *unknown) if row.verdict == "fail"]
-        why = broken[0] if broken else _why(findings)
+        why = broken[0] if broken else "; ".join([_why(findings), *(r.note for r in grows[:1])])
         unresolved = any(f.open for f in findings.values())
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
 
@@ -176,6 +188,7 @@ def judge_case(
     refinements: dict[str, dict[float, tuple[Sweep, Answer]]],
 ) -> list[JudgedRun]:
     """Judge every task of one engine on one scenario."""
+    truth = truth.in_precision(result.precision)
     return [
         judged
         for integrator in result.integrators

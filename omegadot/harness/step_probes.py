@@ -7,6 +7,7 @@ from omegadot.gates import restart, vanishing_step
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.rows import Row
+from omegadot.gates.scales import eps_of
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.reference_impl.schemes import SCHEMES
@@ -26,7 +27,7 @@ def probe_steps(
         runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue
-        probe = vanishing_step.probe_of(case.system, evaluation_states)
+        probe = vanishing_step.probe_of(case.system, evaluation_states, eps_of(result.precision))
         answer = driver.request(case, "first_steps", integrator=integrator.name, **vars(probe))
         result.first_steps[integrator.name] = (probe, answer)
         for sweep, run in runs.items() if integrator.scheme not in SCHEMES else ():
@@ -45,7 +46,8 @@ def rows_of_probes(
     found = []
     probe, steps = result.first_steps.get(integrator.name, (None, None))
     if probe is not None and steps is not None and steps.ok:
-        found += vanishing_step.rows(truth.yardstick.system, probe, State(**steps.result))
+        own, eps = truth.yardstick.system, truth.yardstick.eps
+        found += vanishing_step.rows(own, probe, State(**steps.result), eps)
     sample, restarted = result.restarts.get((integrator.name, sweep.timestep), (0, None))
     if restarted is not None and restarted.ok:
         state = State(**result.runs[integrator.name, sweep.timestep].result["state"])

@@ -97,7 +97,7 @@ def test_the_length_reported_is_that_of_the_worst_sample(prepared: Prepared) -> 
     q = np.tile([1.0, 0.0, 0.0, 0.0], (4, 1))
     q[2] *= 1.0 + 40 * EPS
     q[3] *= 1.0 + 44 * EPS  # farther off, and less so for the steps it took
-    row = _length(Sweep(0.1, 3, 1), State(q, *3 * [np.zeros((4, 3))]))
+    row = _length(Sweep(0.1, 3, 1), State(q, *3 * [np.zeros((4, 3))]), EPS)
     assert row.verdict == "pass"
     assert row.value == pytest.approx(40 * EPS, rel=0.02)
     assert row.bound == 16 * EPS * 3

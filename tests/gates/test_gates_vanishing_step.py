@@ -15,8 +15,7 @@ import pytest
 
 from omegadot.gates.scales import EPS
 from omegadot.gates.vanishing_step import (
-    RADIANS,
-    STEPS,
+    DOUBLE,
     Limit,
     Probe,
     _common_factor,
@@ -30,6 +29,7 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
+RADIANS, STEPS = DOUBLE.radians, DOUBLE.count
 UNIT = np.array([1.0, 0.0, 0.0, 0.0])
 
 

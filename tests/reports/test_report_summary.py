@@ -110,6 +110,14 @@ def test_versions_and_setups_are_columns_of_their_own(record):
     assert summary.cells["spun-again", summary.columns[2]].status == "absent"
 
 
+def test_engines_in_single_precision_are_marked(record):
+    engines = [
+        e | {"precision": "float32"} if e["name"] == "dart" else e for e in record.run["engines"]
+    ]
+    summary = summarise(replace(record, run={**record.run, "engines": engines}))
+    assert [column.engine for column in summary.columns if column.single] == ["dart"]
+
+
 def test_an_engine_that_is_not_installed_is_named(record):
     drake = {"name": "drake", "installed": False, "reason": "no module named pydrake"}
     run = {**record.run, "engines": [*record.run["engines"], drake]}

@@ -37,12 +37,16 @@ YARDSTICKS = ("exact", "reference")
 
 @dataclass(frozen=True)
 class Column:
-    """One engine in one version and one setup. label: the heading of its column."""
+    """One engine in one version and one setup. label: the heading of its column.
+
+    single: whether it computes in single precision, so that its bounds are wider.
+    """
 
     engine: str
     version: str
     setup: str
     label: str
+    single: bool = False
 
     @property
     def name(self) -> str:
@@ -116,7 +120,8 @@ def task_status(task: Mapping[str, Any]) -> str:
 def summarise(record: Record) -> Summary:
     """The matrix of scenarios and engines, the counts, and what did not run."""
     tasks = record.run["tasks"]
-    columns = _columns(tasks)
+    singles = {e["name"] for e in record.run["engines"] if e.get("precision") == "float32"}
+    columns = _columns(tasks, singles)
     named = [entry["name"] for entry in record.run["scenarios"]]
     scenarios = tuple(dict.fromkeys([*named, *(task["scenario"] for task in tasks)]))
     statuses: dict[Key, list[str]] = {}
@@ -152,7 +157,7 @@ def column_of(task: Mapping[str, Any]) -> tuple[str, str, str]:
     return task["engine"], task.get("engine_version") or "", task.get("setup") or "physics"
 
 
-def _columns(tasks: Iterable[Mapping[str, Any]]) -> tuple[Column, ...]:
+def _columns(tasks: Iterable[Mapping[str, Any]], singles: set[str]) -> tuple[Column, ...]:
     # The engines stand first: they are what the reader came for, and a phone shows two columns.
     keys = sorted(
         dict.fromkeys(column_of(task) for task in tasks), key=lambda k: k[0] in YARDSTICKS
@@ -161,7 +166,8 @@ def _columns(tasks: Iterable[Mapping[str, Any]]) -> tuple[Column, ...]:
     for engine, version, setup in keys:
         several = len({v for e, v, _ in keys if e == engine}) > 1
         label = f"{engine} {version}" if several else engine
-        columns.append(Column(engine, version, setup, label + (setup != "physics") * f" {setup}"))
+        label += (setup != "physics") * f" {setup}"
+        columns.append(Column(engine, version, setup, label, engine in singles))
     return tuple(columns)
 
 
