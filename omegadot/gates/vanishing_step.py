@@ -104,7 +104,17 @@ class Limit:
         return float(apart / max(float(norm(self.expected[place])), float(np.finfo(float).tiny)))
 
 
-def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
+@dataclass(frozen=True)
+class Tolerated:
+    """What an error-controlled integrator may be off, relative: in a run, and in each radian."""
+
+    in_a_run: float = 0.0
+    in_a_radian: float = 0.0
+
+
+def limits(
+    system: System, probe: Probe, stepped: State, tolerated: Tolerated = Tolerated()
+) -> dict[str, Limit]:
     """The rates at no step by channel. stepped: (m, 9, ...), the states after one step each.
 
     A step rounds what it steps by ``16 eps``, which is divided by the step. What it steps may be
@@ -130,7 +140,13 @@ def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
         "position": (way, v, step * place, step * moving),
         "linear_momentum": (push, true.linear, step * moving, of_velocity),
     }
-    return {channel: _limit(h, *part) for channel, part in parts.items()}
+    found = {}
+    for channel, (change, rate, rounding, per_rate) in parts.items():
+        size = rounding / step
+        loose = tolerated.in_a_radian * RADIANS / h[:, 0] * size
+        own = rounding + tolerated.in_a_run * size
+        found[channel] = _limit(h, change, rate, own, per_rate + loose)
+    return found
 
 
 def _limit(h: Array, change: Array, expected: Array, rounding: Array, per_rate: Array) -> Limit:
@@ -153,10 +169,12 @@ def _common_factor(found: dict[str, Limit]) -> float | None:
     return factor if all(np.all(one.shares(factor) <= 1.0) for one in found.values()) else None
 
 
-def rows(system: System, probe: Probe, stepped: State) -> list[Row]:
+def rows(
+    system: System, probe: Probe, stepped: State, tolerated: Tolerated = Tolerated()
+) -> list[Row]:
     """Per channel, how far the steps' own rate is from the equation's, in parts of its bound."""
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-        found = limits(system, probe, stepped)
+        found = limits(system, probe, stepped, tolerated)
         shares = {channel: float(np.max(one.shares())) for channel, one in found.items()}
         wrong = not all(share <= 1.0 for share in shares.values())
         factor = _common_factor(found) if wrong else None

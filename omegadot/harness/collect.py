@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 
 from omegadot import __version__
-from omegadot.gates.case import Case
+from omegadot.gates.case import Case, Sweep
 from omegadot.gates.exact import exact_rows, floor_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.judge import JudgedRun
@@ -31,13 +31,21 @@ COLUMNS = {
 Labels = dict[str, Any]
 
 
+def knobs_of(sweep: Sweep | None) -> dict[str, float | None]:
+    """The step or the accuracy of a run; neither for what has none."""
+    if sweep is None:
+        return {"timestep": None, "accuracy": None}
+    own = sweep.accuracy
+    return {"timestep": sweep.timestep if own is None else None, "accuracy": own}
+
+
 def _labels(
     setup: str,
     case: str,
     engine: str,
     version: str,
     integrator: str | None,
-    timestep: float | None = None,
+    sweep: Sweep | None = None,
 ) -> Labels:
     """The columns that name a task."""
     return {
@@ -46,8 +54,7 @@ def _labels(
         "engine_version": version,
         "setup": setup,
         "integrator": integrator,
-        "timestep": timestep,
-        "accuracy": None,
+        **knobs_of(sweep),
     }
 
 
@@ -100,8 +107,8 @@ def _unjudged_entries(
         yield _entry(label("series"), outcome, case.reason)
         return
     for integrator in found.engine.integrators:
-        for sweep in case.case.sweeps:
-            yield _entry(label(integrator.name, sweep.timestep), outcome, case.reason)
+        for sweep in case.case.sweeps_of(integrator):
+            yield _entry(label(integrator.name, sweep), outcome, case.reason)
 
 
 def tasks_of_run(
@@ -126,7 +133,7 @@ def tasks_of_run(
             else:
                 cause, known = causes_of(case, found, seed), diagnosed[found.engine.name]
                 for run in found.runs:
-                    labels = label(run.integrator.name, run.sweep.timestep)
+                    labels = label(run.integrator.name, run.sweep)
                     entries.append(_judged_entry(labels, found, run, cause, known))
     for choice, answer in outcome.missing:
         for prepared in cases:
@@ -151,7 +158,7 @@ def _rows_of(case: JudgedCase, setup: str) -> Iterator[tuple[Labels, Iterable[Ro
         label = _label_of(setup, case, found)
         yield label(None), found.shared
         for run in found.runs:
-            yield label(run.integrator.name, run.sweep.timestep), run.rows
+            yield label(run.integrator.name, run.sweep), run.rows
         if found.engine.name == "exact" and case.truth is not None:
             yield label(case.truth.source), exact_rows(case.case, case.truth)
     if case.truth is not None:
@@ -197,9 +204,10 @@ def trajectories_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
         frames.append(_samples(labels, truth.times, truth.state, truth.omega_dot))
         for found in case.engines:
             label = _label_of(setup, case, found)
-            for key, answer in found.result.runs.items():
-                if answer.ok:
-                    run = answer.result
+            for judged in found.runs:
+                answer = found.result.runs.get((judged.integrator.name, judged.sweep.knob))
+                if answer is not None and answer.ok:
+                    run, labels = answer.result, label(judged.integrator.name, judged.sweep)
                     state = State(**run["state"])
-                    frames.append(_samples(label(*key), run["time"], state, run["omega_dot"]))
+                    frames.append(_samples(labels, run["time"], state, run["omega_dot"]))
     return pl.concat(frames) if frames else schema.empty(schema.TRAJECTORIES)

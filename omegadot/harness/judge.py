@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import cost, equation, invariants, model, phase, scheme, trajectory
+from omegadot.gates import accuracy, cost, equation, invariants, model, phase, scheme, trajectory
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
@@ -24,7 +24,10 @@ from omegadot.workers.wire import body_from
 
 @dataclass(frozen=True)
 class JudgedRun:
-    """One task's outcome, rows and reason. unresolved: a finer sweep could still decide."""
+    """One task's outcome, rows and reason.
+
+    unresolved: a finer sweep could still decide.  finer: that sweep, where it is not half the step.
+    """
 
     integrator: Integrator
     sweep: Sweep
@@ -33,6 +36,7 @@ class JudgedRun:
     rows: list[Row] = field(default_factory=list)
     why: str = ""
     unresolved: bool = False
+    finer: Sweep | None = None
 
 
 def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[Row]:
@@ -112,7 +116,7 @@ def _judge_integrator(
     finer: Iterable[tuple[Sweep, Answer]],
 ) -> Iterator[JudgedRun]:
     """Judge every step size of one integrator; finer ones only serve to see its order."""
-    answers = [(sweep, result.runs[integrator.name, sweep.timestep]) for sweep in sweeps]
+    answers = [(sweep, result.runs[integrator.name, sweep.knob]) for sweep in sweeps]
     measured_runs = _measured_runs(truth, integrator, [*answers, *finer])
     system = truth.yardstick.system
     declared = Declared(integrator.scheme, orders_for(integrator, system))
@@ -125,33 +129,83 @@ def _judge_integrator(
             continue
         state = State(**answer.result["state"])
         findings = findings_of(measured, declared, known)
+        if integrator.knob == "fixed-accuracy":
+            findings = accuracy.fixed(findings)
         match = scheme.match_row(truth, integrator, measured, state, known)
+        orders = scheme.order_rows(seen, declared, measured)
+        if integrator.knob == "fixed-accuracy":
+            orders = accuracy.fixed_orders(orders)
         unknown = rows_of_unknown(truth, integrator, sweep, result)
-        rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
-        misreported = trajectory.reported_rows(truth, measured, state, result.precision)
-        misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
-        rows += invariants.rows(measured, findings, sweep.times)
-        rows.append(trajectory.time_row(sweep, answer.result["time"]))
-        rows += [*misreported, *trajectory.rows(measured, findings)]
-        rows += phase.rows(truth, measured, state)
-        rows += cost.rows(sweep.timestep, answer.result["seconds_per_step"])
-        broken = [row.note for row in (*misreported, match, *unknown) if row.verdict == "fail"]
+        rows, broken = _rows_of_run(truth, measured, findings, answer, result.precision)
+        broken += [row.note for row in (match, *unknown) if row.verdict == "fail"]
         why = broken[0] if broken else _why(findings)
         unresolved = any(f.kind == "unresolved" for f in findings.values())
+        rows = [match, *orders, *unknown, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
+
+
+def _rows_of_run(
+    truth: Truth,
+    measured: MeasuredRun,
+    findings: dict[str, Finding],
+    answer: Answer,
+    precision: str,
+) -> tuple[list[Row], list[str]]:
+    """The rows of one run, whatever its knob, and the notes of what it misreports."""
+    state, sweep = State(**answer.result["state"]), measured.sweep
+    misreported = trajectory.reported_rows(truth, measured, state, precision)
+    omega_dot = answer.result["omega_dot"]
+    misreported += trajectory.omega_dot_rows(truth.yardstick.system, state, omega_dot)
+    rows = invariants.rows(measured, findings, sweep.times)
+    rows.append(trajectory.time_row(sweep, answer.result["time"]))
+    rows += [*misreported, *trajectory.rows(measured, findings)]
+    rows += phase.rows(truth, measured, state)
+    rows += cost.rows(sweep, answer.result["seconds_per_step"])
+    return rows, [row.note for row in misreported if row.verdict == "fail"]
+
+
+def _judge_accuracies(
+    truth: Truth,
+    integrator: Integrator,
+    sweeps: Iterable[Sweep],
+    result: CaseResult,
+    finer: Iterable[tuple[Sweep, Answer]],
+) -> Iterator[JudgedRun]:
+    """Judge every accuracy of one integrator; finer ones serve to see whether its error follows."""
+    answers = [(sweep, result.runs[integrator.name, sweep.knob]) for sweep in sweeps]
+    measured_runs = {}
+    for sweep, answer in (*answers, *finer):
+        if answer.ok and len(answer.result["time"]) == len(sweep.times):
+            state = State(**answer.result["state"])
+            if is_finite(state):
+                own = accuracy.measure_accuracy(truth, integrator, sweep, state)
+                measured_runs[sweep] = own
+    known = list(measured_runs.values())
+    further = accuracy.finer_sweep(truth, integrator, known) if known else None
+    for sweep, answer in answers:
+        measured = measured_runs.get(sweep)
+        if measured is None:
+            yield _failed(integrator, sweep, answer)
+            continue
+        findings = accuracy.findings_of(measured, known)
+        unknown = rows_of_unknown(truth, integrator, sweep, result)
+        rows, broken = _rows_of_run(truth, measured, findings, answer, result.precision)
+        broken += [row.note for row in unknown if row.verdict == "fail"]
+        why = broken[0] if broken else _why(findings)
+        rows = [*accuracy.rows(measured, known), *unknown, *rows]
+        yield JudgedRun(integrator, sweep, "ok", "", rows, why, further is not None, further)
 
 
 def judge_case(
     truth: Truth,
     case: Case,
     result: CaseResult,
-    refinements: dict[str, dict[float, tuple[Sweep, Answer]]],
+    refinements: dict[str, dict[Sweep, tuple[Sweep, Answer]]],
 ) -> list[JudgedRun]:
     """Judge every task of one engine on one scenario."""
-    return [
-        judged
-        for integrator in result.integrators
-        for judged in _judge_integrator(
-            truth, integrator, case.sweeps, result, refinements.get(integrator.name, {}).values()
-        )
-    ]
+    found = []
+    for integrator in result.integrators:
+        finer = refinements.get(integrator.name, {}).values()
+        judge = _judge_accuracies if integrator.knob == "accuracy" else _judge_integrator
+        found += judge(truth, integrator, case.sweeps_of(integrator), result, finer)
+    return found

@@ -1,9 +1,10 @@
-"""Further requests to an integrator whose declared scheme is unknown to the reference."""
+"""Further requests to an integrator whose steps the reference has no run of."""
 
 from __future__ import annotations
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates import restart, vanishing_step
+from omegadot.gates.accuracy import finest_of, tolerated_by
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.rows import Row
@@ -18,14 +19,19 @@ def probe_unknown_schemes(
 ) -> None:
     """Have unknown schemes take first steps, and begin their runs again, into `result`."""
     for integrator in result.integrators:
-        if integrator.scheme in SCHEMES or integrator.knob != "timestep":
+        if integrator.scheme in SCHEMES and integrator.knob == "timestep":
             continue  # the reference has a run to hold its steps against
-        runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
+        sweeps = case.sweeps_of(integrator)
+        runs = {s: result.runs.get((integrator.name, s.knob)) for s in sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue
         probe = vanishing_step.probe_of(case.system, evaluation_states)
-        answer = driver.request(case, "first_steps", integrator=integrator.name, **vars(probe))
+        finest = finest_of(integrator) if integrator.knob == "accuracy" else None
+        how = {"integrator": integrator.name, "accuracy": finest}
+        answer = driver.request(case, "first_steps", **how, **vars(probe))
         result.first_steps[integrator.name] = (probe, answer)
+        if integrator.knob == "accuracy":
+            continue  # how a run is restarted is a matter of its tolerance
         for sweep, run in runs.items():
             found = restart.restart_of(sweep)
             if found and run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
@@ -42,10 +48,11 @@ def rows_of_unknown(
     found = []
     probe, steps = result.first_steps.get(integrator.name, (None, None))
     if probe is not None and steps is not None and steps.ok:
-        found += vanishing_step.rows(truth.yardstick.system, probe, State(**steps.result))
-    sample, restarted = result.restarts.get((integrator.name, sweep.timestep), (0, None))
+        system, tolerated = truth.yardstick.system, tolerated_by(integrator)
+        found += vanishing_step.rows(system, probe, State(**steps.result), tolerated)
+    sample, restarted = result.restarts.get((integrator.name, sweep.knob), (0, None))
     if restarted is not None and restarted.ok:
-        state = State(**result.runs[integrator.name, sweep.timestep].result["state"])
+        state = State(**result.runs[integrator.name, sweep.knob].result["state"])
         rest = State(**restarted.result["state"])
         if len(rest.angular_velocity) == len(sweep.times) - sample:
             found.append(restart.row(truth, integrator, sweep, state, sample, rest))
