@@ -5,9 +5,9 @@ tolerance t. Where that estimate is of the order ``h^(p+1)``, h is proportional 
 and the error of the run to ``t^(p/(p+1))``, or to t where the better of two solutions is kept or
 the error per unit of time is held (Hairer, Norsett and Wanner, "Solving Ordinary Differential
 Equations I", II.4; Shampine 1977). The exponent is 1/2 at least (p = 1), and 2 at most (the last
-two together). Two things interrupt this: rounding, and steps that end at a sample, which are then
-shorter than the tolerance requires. The error of the latter shrinks with the spacing of the samples.
-That of a fault shrinks with neither.
+two together). Two things interrupt this: rounding, and steps that are shorter than the tolerance
+requires, for they end at a sample. The error of those shrinks with the spacing of the samples. That
+of a fault shrinks with neither.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def pace(truth: Truth) -> float:
 
 def steps_per_radian(integrator: Integrator, accuracy: float) -> float:
     """About how many steps of its own an integrator takes: ``t^(-1/(p+1))``."""
-    return float(accuracy) ** (-1.0 / (order_of(integrator) + 1))
+    return math.exp(-math.log(accuracy) / (order_of(integrator) + 1))
 
 
 def measure_accuracy(
@@ -110,7 +110,7 @@ def _shares(run: AccuracyRun, channel: str) -> Array:
 
 def _is_round(run: AccuracyRun, channel: str) -> bool:
     """Whether an error is about as small as rounding throughout."""
-    return bool(np.all(_shares(run, channel) <= CLEAR_OF_ROUNDING))
+    return float(np.max(_shares(run, channel))) <= CLEAR_OF_ROUNDING
 
 
 def _unsaturated(*runs: AccuracyRun) -> int:
@@ -147,7 +147,7 @@ class Pair:
     @property
     def leaps(self) -> bool:
         """Whether the coarser one's error is larger than the finer one's lets it be."""
-        return self.coarse > max(self.fine, self.rounding) * self.factor**MOST_SLOPE
+        return self.coarse > max(self.fine, self.rounding) * math.pow(self.factor, MOST_SLOPE)
 
 
 def _pair(coarse: AccuracyRun, fine: AccuracyRun, channel: str) -> Pair:
@@ -158,7 +158,8 @@ def _pair(coarse: AccuracyRun, fine: AccuracyRun, channel: str) -> Pair:
     one, other = coarse.sweep, fine.sweep
     spacing = one.accuracy == other.accuracy
     factor = one.timestep / other.timestep if spacing else one.knob / other.knob
-    return Pair(*(float(np.max(size[:until])) for size in sizes), factor)
+    largest = [float(np.max(size[:until])) for size in sizes]
+    return Pair(largest[0], largest[1], largest[2], factor)
 
 
 def _split(runs: Sequence[AccuracyRun]) -> tuple[list[AccuracyRun], list[AccuracyRun]]:
@@ -179,7 +180,7 @@ def _follows(runs: Sequence[AccuracyRun], channel: str) -> Finding:
     if np.all(finest.error[channel] <= finest.kept[channel]):
         return Finding("consistent", f"keeps its accuracy: {text}")
     for what, these in (("its accuracy", over), ("the spacing of its samples", spaced)):
-        slope = _pair(*these[-2:], channel).slope if len(these) > 1 else 0.0
+        slope = _pair(these[-2], these[-1], channel).slope if len(these) > 1 else 0.0
         if slope >= LEAST_SLOPE:
             return Finding("consistent", f"follows {what}: {text}, slope {slope:.2f}")
     if len(runs) < 2:
@@ -231,9 +232,11 @@ def finer_sweep(
     if len(spaced) == 1 and finer < 0.5 * sweep.knob and steps <= MOST_OWN_STEPS:
         return replace(sweep, accuracy=finer)
     last = spaced[-1].sweep
-    still = [c for c in clear if _pair(*over[-2:], c).slope < LEAST_SLOPE] if len(over) > 1 else []
+    still = []
+    if len(over) > 1:
+        still = [c for c in clear if _pair(over[-2], over[-1], c).slope < LEAST_SLOPE]
     if len(spaced) > 1:
-        still = [c for c in still if _pair(*spaced[-2:], c).slope >= LEAST_SLOPE]
+        still = [c for c in still if _pair(spaced[-2], spaced[-1], c).slope >= LEAST_SLOPE]
     return last.refined(4) if still and 4 * last.steps <= MOST_OWN_STEPS else None
 
 
@@ -245,7 +248,7 @@ def rows(measured: AccuracyRun, measured_runs: Sequence[AccuracyRun]) -> list[Ro
     found = []
     for channel in CHANNELS:
         if len(over) > 1 and not _is_round(over[-1], channel):
-            slope = _pair(*over[-2:], channel).slope
+            slope = _pair(over[-2], over[-1], channel).slope
             found.append(Row(GATE, channel, "accuracy_slope", slope, "1", LEAST_SLOPE))
         kept = measured.kept[channel]
         share = float(np.max(measured.error[channel][1:] / kept[1:], initial=0.0))
@@ -254,7 +257,7 @@ def rows(measured: AccuracyRun, measured_runs: Sequence[AccuracyRun]) -> list[Ro
 
 
 def fixed(findings: dict[str, Finding]) -> dict[str, Finding]:
-    """The findings where the accuracy cannot be set: what it has to do with the error is unknown."""
+    """The findings where the accuracy cannot be set, so that no error shows a fault."""
     return {channel: _fixed(finding) for channel, finding in findings.items()}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypedDict
 
 import numpy as np
 
@@ -70,9 +71,26 @@ class Case:
         """What an integrator is swept over: steps, or accuracies where it takes them."""
         if integrator.knob != "accuracy":
             return self.sweeps
-        least = integrator.finest_accuracy
-        values = sorted({max(value, least) for value in self.accuracies}, reverse=True)
+        return self.swept_by_accuracy(integrator.finest_accuracy)
+
+    def swept_by_accuracy(self, finest: float) -> tuple[Sweep, ...]:
+        """The samples at every accuracy, from the coarsest on, and none finer than `finest`."""
+        values = sorted({max(value, finest) for value in self.accuracies}, reverse=True)
         return tuple(replace(self.sampled, accuracy=value) for value in values)
+
+
+class Knobs(TypedDict):
+    """The columns that name a run among those of its integrator; one of them is None at least."""
+
+    timestep: float | None
+    accuracy: float | None
+
+
+def knobs_of(sweep: Sweep | None) -> Knobs:
+    """The step or the accuracy of a run; neither for what has none."""
+    accuracy = sweep.accuracy if sweep else None
+    timestep = sweep.timestep if sweep and accuracy is None else None
+    return {"timestep": timestep, "accuracy": accuracy}
 
 
 def sweep_of(duration: float, timestep: float, sample: float) -> Sweep:

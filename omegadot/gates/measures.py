@@ -67,7 +67,7 @@ class Yardstick:
                 gap = norm(momentum(self.system, one) - momentum(self.system, other))
             return np.asarray(gap / self.sizes[channel])
 
-    def round_off(self, timestep: float, steps: Array, growth: Array) -> dict[str, Array]:
+    def round_off(self, timestep: float | Array, steps: Array, growth: Array) -> dict[str, Array]:
         """(n,) per channel: how far rounding may take a sound engine after so many steps.
 
         Each step adds ``c eps (1 + h A / rate)`` (A the greatest size of omega-dot, so that an

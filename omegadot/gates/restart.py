@@ -64,7 +64,9 @@ def row(
     if found.agree:
         return Row(GATE, *start, "pass")
     if integrator.knob == "fixed-accuracy":
-        return Row(GATE, *start, "info", "not judged: its steps are its own, and so is its accuracy")
+        return Row(
+            GATE, *start, "info", "not judged: its steps are its own, and so is its accuracy"
+        )
     if not integrator.one_step:
         return Row(GATE, *start, "info", "steps use earlier ones, as is declared")
     when = f"t = {sweep.times[sample]:.4g} s"

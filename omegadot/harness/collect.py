@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 
 from omegadot import __version__
-from omegadot.gates.case import Case, Sweep
+from omegadot.gates.case import Case, Sweep, knobs_of
 from omegadot.gates.exact import exact_rows, floor_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.judge import JudgedRun
@@ -29,14 +29,6 @@ COLUMNS = {
     "linear_velocity": ("vx", "vy", "vz"),
 }
 Labels = dict[str, Any]
-
-
-def knobs_of(sweep: Sweep | None) -> dict[str, float | None]:
-    """The step or the accuracy of a run; neither for what has none."""
-    if sweep is None:
-        return {"timestep": None, "accuracy": None}
-    own = sweep.accuracy
-    return {"timestep": sweep.timestep if own is None else None, "accuracy": own}
 
 
 def _labels(

@@ -203,7 +203,7 @@ def judge_case(
     refinements: dict[str, dict[Sweep, tuple[Sweep, Answer]]],
 ) -> list[JudgedRun]:
     """Judge every task of one engine on one scenario."""
-    found = []
+    found: list[JudgedRun] = []
     for integrator in result.integrators:
         finer = refinements.get(integrator.name, {}).values()
         judge = _judge_accuracies if integrator.knob == "accuracy" else _judge_integrator

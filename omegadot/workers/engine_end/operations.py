@@ -69,8 +69,9 @@ def _inverse(adapter: Adapter, request: Request) -> Any:
 
 def _runs_of(adapter: Adapter, request: Request) -> Callable[..., Trajectory]:
     """The adapter's `run`, with the accuracy where one is requested."""
+    run: Callable[..., Trajectory] = adapter.run  # the protocol's has no accuracy
     accuracy = request.get("accuracy")
-    return adapter.run if accuracy is None else partial(adapter.run, accuracy=accuracy)
+    return run if accuracy is None else partial(run, accuracy=accuracy)
 
 
 def _timed_run(adapter: Adapter, request: Request) -> tuple[Trajectory, float]:
