@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.case import Sweep
+from omegadot.gates.case import ACCURACIES, Sweep
 from omegadot.gates.measured_run import CHANNELS, ROTATION, MeasuredRun, measure
 from omegadot.gates.rows import Row
 from omegadot.gates.scales import EPS, ROUNDINGS_PER_STEP
@@ -42,6 +42,13 @@ MOST_OWN_STEPS = 2e5
 def finest_of(integrator: Integrator) -> float:
     """The finest accuracy that is requested of an integrator."""
     return max(FINEST, integrator.finest_accuracy)
+
+
+def usual_for(integrator: Integrator) -> float | None:
+    """The accuracy of an integrator that is run at one alone; None where it is run in steps."""
+    if integrator.knob != "accuracy":
+        return None
+    return max(ACCURACIES[-1], integrator.finest_accuracy)
 
 
 def tolerated_by(integrator: Integrator) -> Tolerated:

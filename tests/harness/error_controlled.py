@@ -147,7 +147,8 @@ class LinearBetweenSteps(ErrorControlled):
     """Samples on straight lines between its own steps."""
 
     def solved(self, start: Array, times: Array, accuracy: float) -> Array:
-        found = solve_ivp(self.rate, (0.0, times[-1]), start, rtol=accuracy, atol=accuracy)
+        how: dict[str, Any] = {"method": self.METHOD, "rtol": accuracy, "atol": accuracy}
+        found = solve_ivp(self.rate, (0.0, times[-1]), start, **how)
         return np.array([np.interp(times, found.t, row) for row in found.y]).T
 
 
