@@ -204,12 +204,11 @@ def _finding(measured: AccuracyRun, runs: Sequence[AccuracyRun], channel: str) -
     if np.all(error <= bound + measured.floor.get(channel, 0.0)):
         return Finding("beyond", "not judged: below the resolvable floor of this motion")
     over, _ = _split(runs)
-    place = over.index(measured)
-    if place + 1 < len(over):
-        pair = _pair(measured, over[place + 1], channel)
+    for finer in over[over.index(measured) + 1 :]:
+        pair = _pair(measured, finer, channel)
         if pair.leaps:
-            times, finer = pair.coarse / pair.fine, over[place + 1].sweep.knob
-            text = f"at this accuracy the error is {times:.0e} times that at {finer:g}"
+            times = pair.coarse / max(pair.fine, pair.rounding)
+            text = f"at this accuracy the error is {times:.0e} times that at {finer.sweep.knob:g}"
             return Finding("unexplained", text)
     return _follows(runs, channel)
 
