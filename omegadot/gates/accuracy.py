@@ -22,7 +22,6 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import ACCURACIES, Sweep
 from omegadot.gates.measured_run import CHANNELS, ROTATION, MeasuredRun, measure
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import EPS, ROUNDINGS_PER_STEP
 from omegadot.gates.truth import Truth
 from omegadot.gates.vanishing_step import Tolerated
 from omegadot.gates.verdicts import Finding
@@ -97,7 +96,8 @@ def measure_accuracy(
     between = pace(truth) * sweep.timestep * steps_per_radian(integrator, sweep.accuracy)
     within = max(1.0, between)
     bound = yardstick.round_off(sweep.timestep / within, within * sweep.sample_steps, growth)
-    roundings = sweep.accuracy * (1.0 + radians) / (ROUNDINGS_PER_STEP * EPS)
+    rounding = yardstick.round_off(0.0, np.zeros(1), np.ones(1))["omega"][0]
+    roundings = sweep.accuracy * (1.0 + radians) / rounding
     kept = yardstick.round_off(sweep.times / roundings, roundings, growth)
     own = {**vars(measured), "round_off": bound}
     return AccuracyRun(**own, kept=kept)

@@ -63,6 +63,15 @@ class WithAnything(WithSteps):
 def test_an_accuracy_that_a_run_does_not_take_is_fixed(adapter: Any, knob: str) -> None:
     (found,) = description_of(adapter()).integrators
     assert found.knob == knob
+    assert found.finest_accuracy == 0.0
+
+
+def test_single_precision_bounds_the_accuracies() -> None:
+    class Single(WithAccuracy):
+        description = replace(WithAccuracy.description, precision="float32")
+
+    (found,) = description_of(Single()).integrators  # type: ignore[arg-type]
+    assert found.finest_accuracy == 450 * 2.0**-23
 
 
 def test_a_run_costs_what_the_adapter_measured_or_else_the_whole_call() -> None:

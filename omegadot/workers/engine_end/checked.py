@@ -29,6 +29,8 @@ SHAPES: dict[type, dict[str, Shape]] = {
 }
 CHANNELS = get_args(Channel)
 KNOBS = get_args(Knob)
+# In parts of eps, the finest relative tolerance that a rounded estimate of an error can keep.
+ROUNDINGS_OF_AN_ESTIMATE = 450
 
 
 class AnswerError(TypeError):
@@ -134,14 +136,24 @@ def _takes_accuracy(adapter: Adapter) -> bool:
 
 
 def description_of(adapter: Adapter) -> Description:
-    """The adapter's description; accuracies that `run` does not take are fixed ones."""
+    """The adapter's description. Accuracies that `run` does not take are fixed ones, and none is
+    finer than single precision allows an estimate of the error.
+    """
     found = checked_description(adapter.description)
-    if all(i.knob == "timestep" for i in found.integrators) or _takes_accuracy(adapter):
+    if all(integrator.knob == "timestep" for integrator in found.integrators):
         return found
-    fixed = tuple(
-        replace(i, knob="fixed-accuracy") if i.knob == "accuracy" else i for i in found.integrators
-    )
-    return replace(found, integrators=fixed)
+    takes, least = _takes_accuracy(adapter), 0.0
+    if found.precision == "float32":
+        least = ROUNDINGS_OF_AN_ESTIMATE * float(np.finfo(np.float32).eps)
+
+    def own(integrator: Integrator) -> Integrator:
+        if integrator.knob != "accuracy":
+            return integrator
+        if not takes:
+            return replace(integrator, knob="fixed-accuracy")
+        return replace(integrator, finest_accuracy=max(least, integrator.finest_accuracy))
+
+    return replace(found, integrators=tuple(map(own, found.integrators)))
 
 
 def _check_integrator(integrator: Integrator) -> None:
