@@ -21,6 +21,7 @@ Channel = Literal[
     "model",
     "time",
 ]
+Knob = Literal["timestep", "accuracy", "fixed-accuracy"]
 ONE_BODY = frozenset(
     {
         *("free", "pivot", "gravity", "damping", "torque", "full_inertia", "offset_com"),
@@ -40,7 +41,9 @@ class Integrator:
 
     scheme: the name of the reference scheme it is declared to equal, or None when unknown.
     orders: declared order of the accumulated error per channel.
-    knob: "timestep", or "accuracy" for an error-controlled integrator.
+    knob: "timestep", or "accuracy" for an error-controlled integrator, which chooses its own steps.
+    Its `run` takes an `accuracy`; where it takes none, its knob is "fixed-accuracy".
+    finest_accuracy: the smallest that it follows, 0 where it follows all down to rounding.
     coordinates: those in which the engine steps a free body's translation, see `Coordinates`.
     one_step: a step depends on the state alone; False for a multistep method, which keeps earlier
     steps in mind.
@@ -51,10 +54,11 @@ class Integrator:
     name: str
     scheme: str | None
     orders: dict[str, int]
-    knob: Literal["timestep", "accuracy"] = "timestep"
+    knob: Knob = "timestep"
     note: str = ""
     coordinates: Coordinates = "com-world"
     one_step: bool = True
+    finest_accuracy: float = 0.0
     steps_origin: InitVar[bool] = False
 
     def __post_init__(self, steps_origin: bool) -> None:
@@ -149,5 +153,9 @@ class Adapter(Protocol):
         """Step from `initial`, logging step 0, every `every`-th step and the last one.
 
         Times are ``n * timestep``. The result does not depend on earlier runs.
+
+        An adapter with an integrator of the knob "accuracy" has a further parameter, ``accuracy:
+        float | None = None``: the relative tolerance of the integrator, which takes steps of its
+        own between the samples. It is given to those integrators alone, by name.
         """
         ...

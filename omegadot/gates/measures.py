@@ -93,7 +93,11 @@ class Yardstick:
         return np.maximum.accumulate(np.maximum(times, 1.0))
 
     def round_off(
-        self, timestep: float, steps: Array, growth: Array, faster: Array | float = 1.0
+        self,
+        timestep: float | Array,
+        steps: Array,
+        growth: Array,
+        faster: Array | float = 1.0,
     ) -> dict[str, Array]:
         """(n,) per channel: how far rounding may take a sound engine after so many steps.
 

@@ -133,7 +133,7 @@ def rows(truth: Truth, measured: MeasuredRun, state: State) -> list[Row]:
     Nothing is judged. The bounds are no limits: they state what rounding and the cubic between the
     exact samples leave open.
     """
-    place = np.searchsorted(truth.times, measured.sweep.times)
+    place = truth.rows(measured.sweep)
     times, omega_dot = truth.times[place], truth.omega_dot[place]
     exact = Hermite(times, truth.state.angular_velocity[place], omega_dot)
     rate, bounds = truth.yardstick.rate, measured.round_off["omega"]

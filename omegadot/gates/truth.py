@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Sweep
 from omegadot.gates.measures import Yardstick
-from omegadot.gates.scales import eps_of
+from omegadot.gates.scales import EPS, eps_of
 from omegadot.reference_impl.coordinates import Coordinates, canonical
 from omegadot.reference_impl.system import Array, State, System
 
@@ -24,8 +24,11 @@ class SchemeKey:
 
 
 def scheme_key(integrator: Integrator, system: System) -> SchemeKey | None:
-    """The run of the reference that this integrator should equal; None for an unknown scheme."""
-    if integrator.scheme is None:
+    """The run of the reference that this integrator should equal; None for an unknown scheme.
+
+    An error-controlled integrator chooses its own steps: it equals none.
+    """
+    if integrator.scheme is None or integrator.knob != "timestep":
         return None
     return SchemeKey(integrator.scheme, canonical(system, integrator.coordinates))
 
@@ -72,8 +75,8 @@ class Truth:
         return replace(self, floor=floor, yardstick=self.yardstick.with_eps(eps))
 
     def rows(self, sweep: Sweep) -> NDArray[np.intp]:
-        """Where the samples of one sweep are among the times."""
-        return np.searchsorted(self.times, sweep.times)
+        """Where the samples of one sweep are among the times, which may be rounded otherwise."""
+        return np.searchsorted(self.times, sweep.times * (1.0 - 4.0 * EPS))
 
     def at(self, sweep: Sweep) -> State:
         """The exact states at the samples of one sweep."""

@@ -133,7 +133,21 @@ class Limit:
         return float(apart / max(float(norm(self.expected[place])), float(np.finfo(float).tiny)))
 
 
-def limits(system: System, probe: Probe, stepped: State, eps: float = EPS) -> dict[str, Limit]:
+@dataclass(frozen=True)
+class Tolerated:
+    """What an error-controlled integrator may be off, relative: in a run, and in each radian."""
+
+    in_a_run: float = 0.0
+    in_a_radian: float = 0.0
+
+
+def limits(
+    system: System,
+    probe: Probe,
+    stepped: State,
+    eps: float = EPS,
+    tolerated: Tolerated = Tolerated(),
+) -> dict[str, Limit]:
     """The rates at no step by channel. stepped: (m, k, ...), the states after one step each.
 
     A step rounds what it steps by ``16 eps``, which is divided by the step. What it steps may be
@@ -162,8 +176,13 @@ def limits(system: System, probe: Probe, stepped: State, eps: float = EPS) -> di
         "position": (way, v, step * place, step * moving),
         "linear_momentum": (push, true.linear, step * moving, of_velocity),
     }
-    ranges = ladder_of(eps).ranges
-    return {channel: _limit(ranges, h, *part) for channel, part in parts.items()}
+    found, ladder = {}, ladder_of(eps)
+    for channel, (change, rate, rounding, per_rate) in parts.items():
+        size = rounding / step
+        loose = tolerated.in_a_radian * ladder.radians / h[:, 0] * size
+        own = rounding + tolerated.in_a_run * size
+        found[channel] = _limit(ladder.ranges, h, change, rate, own, per_rate + loose)
+    return found
 
 
 def _limit(
@@ -193,14 +212,20 @@ def _common_factor(found: dict[str, Limit]) -> float | None:
     return factor if all(np.all(one.shares(factor) <= 1.0) for one in found.values()) else None
 
 
-def rows(system: System, probe: Probe, stepped: State, eps: float = EPS) -> list[Row]:
+def rows(
+    system: System,
+    probe: Probe,
+    stepped: State,
+    eps: float = EPS,
+    tolerated: Tolerated = Tolerated(),
+) -> list[Row]:
     """Per channel, how far the steps' own rate is from the equation's, in parts of its bound.
 
     Where ``64 eps J / lambda`` reaches one, rounding leaves no digit of the inertia's inverse.
     """
     scale, digits = body_scale(system), ladder_of(eps).digits
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-        found = limits(system, probe, stepped, eps)
+        found = limits(system, probe, stepped, eps, tolerated)
         shares = {channel: float(np.max(one.shares())) for channel, one in found.items()}
         wrong = not all(share <= 1.0 for share in shares.values())
         factor = _common_factor(found) if wrong else None

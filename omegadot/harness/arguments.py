@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.adapters.registry import registered
-from omegadot.gates.case import Case, sweep_of
+from omegadot.gates.case import ACCURACIES, Case, sweep_of
 from omegadot.harness.engine_target import EngineLike, is_target, target_of
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
@@ -109,8 +109,13 @@ def _origin(given: ScenarioLike) -> str:
     return str(given) if isinstance(given, str | PathLike) else "a scenario built in code"
 
 
-def case_of(scenario: Scenario, timesteps: Sequence[float]) -> Case:
-    """The scenario made ready, with other time steps where some are given. Raises UsageError."""
+def case_of(
+    scenario: Scenario, timesteps: Sequence[float], accuracies: Sequence[float] = ()
+) -> Case:
+    """The scenario made ready, with other time steps and accuracies where some are given.
+
+    Raises UsageError.
+    """
     duration, sample = scenario.run.duration, scenario.run.sample
     for step in timesteps:
         if not (isinstance(step, Real) and math.isfinite(step) and step > 0.0):
@@ -121,6 +126,11 @@ def case_of(scenario: Scenario, timesteps: Sequence[float]) -> Case:
                 f"--timestep {step:g}: longer than the {duration:g} s of {scenario.name}; "
                 "give a shorter one."
             )
+    for one in accuracies:
+        if not (isinstance(one, Real) and 0.0 < one < 1.0):
+            shown = f"{one:g}" if isinstance(one, Real) else repr(one)
+            raise UsageError(f"--accuracy {shown}: not a relative tolerance; give one from 0 to 1.")
     steps = tuple(dict.fromkeys(timesteps)) or scenario.run.timesteps
     sweeps = tuple(sweep_of(duration, step, sample) for step in steps)
-    return Case(scenario, system_of(scenario), initial_state_of(scenario), sweeps)
+    own = tuple(dict.fromkeys(accuracies)) or scenario.run.accuracies or ACCURACIES
+    return Case(scenario, system_of(scenario), initial_state_of(scenario), sweeps, own)

@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 
 from omegadot import __version__
-from omegadot.gates.case import Case
+from omegadot.gates.case import Case, Sweep, knobs_of
 from omegadot.gates.exact import exact_rows, floor_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.gates.scales import eps_of
@@ -39,7 +39,7 @@ def _labels(
     engine: str,
     version: str,
     integrator: str | None,
-    timestep: float | None = None,
+    sweep: Sweep | None = None,
 ) -> Labels:
     """The columns that name a task."""
     return {
@@ -48,8 +48,7 @@ def _labels(
         "engine_version": version,
         "setup": setup,
         "integrator": integrator,
-        "timestep": timestep,
-        "accuracy": None,
+        **knobs_of(sweep),
     }
 
 
@@ -102,8 +101,8 @@ def _unjudged_entries(
         yield _entry(label("series"), outcome, case.reason)
         return
     for integrator in found.engine.integrators:
-        for sweep in case.case.sweeps:
-            yield _entry(label(integrator.name, sweep.timestep), outcome, case.reason)
+        for sweep in case.case.sweeps_of(integrator):
+            yield _entry(label(integrator.name, sweep), outcome, case.reason)
 
 
 def tasks_of_run(
@@ -128,7 +127,7 @@ def tasks_of_run(
             else:
                 cause, known = causes_of(case, found, seed), diagnosed[found.engine.name]
                 for run in found.runs:
-                    labels = label(run.integrator.name, run.sweep.timestep)
+                    labels = label(run.integrator.name, run.sweep)
                     entries.append(_judged_entry(labels, found, run, cause, known))
     for choice, answer in outcome.missing:
         for prepared in cases:
@@ -153,7 +152,7 @@ def _rows_of(case: JudgedCase, setup: str) -> Iterator[tuple[Labels, Iterable[Ro
         label = _label_of(setup, case, found)
         yield label(None), found.shared
         for run in found.runs:
-            yield label(run.integrator.name, run.sweep.timestep), run.rows
+            yield label(run.integrator.name, run.sweep), run.rows
         if found.engine.name == "exact" and case.truth is not None:
             yield label(case.truth.source), exact_rows(case.case, case.truth)
     if case.truth is not None:
@@ -196,17 +195,16 @@ def trajectories_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
         if truth is None:
             continue
         labels = _labels(setup, case.case.name, "exact", __version__, truth.source)
-        sweeps = {sweep.timestep: sweep for sweep in case.case.sweeps}
         frames.append(_samples(labels, truth.times, truth.state, truth.omega_dot))
         for found in case.engines:
             label, eps = _label_of(setup, case, found), eps_of(found.result.precision)
-            for key, answer in found.result.runs.items():
-                if answer.ok:
-                    run = answer.result
+            for judged in found.runs:
+                answer = found.result.runs.get((judged.integrator.name, judged.sweep.knob))
+                if answer is not None and answer.ok:
+                    run, labels = answer.result, label(judged.integrator.name, judged.sweep)
                     state, time = State(**run["state"]), run["time"]
-                    sweep = sweeps.get(key[1])
                     # A clock may be rounded, and its samples stand where the exact solution's do.
-                    if sweep and time_row(sweep, time, eps).verdict == "pass":
-                        time = sweep.times
-                    frames.append(_samples(label(*key), time, state, run["omega_dot"]))
+                    if time_row(judged.sweep, time, eps).verdict == "pass":
+                        time = judged.sweep.times
+                    frames.append(_samples(labels, time, state, run["omega_dot"]))
     return pl.concat(frames) if frames else schema.empty(schema.TRAJECTORIES)

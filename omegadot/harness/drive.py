@@ -34,6 +34,7 @@ class CaseResult:
     """What one engine answered for one scenario; answers that failed are kept as such.
 
     integrators: those that are run, as the engine declares them for this system.
+    runs: by integrator and its step or accuracy.
     first_steps, restarts: of integrators whose scheme is unknown, what was requested and what came:
     steps from several states, and the sample from which a run was restarted with the rest of it.
     alone, inverse_alone: forward and inverse dynamics of the first random state by itself.
@@ -137,7 +138,7 @@ class Driver:
     def run(
         self, case: Case, integrator: str, sweep: Sweep, initial: State | None = None
     ) -> Answer:
-        """One integrator with one step size, from the case's own state or another."""
+        """One integrator with one step size or accuracy, from the case's own state or another."""
         return self.request(
             case,
             "run",
@@ -146,6 +147,7 @@ class Driver:
             timestep=sweep.timestep,
             steps=sweep.steps,
             every=sweep.every,
+            accuracy=sweep.accuracy,
         )
 
     def replay(self, case: Case, integrator: str, sweep: Sweep, initial: State) -> Answer:
@@ -175,10 +177,10 @@ class Driver:
     def run_all(
         self, case: Case, finished: Callable[[], object]
     ) -> dict[tuple[str, float], Answer]:
-        """Every integrator with every step; `finished` is called after each run."""
+        """Every integrator with every step or accuracy; `finished` is called after each run."""
         runs = {}
-        for integrator in self.engine.integrators:
-            for sweep in case.sweeps:
-                runs[integrator.name, sweep.timestep] = self.run(case, integrator.name, sweep)
+        for integrator in self.integrators():
+            for sweep in case.sweeps_of(integrator):
+                runs[integrator.name, sweep.knob] = self.run(case, integrator.name, sweep)
                 finished()
         return runs

@@ -9,6 +9,7 @@ from typing import Any, cast
 from omegadot.adapters.protocol import Adapter, Integrator, UnsupportedError
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine, EngineChoice
+from omegadot.workers.engine_end.checked import description_of
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import encode_frame, read_frame
@@ -39,7 +40,7 @@ class Local:
 
 def driver_of(name: str, adapter: Adapter, integrators: tuple[Integrator, ...] = ()) -> Driver:
     """A driver of an adapter in this process, running the integrators given (all by default)."""
-    description = adapter.description
+    description = description_of(adapter)
     engine = Engine(EngineChoice(name, ""), description, integrators or description.integrators)
     worker = cast(WorkerProcess, Local(adapter))
     return Driver(engine, worker, lambda call: call(), threading.Event())

@@ -9,6 +9,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates import (
+    accuracy,
     cost,
     equation,
     invariants,
@@ -35,7 +36,10 @@ from omegadot.workers.wire import body_from
 
 @dataclass(frozen=True)
 class JudgedRun:
-    """One task's outcome, rows and reason. unresolved: a finer sweep could still decide."""
+    """One task's outcome, rows and reason.
+
+    unresolved: a finer sweep could still decide.  finer: that sweep, where it is not half the step.
+    """
 
     integrator: Integrator
     sweep: Sweep
@@ -44,6 +48,7 @@ class JudgedRun:
     rows: list[Row] = field(default_factory=list)
     why: str = ""
     unresolved: bool = False
+    finer: Sweep | None = None
 
 
 def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[Row]:
@@ -137,7 +142,11 @@ def _failed(integrator: Integrator, sweep: Sweep, answer: Answer, eps: float) ->
     if not answer.ok:
         return JudgedRun(integrator, sweep, answer.outcome, answer.reason)
     rows = [trajectory.time_row(sweep, answer.result["time"], eps)]
-    return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
+    if is_finite(State(**answer.result["state"])):
+        return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
+    note = "the state is not finite"
+    rows.append(Row("trajectory", "omega", "error_max", float("nan"), "1", None, "fail", note))
+    return JudgedRun(integrator, sweep, "diverged", note, rows, why=note)
 
 
 def _judge_integrator(
@@ -148,7 +157,7 @@ def _judge_integrator(
     finer: Iterable[tuple[Sweep, Answer]],
 ) -> Iterator[JudgedRun]:
     """Judge every step size of one integrator; finer ones only serve to see its order."""
-    answers = [(sweep, result.runs[integrator.name, sweep.timestep]) for sweep in sweeps]
+    answers = [(sweep, result.runs[integrator.name, sweep.knob]) for sweep in sweeps]
     measured_runs = _measured_runs(truth, integrator, [*answers, *finer])
     system, eps = truth.yardstick.system, truth.yardstick.eps
     declared = Declared(integrator.scheme, orders_for(integrator, system))
@@ -164,35 +173,86 @@ def _judge_integrator(
         if not is_finite(state):
             yield _diverged(integrator, sweep, answer, measured, findings, eps)
             continue
+        if integrator.knob == "fixed-accuracy":
+            findings = accuracy.fixed(findings)
         match = scheme.match_row(truth, integrator, measured, state, known)
-        unknown = rows_of_probes(truth, integrator, sweep, result)
-        rows = [match, *scheme.order_rows(seen, declared, measured), *grows, *unknown]
-        misreported = trajectory.reported_rows(truth, measured, state, result.precision)
-        misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"], eps)
-        misreported += rows_again(truth, integrator, sweep, result, measured)
-        rows += invariants.rows(measured, findings, sweep.times)
-        rows.append(trajectory.time_row(sweep, answer.result["time"], eps))
-        rows += [*misreported, *trajectory.rows(measured, findings)]
-        rows += phase.rows(truth, measured, state)
-        rows += cost.rows(sweep.timestep, answer.result["seconds_per_step"])
-        broken = [row.note for row in (*misreported, match, *unknown) if row.verdict == "fail"]
+        orders = scheme.order_rows(seen, declared, measured)
+        if integrator.knob == "fixed-accuracy":
+            orders = accuracy.fixed_orders(orders)
+        probed = rows_of_probes(truth, integrator, sweep, result)
+        probed += rows_again(truth, integrator, sweep, result, measured)
+        rows, broken = _rows_of_run(truth, measured, findings, answer, result.precision)
+        broken += [row.note for row in (match, *probed) if row.verdict == "fail"]
         why = broken[0] if broken else "; ".join([_why(findings), *(r.note for r in grows[:1])])
         unresolved = any(f.open for f in findings.values())
+        rows = [match, *orders, *grows, *probed, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
+
+
+def _rows_of_run(
+    truth: Truth,
+    measured: MeasuredRun,
+    findings: dict[str, Finding],
+    answer: Answer,
+    precision: str,
+) -> tuple[list[Row], list[str]]:
+    """The rows of one run, whatever its knob, and the notes of what it misreports."""
+    system, eps = truth.yardstick.system, truth.yardstick.eps
+    state, sweep = State(**answer.result["state"]), measured.sweep
+    misreported = trajectory.reported_rows(truth, measured, state, precision)
+    omega_dot = answer.result["omega_dot"]
+    misreported += trajectory.omega_dot_rows(system, state, omega_dot, eps)
+    rows = invariants.rows(measured, findings, sweep.times)
+    rows.append(trajectory.time_row(sweep, answer.result["time"], eps))
+    rows += [*misreported, *trajectory.rows(measured, findings)]
+    rows += phase.rows(truth, measured, state)
+    rows += cost.rows(sweep, answer.result["seconds_per_step"])
+    return rows, [row.note for row in misreported if row.verdict == "fail"]
+
+
+def _judge_accuracies(
+    truth: Truth,
+    integrator: Integrator,
+    sweeps: Iterable[Sweep],
+    result: CaseResult,
+    finer: Iterable[tuple[Sweep, Answer]],
+) -> Iterator[JudgedRun]:
+    """Judge every accuracy of one integrator; finer ones serve to see whether its error follows."""
+    answers = [(sweep, result.runs[integrator.name, sweep.knob]) for sweep in sweeps]
+    eps, measured_runs = truth.yardstick.eps, {}
+    for sweep, answer in (*answers, *finer):
+        if answer.ok and len(answer.result["time"]) == len(sweep.times):
+            state = State(**answer.result["state"])
+            if is_finite(state):
+                own = accuracy.measure_accuracy(truth, integrator, sweep, state)
+                measured_runs[sweep] = own
+    known = list(measured_runs.values())
+    further = accuracy.finer_sweep(truth, integrator, known) if known else None
+    for sweep, answer in answers:
+        measured = measured_runs.get(sweep)
+        if measured is None:
+            yield _failed(integrator, sweep, answer, eps)
+            continue
+        findings = accuracy.findings_of(measured, known)
+        probed = rows_of_probes(truth, integrator, sweep, result)
+        rows, broken = _rows_of_run(truth, measured, findings, answer, result.precision)
+        broken += [row.note for row in probed if row.verdict == "fail"]
+        why = broken[0] if broken else _why(findings)
+        rows = [*accuracy.rows(measured, known), *probed, *rows]
+        yield JudgedRun(integrator, sweep, "ok", "", rows, why, further is not None, further)
 
 
 def judge_case(
     truth: Truth,
     case: Case,
     result: CaseResult,
-    refinements: dict[str, dict[float, tuple[Sweep, Answer]]],
+    refinements: dict[str, dict[Sweep, tuple[Sweep, Answer]]],
 ) -> list[JudgedRun]:
     """Judge every task of one engine on one scenario."""
     truth = truth.in_precision(result.precision)
-    return [
-        judged
-        for integrator in result.integrators
-        for judged in _judge_integrator(
-            truth, integrator, case.sweeps, result, refinements.get(integrator.name, {}).values()
-        )
-    ]
+    found: list[JudgedRun] = []
+    for integrator in result.integrators:
+        finer = refinements.get(integrator.name, {}).values()
+        judge = _judge_accuracies if integrator.knob == "accuracy" else _judge_integrator
+        found += judge(truth, integrator, case.sweeps_of(integrator), result, finer)
+    return found

@@ -140,7 +140,11 @@ class Runner:
         companions = outcome_of(pending.companions)
         truth.companions.update(companions)
         refined = [
-            sweep for own in finer.values() for runs in own.values() for sweep, _ in runs.values()
+            sweep
+            for own in finer.values()
+            for runs in own.values()
+            for sweep in runs
+            if sweep.accuracy is None  # an accuracy has no companion
         ]
         unique = {sweep.timestep: sweep for sweep in (*case.sweeps, *refined)}
         self._add_companions(case, truth, list(results.values()), list(unique.values()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates import restart, vanishing_step
+from omegadot.gates.accuracy import finest_of, tolerated_by
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.rows import Row
@@ -22,15 +23,18 @@ def probe_steps(
     A known scheme's runs are held against the reference's, which depend on nothing else.
     """
     for integrator in result.integrators:
-        if integrator.knob != "timestep":
-            continue
-        runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
+        sweeps, eps = case.sweeps_of(integrator), eps_of(result.precision)
+        runs = {s: result.runs.get((integrator.name, s.knob)) for s in sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue
-        probe = vanishing_step.probe_of(case.system, evaluation_states, eps_of(result.precision))
-        answer = driver.request(case, "first_steps", integrator=integrator.name, **vars(probe))
+        probe = vanishing_step.probe_of(case.system, evaluation_states, eps)
+        finest = finest_of(integrator) if integrator.knob == "accuracy" else None
+        how = {"integrator": integrator.name, "accuracy": finest}
+        answer = driver.request(case, "first_steps", **how, **vars(probe))
         result.first_steps[integrator.name] = (probe, answer)
-        for sweep, run in runs.items() if integrator.scheme not in SCHEMES else ():
+        # A known scheme's run is the reference's, and an accuracy's depends on its tolerance.
+        again = integrator.scheme not in SCHEMES and integrator.knob != "accuracy"
+        for sweep, run in runs.items() if again else ():
             found = restart.restart_of(sweep)
             if found and run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
                 sample, left = found
@@ -46,11 +50,12 @@ def rows_of_probes(
     found = []
     probe, steps = result.first_steps.get(integrator.name, (None, None))
     if probe is not None and steps is not None and steps.ok:
-        own, eps = truth.yardstick.system, truth.yardstick.eps
-        found += vanishing_step.rows(own, probe, State(**steps.result), eps)
-    sample, restarted = result.restarts.get((integrator.name, sweep.timestep), (0, None))
+        own, tolerated = truth.yardstick, tolerated_by(integrator)
+        stepped = State(**steps.result)
+        found += vanishing_step.rows(own.system, probe, stepped, own.eps, tolerated)
+    sample, restarted = result.restarts.get((integrator.name, sweep.knob), (0, None))
     if restarted is not None and restarted.ok:
-        state = State(**result.runs[integrator.name, sweep.timestep].result["state"])
+        state = State(**result.runs[integrator.name, sweep.knob].result["state"])
         rest = State(**restarted.result["state"])
         if len(rest.angular_velocity) == len(sweep.times) - sample:
             found.append(restart.row(truth, integrator, sweep, state, sample, rest))

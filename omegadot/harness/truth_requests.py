@@ -9,6 +9,7 @@ from omegadot.gates.case import Case, Sweep
 from omegadot.gates.measures import Yardstick
 from omegadot.gates.truth import Companion, SchemeKey, Truth
 from omegadot.harness.drive import Driver
+from omegadot.reference_impl.companion import Steps
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
@@ -49,8 +50,9 @@ def case_companions(
     if isinstance(truth, str):
         return {}
     found: Companions = {}
+    plan = [Steps(sweep.timestep, sweep.steps, sweep.every) for sweep in sweeps]
     for key in keys:
-        fields = {**vars(key), "plan": list(sweeps), "rate": truth.yardstick.rate}
+        fields = {**vars(key), "plan": plan, "rate": truth.yardstick.rate}
         answer = _requested(reference, case, "companion", **fields)
         if answer.ok:
             for sweep, run in zip(sweeps, answer.result, strict=True):

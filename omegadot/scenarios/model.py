@@ -49,6 +49,20 @@ def _read_timesteps(value: object) -> tuple[float, ...]:
     return steps
 
 
+def _read_accuracies(value: object) -> tuple[float, ...] | None:
+    if value is None:
+        return None
+    if not isinstance(value, list | tuple) or not 0 < len(value) <= MOST_TIMESTEPS:
+        raise refuse(f"give a list of one to {MOST_TIMESTEPS} accuracies", found=value)
+    found = tuple(read_positive(one, key=f"[{i}]") for i, one in enumerate(value))
+    for i, one in enumerate(found):
+        if one >= 1.0:
+            raise refuse("give a relative tolerance below 1", key=f"[{i}]", found=one)
+        if one in found[:i]:
+            raise refuse("give every accuracy once", key=f"[{i}]", found=one)
+    return found
+
+
 def _read_flag(value: object) -> bool:
     if not isinstance(value, bool):
         raise refuse("give true or false", found=value)
@@ -131,6 +145,9 @@ class Run(Table):
         description="s, the sweep"
     )
     sample: Positive = Field(description="s, spacing of the stored trajectory")
+    accuracies: Annotated[tuple[float, ...] | None, PlainValidator(_read_accuracies)] = Field(
+        default=None, description="relative, the sweep of error-controlled integrators"
+    )
 
     @model_validator(mode="after")
     def _within_duration(self) -> Self:

@@ -62,6 +62,12 @@ def test_what_is_written_is_read_and_sorted(tmp_path: Path) -> None:
     assert read_baseline(tmp_path, "dart") is None
 
 
+def test_an_accuracy_is_written_and_read() -> None:
+    runs = {RunKey("dopri", accuracy=1e-9): Figures({"omega error_max": Figure(1e-8, 1e-12)})}
+    stored = {"sphere": ScenarioFigures("1", runs)}
+    assert from_text(to_text("toy", stored)) == stored
+
+
 def test_a_folder_that_is_a_file_is_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "taken").touch()
     with pytest.raises(RecordError, match="taken: cannot be written to"):

@@ -149,10 +149,11 @@ def test_python_blocks_are_typed(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout
 
 
-def test_the_page_shows_the_toy_engine_as_it_is() -> None:
-    example = (ROOT / "docs" / "examples" / "toy_engine.py").read_text()
+def test_the_page_shows_the_example_engines_as_they_are() -> None:
+    folder = ROOT / "docs" / "examples"
+    example = (folder / "toy_engine.py").read_text()
     shown = [text for name, text in blocks("python") if name == "add-an-engine.md"]
-    assert shown == [example]
+    assert shown == [example, (folder / "adaptive_engine.py").read_text()]
     assert len(example[example.index("class ToyAdapter") :].splitlines()) <= 60
 
 

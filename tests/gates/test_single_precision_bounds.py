@@ -97,7 +97,7 @@ def gate_rows(eps: float) -> dict[str, list[Row]]:
         "body": model.body_rows(case, BODY, eps),
         "state": model.state_rows(case, STATES[0], STATES[0], eps),
         "forward": equation.forward_rows(SYSTEM, STATES, acceleration, "residual", eps),
-        "inverse": equation.inverse_rows(SYSTEM, STATES, acceleration, torque, eps),
+        "inverse": equation.inverse_rows(SYSTEM, STATES, acceleration, torque, eps=eps),
         "run": trajectory.omega_dot_rows(SYSTEM, STATES, acceleration.angular, eps),
         "time": [trajectory.time_row(SWEEP, TIMES, eps)],
     }

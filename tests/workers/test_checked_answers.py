@@ -15,6 +15,7 @@ from omegadot.workers.engine_end.checked import (
     checked_description,
     checked_seconds,
     checked_trajectory,
+    description_of,
     numbers,
 )
 from omegadot.workers.engine_end.worker import failure
@@ -37,6 +38,40 @@ def test_what_is_right_passes_as_it_is() -> None:
     assert checked("forward_dynamics()", pair, Acceleration, (2,)).linear.all()
     assert numbers("torque", np.ones((2, 3)), (2, 3)).shape == (2, 3)
     assert checked_bodies((Body(1.0, [0, 0, 0], np.eye(3)),), 1)[0].mass == 1.0  # type: ignore[arg-type]
+
+
+class WithSteps:
+    """An adapter without the parameter."""
+
+    description = replace(ENGINE, integrators=(replace(EULER, knob="accuracy"),))
+
+    def run(self, *_: Any) -> None: ...
+
+
+class WithAccuracy(WithSteps):
+    def run(self, *_: Any, accuracy: float | None = None) -> None: ...
+
+
+class WithAnything(WithSteps):
+    def run(self, *_: Any, **__: Any) -> None: ...
+
+
+@pytest.mark.parametrize(
+    ("adapter", "knob"),
+    [(WithSteps, "fixed-accuracy"), (WithAccuracy, "accuracy"), (WithAnything, "accuracy")],
+)
+def test_an_accuracy_that_a_run_does_not_take_is_fixed(adapter: Any, knob: str) -> None:
+    (found,) = description_of(adapter()).integrators
+    assert found.knob == knob
+    assert found.finest_accuracy == 0.0
+
+
+def test_single_precision_bounds_the_accuracies() -> None:
+    class Single(WithAccuracy):
+        description = replace(WithAccuracy.description, precision="float32")
+
+    (found,) = description_of(Single()).integrators  # type: ignore[arg-type]
+    assert found.finest_accuracy == 450 * 2.0**-23
 
 
 def test_a_run_costs_what_the_adapter_measured_or_else_the_whole_call() -> None:
@@ -118,6 +153,9 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ({"integrators": ("euler",)}, "an item of description.integrators"),
         ({"integrators": (EULER, EULER)}, "has a name twice, of euler, euler"),
         ({"integrators": (replace(EULER, name=1),)}, "an integrator's name"),
+        ({"integrators": (replace(EULER, knob="step"),)}, "is 'step'; give one of timestep, acc"),
+        ({"integrators": (replace(EULER, finest_accuracy=2),)}, "is 2; give a number from 0 to 1"),
+        ({"integrators": (replace(EULER, finest_accuracy="x"),)}, "the finest accuracy of euler"),
         ({"integrators": (replace(EULER, scheme=1),)}, "the scheme of euler"),
         (
             {"integrators": (replace(EULER, coordinates="body"),)},

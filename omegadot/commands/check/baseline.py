@@ -20,6 +20,7 @@ from omegadot.commands.check.baseline_file import (
     ScenarioFigures,
 )
 from omegadot.commands.check.result import Subject
+from omegadot.gates.case import knobs_of
 from omegadot.gates.rows import Row
 from omegadot.harness.outcome import EngineCase
 from omegadot.reports.text.numbers import short
@@ -80,12 +81,15 @@ def answered(found: EngineCase) -> bool:
 
 
 def figures_of(found: EngineCase) -> ScenarioFigures:
-    """The figures of one engine on one scenario: its equations, and its runs at the finest step."""
+    """The figures of one engine on one scenario: its equations, and its finest runs."""
     runs = {RunKey(): _figures(found.shared)} if found.shared else {}
-    finest = min((run.sweep.timestep for run in found.runs), default=0.0)
+    finest: dict[str, float] = {}
     for run in found.runs:
-        if run.sweep.timestep == finest and run.outcome in ("ok", "diverged"):
-            key = RunKey(run.integrator.name, finest)
+        name, knob = run.integrator.name, run.sweep.knob
+        finest[name] = min(knob, finest.get(name, knob))
+    for run in found.runs:
+        if run.sweep.knob == finest[run.integrator.name] and run.outcome in ("ok", "diverged"):
+            key = RunKey(run.integrator.name, **knobs_of(run.sweep))
             runs[key] = _figures(run.rows, run.integrator.scheme or "")
     return ScenarioFigures(found.engine.description.version, runs)
 

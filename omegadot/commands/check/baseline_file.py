@@ -15,6 +15,7 @@ from omegadot.reports.record.whole_file import make_folder, write_whole
 
 SCHEMA = 1
 DIGITS = 3
+ACCURACY = "accuracy "
 HEAD = "# Written by --update-baseline. [value, band]: within the band a rerun may differ."
 
 
@@ -32,6 +33,20 @@ class RunKey:
 
     integrator: str = ""
     timestep: float | None = None
+    accuracy: float | None = None
+
+    @property
+    def knob(self) -> str:
+        """The step in s, or the accuracy, as it stands in the file."""
+        if self.accuracy is None:
+            return repr(self.timestep)
+        return f"{ACCURACY}{self.accuracy!r}"
+
+
+def _key(integrator: str, knob: str) -> RunKey:
+    if knob.startswith(ACCURACY):
+        return RunKey(integrator, accuracy=float(knob.removeprefix(ACCURACY)))
+    return RunKey(integrator, float(knob))
 
 
 @dataclass(frozen=True)
@@ -69,10 +84,10 @@ def _lines(engine: str, baseline: Mapping[str, ScenarioFigures]) -> Iterator[str
         yield f"\n[scenario.{_quoted(scenario)}]"
         yield f"version = {_quoted(baseline[scenario].version)}"
         runs = baseline[scenario].runs
-        for key in sorted(runs, key=lambda k: (k.integrator, k.timestep or 0.0)):
+        for key in sorted(runs, key=lambda k: (k.integrator, k.timestep or k.accuracy or 0.0)):
             place = f"scenario.{_quoted(scenario)}"
             if key.integrator:
-                yield f"\n[{place}.run.{_quoted(key.integrator)}.{_quoted(repr(key.timestep))}]"
+                yield f"\n[{place}.run.{_quoted(key.integrator)}.{_quoted(key.knob)}]"
                 yield f"scheme = {_quoted(runs[key].scheme)}"
             else:
                 yield f"\n[{place}.figures]"
@@ -108,7 +123,7 @@ def _scenario(table: dict[str, Any]) -> ScenarioFigures:
     runs = {RunKey(): _figures(table["figures"])} if "figures" in table else {}
     for integrator, steps in table.get("run", {}).items():
         for step, figures in steps.items():
-            runs[RunKey(integrator, float(step))] = _figures(figures)
+            runs[_key(integrator, step)] = _figures(figures)
     return ScenarioFigures(str(table["version"]), runs)
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 from omegadot.commands.check.baseline import OF_A_SCENARIO, Change, changes
 from omegadot.commands.check.baseline_file import Baseline, Figures, RunKey, ScenarioFigures
-from omegadot.commands.check.result import PASSED, Check, Result, Subject
-from omegadot.gates.case import Case
+from omegadot.commands.check.result import PASSED, Check, Result, Subject, sweeps_of
+from omegadot.gates.case import Case, knobs_of
 from omegadot.reports.text.numbers import short
 
 GATE = "baseline"
@@ -72,21 +72,24 @@ def baseline_checks(
     stepped = subject.integrators if subject.name != "exact" else ()
     whole = set(subject.declared) <= set(subject.integrators)
     for case in cases:
-        finest = min(sweep.timestep for sweep in case.sweeps)
-        keys = [RunKey(), *(RunKey(name, finest) for name in stepped)]
+        keys = [RunKey()]
+        for name in stepped:
+            finest = min(sweeps_of(subject, name, case), key=lambda sweep: sweep.knob)
+            keys.append(RunKey(name, **knobs_of(finest)))
         if stored is not None and case.name in stored:
             # An integrator that is gone belongs to what is checked, unless some are left out.
             known = stored[case.name].runs
             keys += [k for k in known if whole or k.integrator in ("", *subject.integrators)]
         for key in dict.fromkeys(keys):
-            yield Check(subject.name, case.name, GATE, key.integrator or None, key.timestep)
+            own = {"timestep": key.timestep, "accuracy": key.accuracy}
+            yield Check(subject.name, case.name, GATE, key.integrator or None, **own)
 
 
 def compare(
     check: Check, stored: Baseline | None, now: ScenarioFigures | None, version: str
 ) -> Result:
     """Compare the figures of one run or one scenario with those that are stored."""
-    key = RunKey(check.integrator or "", check.timestep)
+    key = RunKey(check.integrator or "", check.timestep, check.accuracy)
     own = now.runs.get(key) if now else None
     was = stored.get(check.scenario) if stored is not None else None
     known = was.runs.get(key) if was is not None else None

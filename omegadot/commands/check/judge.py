@@ -16,6 +16,7 @@ from omegadot.commands.check.result import (
     skipped,
 )
 from omegadot.gates import repeats
+from omegadot.gates.case import knobs_of
 from omegadot.gates.exact import exact_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.judge import JudgedRun
@@ -124,5 +125,5 @@ def results_of(
         yield Check(name, case.name, "invariants"), _of_rows(rows, lambda: "", why)
     for run in found.runs:
         for gate in GATES_OF_A_RUN:
-            check = Check(name, case.name, gate, run.integrator.name, run.sweep.timestep)
+            check = Check(name, case.name, gate, run.integrator.name, **knobs_of(run.sweep))
             yield check, _of_run(run, gate, partial(cause, run))

@@ -10,7 +10,7 @@ from typing import Literal
 
 from pydantic import TypeAdapter
 
-from omegadot.gates.case import Case
+from omegadot.gates.case import Case, Sweep, knobs_of
 from omegadot.harness.plan import Engine
 from omegadot.reports.text.numbers import times
 
@@ -23,7 +23,8 @@ Verdict = Literal["pass", "fail", "declared", "skip", "error"]
 class Check:
     """One gate of one engine: on a scenario, and there of a run, or of the engine itself.
 
-    scenario: "" for a check of the engine itself.  integrator, timestep: of a run, else None.
+    scenario: "" for a check of the engine itself.  integrator: of a run, else None, and with it
+    timestep or accuracy.
     """
 
     engine: str
@@ -31,11 +32,17 @@ class Check:
     gate: str
     integrator: str | None = None
     timestep: float | None = None
+    accuracy: float | None = None
 
     @property
     def id(self) -> str:
-        """Engine, integrator, scenario, step and gate, like mujoco-RK4-t-handle-0.01-scheme."""
+        """Engine, integrator, scenario, step and gate, like mujoco-RK4-t-handle-0.01-scheme.
+
+        In place of a step stands an accuracy, like accuracy-1e-09.
+        """
         step = None if self.timestep is None else repr(float(self.timestep))
+        if self.accuracy is not None:
+            step = f"accuracy-{float(self.accuracy)!r}"
         parts = (self.engine, self.integrator, self.scenario, step, self.gate)
         return "-".join(part for part in parts if part)
 
@@ -93,12 +100,16 @@ class Tally:
 
 @dataclass(frozen=True)
 class Subject:
-    """An engine that started. integrators: those to check.  declared: all that it has."""
+    """An engine that started. integrators: those to check.  declared: all that it has.
+
+    by_accuracy: those of all that are swept over accuracies, with the finest that each follows.
+    """
 
     name: str
     version: str
     integrators: tuple[str, ...]
     declared: tuple[str, ...]
+    by_accuracy: dict[str, float] = field(default_factory=dict)
 
     @property
     def whole(self) -> Subject:
@@ -115,9 +126,17 @@ def checks_of(subjects: Iterable[Subject], cases: Sequence[Case]) -> list[Check]
         if subject.name == "exact":  # it is not stepped, and has its invariants to show
             found.append(Check(*where, "invariants"))
             continue
-        runs = product(subject.integrators, case.sweeps, GATES_OF_A_RUN)
-        found += [Check(*where, gate, name, sweep.timestep) for name, sweep, gate in runs]
+        for name in subject.integrators:
+            knobs = [knobs_of(sweep) for sweep in sweeps_of(subject, name, case)]
+            runs = product(knobs, GATES_OF_A_RUN)
+            found += [Check(*where, gate, name, **own) for own, gate in runs]
     return found
+
+
+def sweeps_of(subject: Subject, integrator: str, case: Case) -> tuple[Sweep, ...]:
+    """What an integrator of an engine is swept over."""
+    finest = subject.by_accuracy.get(integrator)
+    return case.sweeps if finest is None else case.swept_by_accuracy(finest)
 
 
 def subject_of(engine: Engine) -> Subject:
@@ -127,6 +146,7 @@ def subject_of(engine: Engine) -> Subject:
         engine.description.version,
         tuple(i.name for i in engine.integrators),
         tuple(i.name for i in engine.description.integrators),
+        {i.name: i.finest_accuracy for i in engine.description.integrators if i.knob == "accuracy"},
     )
 
 

@@ -44,10 +44,10 @@ class CaseDocument:
                 qualified[candidate.name] = seconds
         return qualified
 
-    def timestep(self, name: str) -> float | None:
-        """The largest step of a candidate, in s."""
+    def knobs(self, name: str) -> Row:
+        """The largest step of a candidate, in s, or its coarsest accuracy."""
         found = next(c.edge.passing for c in self._found.candidates if c.name == name)
-        return found.timestep if found else None
+        return found.knobs if found else {"timestep": None, "accuracy": None}
 
     def row(self) -> Row:
         """Everything about the case; `candidates` in order of rank, those out of it after."""
@@ -88,7 +88,7 @@ class CaseDocument:
             missed.append(
                 {"requirement": "real-time-factor", "limit": least, "unit": "1"}
                 | {"found": factor.median, "factor": least / factor.median}
-                | {"timestep": found.timestep, "steps": found.steps}
+                | found.knobs
             )
 
         def row(trial: Trial | None) -> Row | None:
@@ -158,5 +158,4 @@ class CaseDocument:
         trial = edges[place.candidate].passing
         assert trial is not None  # it would not be ranked
         factor = self._duration / costs[place.candidate].median
-        step = {"timestep": trial.timestep, "steps": trial.steps}
-        return {**vars(place), **step, "real_time_factor": factor}
+        return {**vars(place), **trial.knobs, "real_time_factor": factor}

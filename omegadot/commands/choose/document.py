@@ -63,6 +63,9 @@ def _everywhere(cases: list[CaseDocument]) -> list[Row]:
     totals = {name: total([own[name] for own in costs]) for name in names}
     return [
         {**vars(place), "seconds": totals[place.candidate].row()}
-        | {"timesteps": [case.timestep(place.candidate) for case in cases]}
+        | {
+            f"{name}s": [case.knobs(place.candidate)[knob] for case in cases]
+            for name, knob in (("timestep", "timestep"), ("accuracie", "accuracy"))
+        }
         for place in ranked(totals)
     ]

@@ -59,7 +59,11 @@ class Spread:
 def _moment(trial: Trial) -> Sweep:
     """The horizon, or as much of it as takes a moment; the ends alone are kept."""
     steps = min(trial.steps, max(1, round(SECONDS_A_RUN / max(trial.seconds_per_step, 1e-9))))
-    return Sweep(trial.timestep, steps, steps)
+    if trial.accuracy is None:
+        return Sweep(trial.timestep, steps, steps)
+    intervals = trial.samples - 1  # as close together as they were when it was judged
+    part = max(1, round(intervals * steps / trial.steps))
+    return Sweep(trial.timestep * trial.steps / intervals, part, part, trial.accuracy)
 
 
 def time_all(wanted: Mapping[Key, tuple[Candidate, Trial]]) -> dict[Key, Spread]:
@@ -69,13 +73,15 @@ def time_all(wanted: Mapping[Key, tuple[Candidate, Trial]]) -> dict[Key, Spread]
     is left out.
     """
     found: dict[Key, list[float]] = {key: [] for key in wanted}
-    one = sum(_moment(trial).steps * trial.seconds_per_step for _, trial in wanted.values())
+    one = sum(_moment(t).times[-1] / t.timestep * t.seconds_per_step for _, t in wanted.values())
     rounds = int(min(max(SECONDS_IN_ALL / max(one, 1e-9), FEWEST_ROUNDS), MOST_ROUNDS))
     for number in range(rounds + 1):
         for key, (own, trial) in wanted.items():
-            answer = own.driver.run(own.ruler.case, own.integrator.name, _moment(trial))
+            moment = _moment(trial)
+            answer = own.driver.run(own.ruler.case, own.integrator.name, moment)
             if answer.ok and number:
-                found[key].append(float(answer.result["seconds_per_step"]))
+                part = trial.timestep / moment.timestep  # of one of the run's steps
+                found[key].append(float(answer.result["seconds_per_step"]) * part)
     return {key: Spread(tuple(found[key])) for key in found if len(found[key]) == rounds}
 
 

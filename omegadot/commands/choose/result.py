@@ -18,7 +18,8 @@ from omegadot.reports.record.record import RUN
 class Ranked:
     """An engine and integrator that qualifies on a scenario, with its largest step.
 
-    rank: 1 for the cheapest; tied: others share it.  timestep: s.  errors: by requirement, SI.
+    rank: 1 for the cheapest; tied: others share it.  timestep: s, None where there is an accuracy:
+    that of an error-controlled integrator, whose steps are nominal.  errors: by requirement, SI.
     real_time_factor: simulated over elapsed seconds, the median.  memory: bytes, None if unknown.
     """
 
@@ -28,11 +29,19 @@ class Ranked:
     engine: str
     version: str
     integrator: str
-    timestep: float
+    timestep: float | None
     steps: int
     errors: Mapping[str, float]
     real_time_factor: float
     memory: int | None
+    accuracy: float | None = None
+
+    @property
+    def setting(self) -> str:
+        """The step or the accuracy, as text."""
+        if self.timestep is None:
+            return f"an accuracy of {self.accuracy:.1e}"
+        return f"{self.timestep:g} s"
 
 
 @dataclass(frozen=True, repr=False)
@@ -62,6 +71,7 @@ class ChooseResult:
                 errors={name: error["value"] for name, error in row["found"]["errors"].items()},
                 real_time_factor=row["real_time_factor"]["median"],
                 memory=row["memory"],
+                accuracy=row["found"]["accuracy"],
             )
             for case in self.document["scenarios"]
             for row in case["candidates"]
@@ -101,7 +111,7 @@ class ChooseResult:
         best = self.best
         if best is None:
             return "<omegadot choice: nothing qualifies>"
-        step = f"{best.engine}:{best.integrator} at {best.timestep:g} s"
+        step = f"{best.engine}:{best.integrator} at {best.setting}"
         return f"<omegadot choice: {step}, of {len(self.ranking)} that qualify>"
 
     def _repr_html_(self) -> str:

@@ -30,7 +30,8 @@ class Trial:
     """A run over the whole horizon in `steps` steps of `timestep` s.
 
     errors: by requirement; none where the run failed.  samples: how many states were held against
-    the truth.
+    the truth.  accuracy: of an error-controlled integrator. Its steps are a nominal number, see
+    `Candidate.accuracy_of`.
     """
 
     steps: int
@@ -38,6 +39,13 @@ class Trial:
     errors: Mapping[str, Measured]
     seconds_per_step: float
     samples: int
+    accuracy: float | None = None
+
+    @property
+    def knobs(self) -> Row:
+        """The step or the accuracy, and the number of steps."""
+        timestep = self.timestep if self.accuracy is None else None
+        return {"timestep": timestep, "accuracy": self.accuracy, "steps": self.steps}
 
     def ratio(self, limits: Mapping[str, float]) -> float:
         """The greatest error over its limit; 1 or less meets them all."""
@@ -65,7 +73,7 @@ class Trial:
             for key, found in self.errors.items()
         }
         judged = {"ratio": self.ratio(limits), "passes": self.passes(limits)}
-        return {**vars(self), "errors": errors, **judged}
+        return {**vars(self), **self.knobs, "errors": errors, **judged}
 
     def missed_rows(self, limits: Mapping[str, float]) -> list[Row]:
         """The limits that it misses, the worst first, and by what factor."""
@@ -73,6 +81,6 @@ class Trial:
             {"requirement": key, "limit": limits[key], "unit": ACCURACY[key][1]}
             | {"found": self.errors[key].most if self.errors else None}
             | {"factor": self.errors[key].most / limits[key] if self.errors else None}
-            | {"timestep": self.timestep, "steps": self.steps}
+            | self.knobs
             for key in self.missed(limits)
         ]

@@ -32,6 +32,15 @@ def run(
         list[float] | None,
         option("S", "A time step in s instead of the scenario's; repeatable.", "--timestep"),
     ] = None,
+    accuracies: Annotated[
+        list[float] | None,
+        option(
+            "A",
+            "An accuracy of error-controlled integrators, relative, instead of the scenario's; "
+            "repeatable.",
+            "--accuracy",
+        ),
+    ] = None,
     out: Annotated[Path, option("DIR", "Folder for the record and its report.")] = Path(
         "omegadot-run"
     ),

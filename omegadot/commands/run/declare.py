@@ -13,7 +13,7 @@ from omegadot.commands.check.exceptions import (
     unmatched,
 )
 from omegadot.commands.check.result import Check, subject_of
-from omegadot.gates.case import Case
+from omegadot.gates.case import Case, knobs_of
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.outcome import EngineCase, Outcome
 
@@ -51,7 +51,7 @@ class _Ledger:
         """One engine on one case."""
         whole, runs = Check(found.engine.name, case.name, ""), []
         for run in found.runs:
-            check = replace(whole, integrator=run.integrator.name, timestep=run.sweep.timestep)
+            check = Check(whole.engine, case.name, "", run.integrator.name, **knobs_of(run.sweep))
             runs.append(replace(run, rows=self.rows(check, run.rows)))
         return replace(found, shared=self.rows(whole, found.shared), runs=runs)
 

@@ -27,6 +27,7 @@ def run(
     engines: EngineLike | Sequence[EngineLike] = (),
     *,
     timesteps: float | Sequence[float] = (),
+    accuracies: float | Sequence[float] = (),
     out: str | os.PathLike[str] | None = None,
     setup: Setup = "physics",
     adapters: EngineLike | Sequence[EngineLike] = (),
@@ -43,15 +44,16 @@ def run(
     scenarios: built-in names, paths, scenarios or their tables; all built-in ones without any.
     engines: ``NAME``, ``NAME:INTEGRATOR``, ``FILE.py:Class`` or an adapter's class; all that are
     registered without any.  adapters: engines of your own in addition, by class.
-    timesteps: s, instead of the scenarios' own.  out: a folder to write record and page to.
+    timesteps: s, instead of the scenarios' own.  accuracies: relative, of error-controlled
+    integrators, likewise.  out: a folder to write record and page to.
     exceptions: files of declared exceptions.  timeout: s, for one request to an engine.
     jobs: requests at the same time; as many as cores without it.  memory: GiB that one engine may
     hold.  seed: of the random states.  command: what the record names as the command.
     Raises UsageError, ScenarioError, RecordError, NoTruthError, and RunInterrupted on Ctrl-C.
     """
     choices = engine_choices(several(engines), several(adapters))
-    steps = several(timesteps)
-    cases = [case_of(scenario, steps) for scenario in scenarios_of(several(scenarios))]
+    knobs = several(timesteps), several(accuracies)
+    cases = [case_of(scenario, *knobs) for scenario in scenarios_of(several(scenarios))]
     files: list[str | os.PathLike[str]] = several(exceptions)
     known = exceptions_of(choices, map(Path, files))
     if out is not None:

@@ -18,8 +18,8 @@ from omegadot.commands.versions.metric import RATIO, Figure, Name
 from omegadot.diagnosis.scheme_study.fingerprint import fingerprint
 from omegadot.diagnosis.scheme_study.orders import global_errors, observe
 from omegadot.diagnosis.scheme_study.probes import Probe
-from omegadot.diagnosis.scheme_study.study import Order, ProbeStudy
-from omegadot.diagnosis.scheme_study.subject import Stepper
+from omegadot.diagnosis.scheme_study.study import OWN_STEPS, Order, ProbeStudy
+from omegadot.diagnosis.scheme_study.subject import NoAnswerError, Stepper
 from omegadot.gates.case import Case
 from omegadot.gates.equation import forward_rows, inverse_rows
 from omegadot.gates.measured_run import CHANNELS, orders_for
@@ -83,8 +83,10 @@ def scheme_figures(
 ) -> tuple[Figures, ProbeStudy]:
     """The schemes that an integrator equals on a probe, its orders there, and what is declared.
 
-    Raises NoAnswerError.
+    Raises NoAnswerError, also where it controls its error: its steps are its own.
     """
+    if integrator.knob != "timestep":
+        raise NoAnswerError(Answer("unsupported", OWN_STEPS))
     found: Figures = {}
     matches, orders = None, {}
     scheme, *order_names = probe_names(integrator.name, probe.kind)

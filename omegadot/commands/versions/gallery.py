@@ -17,6 +17,7 @@ from omegadot.commands.versions.measure import Sitting
 from omegadot.commands.versions.metric import Name
 from omegadot.commands.versions.release import Product, version_of
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load
+from omegadot.gates.accuracy import usual_for
 from omegadot.gates.case import Case
 from omegadot.harness.engines import outcome_of
 from omegadot.workers.harness_end.process import WorkerProcess
@@ -123,12 +124,13 @@ def _time_steps(portrait: Portrait, worker: WorkerProcess, case: Case) -> None:
     sweep = case.sweeps[0]
     plan = {"timestep": sweep.timestep, "steps": sweep.steps, "every": sweep.steps}
     try:
-        load(worker, case.system)
+        declared = load(worker, case.system)
     except NoAnswerError:
         return
     for name in portrait.integrators:
         for _ in range(REPEATS):
-            answer = worker.request("run", initial=case.initial, integrator=name, **plan)
+            own = {"integrator": name, "accuracy": usual_for(declared[name])}
+            answer = worker.request("run", initial=case.initial, **own, **plan)
             if not answer.ok:
                 break
             portrait.speeds.setdefault(name, []).append(float(answer.result["seconds_per_step"]))

@@ -20,6 +20,7 @@ from omegadot.commands.versions.metric import Figure, Name
 from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
 from omegadot.diagnosis.scheme_study.study import IntegratorStudy, ProbeStudy
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load, stepper_of
+from omegadot.gates.accuracy import usual_for
 from omegadot.gates.case import Case
 from omegadot.reference_impl.system import System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
@@ -114,8 +115,9 @@ class Sitting:
             raise NoAnswerError(Answer("timeout", f"not tried after {MOST_TIMEOUTS} time-outs"))
         return load(self._worker, system)
 
-    def _drifts(self, case: Case, name: str, _: Declared) -> Figures:
-        return drift_figures(case, name, self._aims.truth(case), stepper_of(self._worker, name))
+    def _drifts(self, case: Case, name: str, declared: Declared) -> Figures:
+        step = stepper_of(self._worker, name, usual_for(declared[name]))
+        return drift_figures(case, name, self._aims.truth(case), step)
 
     def _scheme(
         self,

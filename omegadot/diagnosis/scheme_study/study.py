@@ -20,6 +20,8 @@ from omegadot.harness.plan import EngineChoice
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
 
+OWN_STEPS = "it controls its error: its steps are its own"
+
 
 @dataclass(frozen=True)
 class Order:
@@ -112,6 +114,8 @@ class EngineStudy:
 
 def study_probe(probe: Probe, integrator: Integrator, step: Stepper) -> ProbeStudy:
     """One integrator on one probe; what the engine fails to answer is the answer."""
+    if integrator.knob != "timestep":
+        return ProbeStudy(Answer("unsupported", OWN_STEPS))
     declared, key = orders_for(integrator, probe.system), scheme_key(integrator, probe.system)
     try:
         matches = tuple(fingerprint(probe, step))

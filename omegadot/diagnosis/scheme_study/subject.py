@@ -45,11 +45,14 @@ def load(worker: WorkerProcess, system: System) -> dict[str, Integrator]:
     return {i.name: i for i in description_of(answer.result).integrators}
 
 
-def stepper_of(worker: WorkerProcess, integrator: str) -> Stepper:
-    """The steps of one integrator, over the system that the worker has loaded."""
+def stepper_of(worker: WorkerProcess, integrator: str, accuracy: float | None = None) -> Stepper:
+    """The steps of one integrator, over the system that the worker has loaded.
+
+    accuracy: of an error-controlled one, which steps from sample to sample as it likes.
+    """
 
     def step(initial: State, timestep: float, steps: int, every: int) -> State:
-        plan = {"timestep": timestep, "steps": steps, "every": every}
+        plan = {"timestep": timestep, "steps": steps, "every": every, "accuracy": accuracy}
         answer = _requested(worker, "run", initial=initial, integrator=integrator, **plan)
         state, kept = State(**answer.result["state"]), -(-steps // every) + 1
         if len(state.orientation) != kept:

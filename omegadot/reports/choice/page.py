@@ -17,6 +17,7 @@ from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.record.whole_file import write_whole
 from omegadot.reports.summary.provenance import command_of
+from omegadot.reports.text.numbers import knob
 
 NAME = "choice.json"
 _FRAME = Frame(width=720, height=340, left=62, right=12, top=12, bottom=44)
@@ -103,15 +104,17 @@ def _ticks(axis: LogAxis) -> list[tuple[float, str]]:
     return axis.ticks(math.ceil((axis.high - axis.low) / 8))
 
 
-def _runs(row: Mapping[str, Any], duration: float) -> list[tuple[float, float, float]]:
-    """(seconds a simulated second, error over limit, step) of the runs that can be drawn."""
+def _runs(row: Mapping[str, Any], duration: float) -> list[tuple[float, float, str]]:
+    """(seconds a simulated second, error over limit, step or accuracy) of the runs to draw."""
     per_step = row["time_per_step"]
     seconds = per_step["median"] if per_step else None
     found = []
     for trial in row["tried"]:
         ratio, one = trial["ratio"], seconds or trial["seconds_per_step"]
         if ratio and one and math.isfinite(ratio):
-            found.append((one * trial["steps"] / duration, ratio, trial["timestep"]))
+            parts = (trial["timestep"], trial["accuracy"])
+            setting = knob(*(part and float(f"{part:.4g}") for part in parts))
+            found.append((one * trial["steps"] / duration, ratio, setting))
     return sorted(found)
 
 
@@ -133,8 +136,8 @@ def _drawing(case: Mapping[str, Any], engines: list[dict[str, Any]]) -> Drawing 
     for (engine, integrator), found in runs.items():
         name = f"{engine} {integrator}"
         marks = [
-            (x.at(cost), y.at(ratio), f"{name}, step {step:.4g} s: {ratio:.3g}")
-            for cost, ratio, step in found
+            (x.at(cost), y.at(ratio), f"{name}, {setting}: {ratio:.3g}")
+            for cost, ratio, setting in found
         ]
         path = "M" + " L".join(f"{a} {b}" for a, b, _ in marks)
         lines.append(PlotLine(name, ink[engine], dash.get((engine, integrator), ""), path, marks))

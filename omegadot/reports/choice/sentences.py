@@ -31,6 +31,18 @@ def step_text(timestep: float, duration: float) -> str:
     return f"{scaled / 10.0**digits:.{max(digits, 0)}f}".rstrip("0").rstrip(".")
 
 
+def setting_text(found: Row, duration: float) -> str:
+    """The step in s, or the accuracy of an integrator that chooses its own steps."""
+    if found["timestep"] is None:
+        return f"accuracy {found['accuracy']:.1e}"
+    return step_text(found["timestep"], duration)
+
+
+def _setting(found: Row, duration: float) -> str:
+    text = setting_text(found, duration)
+    return text if found["timestep"] is None else f"{text} s"
+
+
 def requested(choice: Row) -> str:
     """The requirements as they were written, in one line."""
     wanted = choice["requirements"]
@@ -68,8 +80,9 @@ def headline(case: Row) -> str:
     verb = "qualifies" if case["qualifying"] == 1 else "qualify"
     count = f"{case['qualifying']} of {times(len(rows), 'integrator')} {verb}{open_}"
     first = best[0]
-    step = step_text(first["found"]["timestep"], case["duration"])
-    named = f"{_label(first)} with a step of {step} s"
+    step = _setting(first["found"], case["duration"])
+    kind = "a step of" if first["found"]["timestep"] is not None else "an"
+    named = f"{_label(first)} with {kind} {step}"
     if len(best) > 1:
         others = listed([_label(row) for row in best[1:]])
         return f"{start}{count}. The cheapest is {named}, within the timing error of {others}."
@@ -114,7 +127,7 @@ def variant_lines(case: Row) -> Iterator[str]:
             changes.append("the ranking is the same" if variant["same"] else "the ranking changes")
         steps = [
             f"rank {o['rank']}{'=' if o['tied'] else ''} {o['candidate']} at "
-            f"{step_text(o['timestep'], case['duration'])} s"
+            f"{_setting(o, case['duration'])}"
             for o in order
         ]
         yield start + "; ".join(changes) + (": " + ", ".join(steps) if steps else "") + "."

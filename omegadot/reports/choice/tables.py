@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.text import Text
 
 from omegadot.reports.choice import sentences
-from omegadot.reports.choice.sentences import LONGEST, NAMES, missed_text, step_text
+from omegadot.reports.choice.sentences import LONGEST, NAMES, missed_text, setting_text
 from omegadot.reports.text.numbers import grouped, quantity, short
 from omegadot.reports.text.text_grid import Grid, plain_console, text_grid
 
@@ -28,8 +28,8 @@ def ranking(choice: Row, case: Row) -> Grid:
             _rank(row),
             f"{row['engine']} {row['version']}",
             row["integrator"],
-            step_text(row["found"]["timestep"], case["duration"]),
-            str(row["found"]["steps"]),
+            setting_text(row["found"], case["duration"]),
+            str(row["found"]["steps"]) if row["found"]["timestep"] else "–",
             *(_error(row["found"], requirement) for requirement in wanted),
             _factor(row),
             f"{row['memory'] / MEGABYTE:.0f}" if row["memory"] else "–",
@@ -67,11 +67,9 @@ def _larger(case: Row, row: Row) -> str:
     larger = row["larger"]
     if larger is None:
         return "none: every step tried passes"
-    message = (
-        f"{step_text(larger['timestep'], case['duration'])} fails ({grouped(larger['ratio'])}x)"
-    )
+    message = f"{setting_text(larger, case['duration'])} fails ({grouped(larger['ratio'])}x)"
     if row["passes_again"]:
-        again = step_text(row["passes_again"]["timestep"], case["duration"])
+        again = setting_text(row["passes_again"], case["duration"])
         message += f", {again} passes again"
     return message
 
@@ -83,7 +81,7 @@ def refusals(case: Row) -> Grid:
         if row["status"] == "qualifies":
             continue
         near, engine = row["nearest"], f"{row['engine']} {row['version']}"
-        at = step_text(near["timestep"], case["duration"]) if near else "–"
+        at = setting_text(near, case["duration"]) if near else "–"
         if row["status"] != "out":
             rows.append((engine, row["integrator"], f"{row['status']}: {row['reason']}", at, ""))
             continue
@@ -111,10 +109,14 @@ def everywhere(choice: Row) -> Grid | None:
     heads = ("rank", "engine and integrator", "total in s", "steps in s, scenario by scenario")
     rows: list[tuple[str, ...]] = []
     for row in choice["everywhere"]:
-        steps = zip(row["timesteps"], cases, strict=True)
+        knobs = zip(row["timesteps"], row["accuracies"], cases, strict=True)
+        settings = [
+            setting_text({"timestep": step, "accuracy": accuracy}, case["duration"])
+            for step, accuracy, case in knobs
+        ]
         rows.append((
             _rank(row), row["candidate"], short(row["seconds"]["median"], 3),
-            ", ".join(step_text(step, case["duration"]) for step, case in steps),
+            ", ".join(settings),
         ))  # fmt: skip
     return Grid("What qualifies in every scenario, the cheapest first", heads, rows)
 

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from inspect import signature
 from typing import Any, TypeVar, get_args
 
 import numpy as np
 
-from omegadot.adapters.protocol import Channel, Description, Integrator, Trajectory
+from omegadot.adapters.protocol import (
+    Adapter,
+    Channel,
+    Description,
+    Integrator,
+    Knob,
+    Trajectory,
+)
 from omegadot.reference_impl.coordinates import COORDINATES
 from omegadot.reference_impl.system import Acceleration, Array, Body, State
 
@@ -19,6 +28,9 @@ SHAPES: dict[type, dict[str, Shape]] = {
     Body: {"mass": (), "center_of_mass": _V, "inertia": (3, 3)},
 }
 CHANNELS = get_args(Channel)
+KNOBS = get_args(Knob)
+# In parts of eps, the finest relative tolerance that a rounded estimate of an error can keep.
+ROUNDINGS_OF_AN_ESTIMATE = 450
 
 
 class AnswerError(TypeError):
@@ -117,8 +129,44 @@ def checked_description(found: Any) -> Description:
     return found
 
 
+def _takes_accuracy(adapter: Adapter) -> bool:
+    """Whether `run` has a parameter of this name, or any."""
+    parameters = signature(adapter.run).parameters
+    return "accuracy" in parameters or any(p.kind is p.VAR_KEYWORD for p in parameters.values())
+
+
+def description_of(adapter: Adapter) -> Description:
+    """The adapter's description. Accuracies that `run` does not take are fixed ones, and none is
+    finer than single precision allows an estimate of the error.
+    """
+    found = checked_description(adapter.description)
+    if all(integrator.knob == "timestep" for integrator in found.integrators):
+        return found
+    takes, least = _takes_accuracy(adapter), 0.0
+    if found.precision == "float32":
+        least = ROUNDINGS_OF_AN_ESTIMATE * float(np.finfo(np.float32).eps)
+
+    def own(integrator: Integrator) -> Integrator:
+        if integrator.knob != "accuracy":
+            return integrator
+        if not takes:
+            return replace(integrator, knob="fixed-accuracy")
+        return replace(integrator, finest_accuracy=max(least, integrator.finest_accuracy))
+
+    return replace(found, integrators=tuple(map(own, found.integrators)))
+
+
 def _check_integrator(integrator: Integrator) -> None:
     _expect("an integrator's name", integrator.name, str)
+    if integrator.knob not in KNOBS:
+        raise AnswerError(
+            f"the knob of {integrator.name} is {integrator.knob!r}; give one of {', '.join(KNOBS)}"
+        )
+    finest = numbers(f"the finest accuracy of {integrator.name}", integrator.finest_accuracy, ())
+    if not 0.0 <= finest < 1.0:
+        raise AnswerError(
+            f"the finest accuracy of {integrator.name} is {finest:g}; give a number from 0 to 1"
+        )
     if integrator.scheme is not None:
         _expect(f"the scheme of {integrator.name}", integrator.scheme, str)
     if integrator.coordinates not in COORDINATES:

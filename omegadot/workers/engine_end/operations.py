@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,10 @@ from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.engine_end.checked import (
     checked,
     checked_bodies,
-    checked_description,
     checked_native,
     checked_seconds,
     checked_trajectory,
+    description_of,
     numbers,
 )
 from omegadot.workers.engine_end.memory import peak_memory
@@ -37,7 +38,7 @@ def _lead(states: State) -> tuple[int, ...]:
 def _load(adapter: Adapter, request: Request) -> Any:
     """Load a system; the description that comes back may refers to this very system."""
     adapter.load(system_from(request["system"]))
-    return checked_description(adapter.description)
+    return description_of(adapter)
 
 
 def _model(adapter: Adapter, request: Request) -> Any:
@@ -66,12 +67,19 @@ def _inverse(adapter: Adapter, request: Request) -> Any:
     return {"torque": numbers("inverse_dynamics()", torque, (*_lead(states), 3))}
 
 
+def _runs_of(adapter: Adapter, request: Request) -> Callable[..., Trajectory]:
+    """The adapter's `run`, with the accuracy where one is requested."""
+    run: Callable[..., Trajectory] = adapter.run  # the protocol's has no accuracy
+    accuracy = request.get("accuracy")
+    return run if accuracy is None else partial(run, accuracy=accuracy)
+
+
 def _timed_run(adapter: Adapter, request: Request) -> tuple[Trajectory, float]:
-    initial = State(**request["initial"])
+    initial, run = State(**request["initial"]), _runs_of(adapter, request)
     step = (request["integrator"], request["timestep"])
-    adapter.run(initial, *step, 1, 1)  # a warm-up, so that first-call costs are not counted
+    run(initial, *step, 1, 1)  # a warm-up, so that first-call costs are not counted
     started = time.perf_counter()
-    trajectory = adapter.run(initial, *step, request["steps"], request["every"])
+    trajectory = run(initial, *step, request["steps"], request["every"])
     whole = time.perf_counter() - started
     checked = checked_trajectory(trajectory)
     return checked, checked_seconds(checked.seconds, whole) / request["steps"]
@@ -104,9 +112,10 @@ def _replay(adapter: Adapter, request: Request) -> Any:
 def _first_steps(adapter: Adapter, request: Request) -> Any:
     """The states (m, k, ...) that single steps of (m, k) sizes lead to from m states."""
     states, integrator = State(**request["states"]), request["integrator"]
+    run = _runs_of(adapter, request)
 
     def end(start: State, timestep: float) -> State:
-        return checked_trajectory(adapter.run(start, integrator, timestep, 1, 1)).state[-1]
+        return checked_trajectory(run(start, integrator, timestep, 1, 1)).state[-1]
 
     return stack(
         [

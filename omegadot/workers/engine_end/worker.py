@@ -18,7 +18,7 @@ from typing import Any, BinaryIO, cast
 
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import BUILT_IN, build_adapter
-from omegadot.workers.engine_end.checked import checked_description
+from omegadot.workers.engine_end.checked import description_of
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
@@ -72,7 +72,7 @@ def _built(target: str, setup: Setup) -> tuple[Adapter | None, bytes]:
         return None, encode_frame(missing)
     except BaseException as error:
         return None, encode_frame(failure(error))
-    frame, _ = answered(lambda: checked_description(adapter.description))
+    frame, _ = answered(lambda: description_of(adapter))
     return adapter, frame
 
 
