@@ -24,6 +24,7 @@ from harness.error_controlled import (
     FixedTight,
     Multistep,
 )
+from omegadot.harness.unknown_schemes import probe_unknown_schemes
 
 from omegadot.adapters.exact.adapter import ExactAdapter
 from omegadot.adapters.protocol import Adapter
@@ -36,7 +37,6 @@ from omegadot.harness.judge import JudgedRun, judge_case
 from omegadot.harness.random_cases import random_case
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
 from omegadot.harness.truth_requests import case_truth
-from omegadot.harness.unknown_schemes import probe_unknown_schemes
 from omegadot.scenarios import load_builtin
 
 SEED = 7
