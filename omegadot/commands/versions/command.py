@@ -67,8 +67,9 @@ def versions(
 ) -> None:
     """Find what changed between releases of an engine, each in an environment of its own.
 
-    Exit codes: 0 done, whatever changed, 1 some version is not as its adapter declares, or the
-    ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be measured.
+    Exit codes: 0 done, whatever changed, 1 some version is not as its adapter declares or failed a
+    query, or the ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be
+    measured.
     """
     arguments = {"releases": [], **options.given(locals())}
     from omegadot.commands.versions.versions import versions as compare_versions
