@@ -6,7 +6,7 @@ from typing import Any, TypeVar, get_args
 
 import numpy as np
 
-from omegadot.adapters.protocol import Channel, Description, Integrator, Trajectory
+from omegadot.adapters.protocol import Channel, Description, Format, Integrator, Trajectory
 from omegadot.reference_impl.coordinates import COORDINATES
 from omegadot.reference_impl.system import Acceleration, Array, Body, State
 
@@ -18,7 +18,7 @@ SHAPES: dict[type, dict[str, Shape]] = {
     Acceleration: {"angular": _V, "linear": _V},
     Body: {"mass": (), "center_of_mass": _V, "inertia": (3, 3)},
 }
-CHANNELS = get_args(Channel)
+CHANNELS, FORMATS = get_args(Channel), get_args(Format)
 
 
 class AnswerError(TypeError):
@@ -105,9 +105,13 @@ def checked_description(found: Any) -> Description:
         _expect(f"description.{name}", getattr(found, name), str)
     if found.precision not in ("float64", "float32"):
         raise AnswerError(f"description.precision is {found.precision!r}; write float64 or float32")
-    for name in ("conventions", "switched_off", "links", "features"):
+    for name in ("conventions", "switched_off", "links", "features", "importers"):
         for item in getattr(found, name):
             _expect(f"an item of description.{name}", item, str)
+    for item in found.importers:
+        if item not in FORMATS:
+            known = ", ".join(FORMATS)
+            raise AnswerError(f"description.importers names {item!r}; give one of {known}")
     for integrator in found.integrators:
         _expect("an item of description.integrators", integrator, Integrator)
         _check_integrator(integrator)
