@@ -13,7 +13,7 @@ from omegadot.commands.check.result import Check, Result, Subject, Tally
 from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.suite import Suite
 from omegadot.commands.progress import Count, Reporting, reporting
-from omegadot.harness.arguments import adapters_named, several
+from omegadot.harness.arguments import Via, adapters_named, several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios import ScenarioLike
@@ -66,6 +66,7 @@ def check(
     *,
     scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
     integrators: str | Sequence[str] = (),
+    via: Via | Sequence[Via] = (),
     exceptions: str | Path | Sequence[str | Path] = (),
     baseline: str | Path | None = None,
     update_baseline: bool = False,
@@ -76,12 +77,14 @@ def check(
 
     engine: a name, ``FILE.py:Class``, ``module:Class`` or an adapter's class.  scenarios: built-in
     names, paths, scenarios or their tables; all built-in ones without any.  integrators: all
-    without any.  exceptions: files of declared exceptions.  baseline: a folder of figures to
-    compare with, or to store them in.  timeout: s, for one request to the engine.
+    without any.  via: how bodies go in, as of `omegadot.run`.  exceptions: files of declared
+    exceptions.  baseline: a folder of figures to compare with, or to store them in.
+    timeout: s, for one request to the engine.
     Raises UsageError, ScenarioError, RecordError and NoTruthError.
     """
     arguments = Arguments(
         scenarios=several(scenarios),
+        via=several(via),
         exceptions=several(exceptions),
         baseline=baseline,
         update=update_baseline,

@@ -26,6 +26,7 @@ def check(
         ),
     ] = None,
     integrators: options.Integrators = None,
+    via: options.Ways = None,
     exceptions: options.Exceptions = None,
     baseline: Annotated[Text, option("DIR", "Compare with the values stored in DIR.")] = None,
     update_baseline: Annotated[

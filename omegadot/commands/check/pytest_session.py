@@ -27,6 +27,7 @@ def _arguments(given: dict[str, Any]) -> Arguments:
         adapters=given["adapter"] or (),
         required=given["require-engine"] or (),
         scenarios=given["scenario"] or (),
+        via=given["via"] or (),
         exceptions=given["exceptions"] or (),
         baseline=given["baseline"],
         update=bool(given["update-baseline"]),

@@ -50,7 +50,8 @@ def _engines(outcome: Outcome) -> list[dict[str, Any]]:
         own = engine.description
         integrators = [vars(integrator) for integrator in own.integrators]
         parts = {"integrators": integrators, "features": sorted(own.features)}
-        found.append({**vars(own), "installed": True, "reason": "", **parts})
+        via = {"via": engine.choice.via or "api"}
+        found.append({**vars(own), "installed": True, "reason": "", **parts, **via})
     for choice, answer in outcome.missing:
         found.append({"name": choice.name, "installed": False, "reason": answer.reason})
     return found

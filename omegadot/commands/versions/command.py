@@ -54,6 +54,14 @@ def versions(
         With, typer.Option(help="Installer of the environments; auto: uv where it is installed.")
     ] = With.auto,
     setup: Annotated[Setup, typer.Option(help="How engines are configured.")] = Setup.physics,
+    via: Annotated[
+        Text,
+        option(
+            "WAY",
+            "How bodies go in: api (default), or urdf or mjcf through the engine's own "
+            "reader of such files.",
+        ),
+    ] = None,
     adapter: Annotated[Text, option("FILE.py:CLASS", "The adapter of your own engine.")] = None,
     package: Annotated[
         Text, option("NAME", "With --adapter: the package whose releases are installed.")
