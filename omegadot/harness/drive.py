@@ -34,6 +34,7 @@ class CaseResult:
     integrators: those that are run, as the engine declares them for this system.
     first_steps, restarts: of integrators whose scheme is unknown, what was requested and what came:
     steps from several states, and the sample from which a run was restarted with the rest of it.
+    via: the format of the file by which the body went in; "" for the engine's API.
     """
 
     integrators: tuple[Integrator, ...] = ()
@@ -45,6 +46,7 @@ class CaseResult:
     first_steps: dict[str, tuple[Probe, Answer]] = field(default_factory=dict)
     restarts: dict[tuple[str, float], tuple[int, Answer]] = field(default_factory=dict)
     precision: str = "float64"
+    via: str = ""
 
     def first_failure(self) -> Answer | None:
         """The first answer besides the runs that failed; unsupported parts are no failure."""
@@ -138,7 +140,8 @@ class Driver:
 
     def evaluate_equations(self, case: Case, evaluation_states: EvaluationStates) -> CaseResult:
         """The model read back, and the engine's equations at the states in question."""
-        result = CaseResult(precision=self.engine.description.precision)
+        precision, via = self.engine.description.precision, self.engine.choice.via
+        result = CaseResult(precision=precision, via=via)
         features = self.engine.description.features
         first = evaluation_states.random[0]
         result.model = self.request(case, "model", state=first)

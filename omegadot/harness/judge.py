@@ -54,7 +54,7 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
         rows += equation.inverse_rows(
             case.system, evaluation_states.random, evaluation_states.acceleration, torque
         )
-    return rows
+    return [model.of_read_body(row) for row in rows] if result.via else rows
 
 
 def is_finite(state: State) -> bool:

@@ -76,7 +76,8 @@ class Gallery:
             return portrait
         portrait.origin = place.origin
         with self._worker(place) as worker:
-            sitting = Sitting(portrait, worker, self.aims, self._stopping.is_set)
+            read = self.via != API
+            sitting = Sitting(portrait, worker, self.aims, self._stopping.is_set, read)
             names = sitting.start()
             self._check_start(portrait, place)
             if portrait.ok:

@@ -24,6 +24,7 @@ from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
 from omegadot.diagnosis.scheme_study.study import IntegratorStudy, ProbeStudy
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load, one_of, stepper_of
 from omegadot.gates.case import Case
+from omegadot.gates.model import of_read_body
 from omegadot.reference_impl.system import System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
@@ -35,13 +36,21 @@ Measuring = Callable[[Declared], Figures]  # of the integrators as declared for 
 
 
 class Sitting:
-    """One version being measured, through its worker; once `halted`, no further request is sent."""
+    """One version being measured, through its worker; once `halted`, no further request is sent.
+
+    read: whether its bodies are read from files.
+    """
 
     def __init__(
-        self, portrait: Portrait, worker: WorkerProcess, aims: Aims, halted: Callable[[], bool]
+        self,
+        portrait: Portrait,
+        worker: WorkerProcess,
+        aims: Aims,
+        halted: Callable[[], bool],
+        read: bool = False,
     ) -> None:
         self.portrait, self._worker, self._aims = portrait, worker, aims
-        self._halted = halted
+        self._halted, self._read = halted, read
         self._description: Description | None = None
         self._features: frozenset[str] = frozenset()
         self._timeouts = 0
@@ -139,7 +148,7 @@ class Sitting:
     def _equations(self, case: Case, _: Declared) -> Figures:
         request, features = partial(_answer_of, self._worker), self._features
         figures, rows = equation_figures(case, self._aims.truth(case), features, request)
-        for row in rows:
+        for row in map(of_read_body, rows) if self._read else rows:
             if row.verdict == "fail":
                 off = f"{row.value:.1e} against a bound of {row.bound:.1e}"
                 what = row.channel.replace("_", " ")
