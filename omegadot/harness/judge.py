@@ -54,6 +54,11 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
         rows += equation.inverse_rows(
             case.system, evaluation_states.random, evaluation_states.acceleration, torque
         )
+    return _held(result, rows)
+
+
+def _held(result: CaseResult, rows: list[Row]) -> list[Row]:
+    """The rows at the bounds of a body that went in as it did."""
     return [model.of_read_body(row) for row in rows] if result.via else rows
 
 
@@ -129,7 +134,8 @@ def _judge_integrator(
         unknown = rows_of_unknown(truth, integrator, sweep, result)
         rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
         misreported = trajectory.reported_rows(truth, measured, state, result.precision)
-        misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
+        omega_dot = trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
+        misreported += _held(result, omega_dot)
         rows += invariants.rows(measured, findings, sweep.times)
         rows.append(trajectory.time_row(sweep, answer.result["time"]))
         rows += [*misreported, *trajectory.rows(measured, findings)]
