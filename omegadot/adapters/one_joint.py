@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from importlib import import_module
 from types import ModuleType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from omegadot.adapters.protocol import UnsupportedError
+from omegadot.adapters.protocol import Format, UnsupportedError
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 
@@ -24,11 +24,19 @@ class OneJointAdapter:
 
     def load(self, system: System) -> None:
         """Build the engine's own model. Raises UnsupportedError for several bodies."""
+        self._take(system, "")
+
+    def load_file(self, system: System, via: Format) -> None:
+        """The same with a model that the engine reads from a file of this format."""
+        self._take(system, via)
+
+    def _take(self, system: System, via: Format | Literal[""]) -> None:
         if len(system.bodies) != 1:
             raise UnsupportedError(f"{self.name} takes one body here, not {len(system.bodies)}.")
-        self._joint = self._built(system)
+        self._joint = self._built(system, via)
 
-    def _built(self, system: System) -> Any:
+    def _built(self, system: System, via: Format | Literal[""]) -> Any:
+        """The joint of a model. via: the format of the file by which the body goes in, if any."""
         raise NotImplementedError
 
     def _loaded(self) -> Any:

@@ -9,6 +9,7 @@ from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
 
 Setup = Literal["physics", "as-shipped"]
+Format = Literal["urdf", "mjcf"]
 Channel = Literal[
     "omega_dot",
     "omega",
@@ -75,6 +76,9 @@ class Description:
     switched_off: defaults that disturb the motion and were turned off for the ``physics`` setup.
     features: what it can do, of "free", "pivot", "gravity", "damping", "torque", "full_inertia",
     "offset_com", "forward_dynamics", "inverse_dynamics", "batch".
+    importers: the formats of robot files that the engine's own reader takes. For each the adapter
+    has ``load_file(system, format)``, which does what `Adapter.load` does with a model that the
+    engine has read from a file of the body (`omegadot.adapters.body_files` writes it).
     """
 
     name: str
@@ -86,6 +90,7 @@ class Description:
     features: frozenset[str] = field(default_factory=frozenset)
     licence: str = ""
     links: tuple[str, ...] = ()
+    importers: tuple[Format, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,10 @@ from collections.abc import Callable
 from importlib.metadata import entry_points
 from pathlib import Path
 from types import ModuleType
+from typing import Any, cast
 
-from omegadot.adapters.protocol import Adapter, Setup
+from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
+from omegadot.reference_impl.system import System
 
 ENTRY_POINT_GROUP = "omegadot.adapters"
 
@@ -47,11 +49,37 @@ def _import_target(module_name: str) -> ModuleType:
     return module
 
 
-def build_adapter(target: str, setup: Setup = "physics") -> Adapter:
+class _FromFile:
+    """An adapter whose systems go in through the engine's own reader of a format."""
+
+    def __init__(self, adapter: Any, via: str) -> None:
+        self._adapter, self._via = adapter, via
+
+    def load(self, system: System) -> None:
+        self._adapter.load_file(system, self._via)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._adapter, name)
+
+
+def through_file(adapter: Adapter, via: str) -> Adapter:
+    """The adapter, loading every system by a file of this format.
+
+    Raises UnsupportedError where the engine has no reader of it.
+    """
+    own = adapter.description
+    if via not in own.importers:
+        known = " and ".join(own.importers) or "no such files"
+        raise UnsupportedError(f"{own.name} {own.version} has no reader of {via}; it reads {known}")
+    return cast(Adapter, _FromFile(adapter, via))
+
+
+def build_adapter(target: str, setup: Setup = "physics", via: str = "") -> Adapter:
     """Build the adapter that ``module:Class`` or ``FILE.py:Class`` names.
 
-    Raises AdapterError when the target is malformed, and whatever the engine's import raises
-    (ImportError when it is not installed).
+    via: the format of the files by which systems are loaded; "" for the engine's API.
+    Raises AdapterError when the target is malformed, UnsupportedError as `through_file` does, and
+    whatever the engine's import raises (ImportError when it is not installed).
     """
     module_name, separator, class_name = target.rpartition(":")
     if not separator or not class_name:
@@ -60,4 +88,5 @@ def build_adapter(target: str, setup: Setup = "physics") -> Adapter:
     factory: Callable[..., Adapter] | None = getattr(module, class_name, None)
     if factory is None:
         raise AdapterError(f"{target}: {module_name} has no {class_name}; check the class name.")
-    return factory(setup=setup)
+    adapter = factory(setup=setup)
+    return through_file(adapter, via) if via else adapter

@@ -47,6 +47,15 @@ PageOutput = Annotated[PageFormat, typer.Option("--format", help="Output format.
 Adapters = Annotated[
     Texts, option("FILE.py:CLASS", "An engine of your own; repeatable.", "--adapter")
 ]
+Ways = Annotated[
+    Texts,
+    option(
+        "WAY",
+        "How bodies go in: api, or urdf or mjcf through the engine's own reader of such files; "
+        "repeatable. Default: api.",
+        "--via",
+    ),
+]
 Integrators = Annotated[
     Texts, option("NAME", "An integrator; repeatable. Default: all.", "--integrator")
 ]

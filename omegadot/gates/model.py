@@ -6,7 +6,13 @@ import numpy as np
 
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row, within
-from omegadot.gates.scales import EPS, ROUNDINGS_PER_EVALUATION, body_scale, norm
+from omegadot.gates.scales import (
+    EPS,
+    ROUNDINGS_OF_A_READER,
+    ROUNDINGS_PER_EVALUATION,
+    body_scale,
+    norm,
+)
 from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.system import Array, Body, State
 
@@ -39,6 +45,18 @@ def body_rows(case: Case, body: Body, eps: float = EPS) -> list[Row]:
         within(GATE, "model", "center_of_mass", offset, "m", ROUNDINGS * eps * scale.lever),
         within(GATE, "model", "inertia", inertia, "1", ROUNDINGS_PER_EVALUATION * eps),
     ]
+
+
+def of_read_body(row: Row) -> Row:
+    """A row of an engine that has read the body from a file: the tensor's rounding adds to it.
+
+    An error of the tensor, relative to its size, is one of the torques relative to their terms, and
+    so of omega-dot, whose bound has the condition number already.
+    """
+    if row.bound is None or row.metric in ("mass", "center_of_mass", "state"):
+        return row
+    bound = row.bound * (1.0 + ROUNDINGS_OF_A_READER / ROUNDINGS_PER_EVALUATION)
+    return within(row.gate, row.channel, row.metric, row.value, row.unit, bound, row.note)
 
 
 def state_rows(case: Case, requested: State, back: State, eps: float = EPS) -> list[Row]:

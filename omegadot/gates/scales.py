@@ -18,6 +18,9 @@ EPS = float(np.finfo(float).eps)
 # A forward or inverse dynamics pass is a chain of about 64 dependent roundings (two changes of
 # frame, two cross products, a 3x3 or 6x6 solve).
 ROUNDINGS_PER_EVALUATION = 64
+# A reader of robot files turns the tensor by the inertial frame's angles and diagonalises it: by
+# Jacobi's rotations that is five sweeps of three, each of four roundings, on both of its sides.
+ROUNDINGS_OF_A_READER = 128
 # A step is an evaluation's result, scaled and added, an exponential and a normalised product.
 ROUNDINGS_PER_STEP = 16
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from numbers import Real
 from os import PathLike
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar, get_args
 
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.adapters.registry import registered
@@ -69,6 +70,36 @@ def engine_choices(
         EngineChoice(name, known[name], () if "" in names else tuple(dict.fromkeys(names)), True)
         for name, names in picked.items()
     ]
+
+
+Via = Literal["api", "urdf", "mjcf"]
+API = "api"
+WAYS = get_args(Via)
+
+
+def check_way(via: str) -> None:
+    """Raise UsageError unless it is a way by which bodies go in."""
+    if via not in WAYS:
+        raise UsageError(f"--via {via}: no such way; {nearest(via, WAYS)}.")
+
+
+def by_ways(choices: Sequence[EngineChoice], ways: Sequence[str]) -> list[EngineChoice]:
+    """The engines, each once for every way by which its bodies are to go in; by its API without.
+
+    One that reads a file goes by another name, such as mujoco-via-urdf. The exact solution and the
+    reference, which read none, stay as they are where they were not requested by name.
+    Raises UsageError.
+    """
+    for way in ways:
+        check_way(way)
+    found = []
+    for choice in choices:
+        ours = choice.name in ("exact", "reference") and not choice.required
+        for way in dict.fromkeys(ways or (API,)):
+            plain = way == API or ours
+            named = choice if plain else replace(choice, name=f"{choice.name}-via-{way}", via=way)
+            found.append(named)
+    return list(dict.fromkeys(found))
 
 
 def integrators_chosen(choice: EngineChoice, description: Description) -> tuple[Integrator, ...]:

@@ -92,6 +92,14 @@ def _judged_entry(
     return entry
 
 
+def _unstepped_entry(labels: Labels, found: EngineCase, cause: Cause) -> dict[str, Any]:
+    """The one task of an engine without integrators: its model and its equations."""
+    model = found.result.model
+    entry = _answered_entry(labels, found, model.outcome, model.reason, (), "it has no integrator")
+    likeliest = cause(None) if "fail" in entry["gates"].values() else ""
+    return {**entry, "why": f"likely cause: {likeliest}"} if likeliest else entry
+
+
 def _unjudged_entries(
     label: partial[Labels], case: JudgedCase, found: EngineCase
 ) -> Iterator[dict[str, Any]]:
@@ -129,6 +137,8 @@ def tasks_of_run(
                 for run in found.runs:
                     labels = label(run.integrator.name, run.sweep)
                     entries.append(_judged_entry(labels, found, run, cause, known))
+                if not found.engine.integrators:
+                    entries.append(_unstepped_entry(label(""), found, cause))
     for choice, answer in outcome.missing:
         for prepared in cases:
             for integrator in choice.integrators or ("",):

@@ -40,6 +40,7 @@ class CaseResult:
     alone, inverse_alone: forward and inverse dynamics of the first random state by itself.
     reloaded: forward dynamics after another system was loaded in between.  again: the beginnings
     of runs that were requested again, by integrator, step, and how (see `gates.repeats`).
+    via: the format of the file by which the body went in; "" for the engine's API.
     """
 
     integrators: tuple[Integrator, ...] = ()
@@ -55,6 +56,7 @@ class CaseResult:
     reloaded: Answer = LACKING
     again: dict[tuple[str, float, How], Answer] = field(default_factory=dict)
     precision: str = "float64"
+    via: str = ""
 
     def first_failure(self) -> Answer | None:
         """The first answer besides the runs that failed; unsupported parts are no failure."""
@@ -157,7 +159,8 @@ class Driver:
 
     def evaluate_equations(self, case: Case, evaluation_states: EvaluationStates) -> CaseResult:
         """The model read back, and the engine's equations at the states in question."""
-        result = CaseResult(precision=self.engine.description.precision)
+        precision, via = self.engine.description.precision, self.engine.choice.via
+        result = CaseResult(precision=precision, via=via)
         features = self.engine.description.features
         first = evaluation_states.random[0]
         result.model = self.request(case, "model", state=first)

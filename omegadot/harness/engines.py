@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from typing import TypeVar
 
 from omegadot.adapters.registry import BUILT_IN
@@ -12,6 +13,7 @@ from omegadot.harness.arguments import integrators_chosen
 from omegadot.harness.drive import INTERRUPTED, Driver
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import Engine, EngineChoice
+from omegadot.harness.usage import UsageError
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
 
@@ -56,7 +58,9 @@ class Engines:
         # First come, first served: where workers wait for a free processor, none waits for long.
         self._turns = ThreadPoolExecutor(request.jobs, "turn")
         self._processes = {
-            name: WorkerProcess(choice.target, request.setup, request.timeout, memory=memory)
+            name: WorkerProcess(
+                choice.target, request.setup, request.timeout, memory=memory, via=choice.via
+            )
             for name, choice in self._choices.items()
         }
         self._threads = {name: ThreadPoolExecutor(1, name) for name in self._choices}
@@ -68,7 +72,7 @@ class Engines:
         """Start every engine requested, the exact solution and the reference.
 
         Raises NoTruthError where one of the last two does not start, UsageError where an
-        integrator is requested that an engine does not have.
+        integrator or a way in is requested that an engine does not have.
         """
         # By turns: many engines that start together would only be late together.
         starts = {
@@ -78,9 +82,11 @@ class Engines:
         for name, answer in answers.items():
             choice, process = self._choices[name], self._processes[name]
             if not answer.ok:
+                if choice.via and choice.required and answer.outcome == "unsupported":
+                    raise UsageError(f"--via {choice.via}: {answer.reason}.")
                 self.missing.append((choice, answer))
                 continue
-            description = description_of(answer.result)
+            description = replace(description_of(answer.result), name=name)
             engine = Engine(choice, description, integrators_chosen(choice, description))
             self.drivers[name] = Driver(engine, process, self._in_turn, self._stopping)
             if name in self._requested:

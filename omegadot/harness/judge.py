@@ -79,7 +79,12 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
             states, acceleration = random[:count], evaluation_states.acceleration[:count]
             torque = answer.result["torque"]
             rows += equation.inverse_rows(case.system, states, acceleration, torque, metric, eps)
-    return rows
+    return _held(result, rows)
+
+
+def _held(result: CaseResult, rows: list[Row]) -> list[Row]:
+    """The rows at the bounds of a body that went in as it did."""
+    return [model.of_read_body(row) for row in rows] if result.via else rows
 
 
 def is_finite(state: State) -> bool:
@@ -181,7 +186,7 @@ def _judge_integrator(
             orders = accuracy.fixed_orders(orders)
         probed = rows_of_probes(truth, integrator, sweep, result)
         probed += rows_again(truth, integrator, sweep, result, measured)
-        rows, broken = _rows_of_run(truth, measured, findings, answer, result.precision)
+        rows, broken = _rows_of_run(truth, measured, findings, answer, result)
         broken += [row.note for row in (match, *probed) if row.verdict == "fail"]
         why = broken[0] if broken else "; ".join([_why(findings), *(r.note for r in grows[:1])])
         unresolved = any(f.open for f in findings.values())
@@ -194,14 +199,14 @@ def _rows_of_run(
     measured: MeasuredRun,
     findings: dict[str, Finding],
     answer: Answer,
-    precision: str,
+    result: CaseResult,
 ) -> tuple[list[Row], list[str]]:
     """The rows of one run, whatever its knob, and the notes of what it misreports."""
     system, eps = truth.yardstick.system, truth.yardstick.eps
     state, sweep = State(**answer.result["state"]), measured.sweep
-    misreported = trajectory.reported_rows(truth, measured, state, precision)
-    omega_dot = answer.result["omega_dot"]
-    misreported += trajectory.omega_dot_rows(system, state, omega_dot, eps)
+    misreported = trajectory.reported_rows(truth, measured, state, result.precision)
+    omega_dot = trajectory.omega_dot_rows(system, state, answer.result["omega_dot"], eps)
+    misreported += _held(result, omega_dot)
     rows = invariants.rows(measured, findings, sweep.times)
     rows.append(trajectory.time_row(sweep, answer.result["time"], eps))
     rows += [*misreported, *trajectory.rows(measured, findings)]
@@ -235,7 +240,7 @@ def _judge_accuracies(
             continue
         findings = accuracy.findings_of(measured, known)
         probed = rows_of_probes(truth, integrator, sweep, result)
-        rows, broken = _rows_of_run(truth, measured, findings, answer, result.precision)
+        rows, broken = _rows_of_run(truth, measured, findings, answer, result)
         broken += [row.note for row in probed if row.verdict == "fail"]
         why = broken[0] if broken else _why(findings)
         rows = [*accuracy.rows(measured, known), *probed, *rows]

@@ -9,12 +9,21 @@ from omegadot.adapters.protocol import Description, Integrator
 
 @dataclass(frozen=True)
 class EngineChoice:
-    """An engine requested, and which of its integrators (all of them when empty)."""
+    """An engine requested, and which of its integrators (all of them when empty).
+
+    via: the format of the files by which its bodies go in; "" for its API. The name has it too.
+    """
 
     name: str
     target: str
     integrators: tuple[str, ...] = ()
     required: bool = False
+    via: str = ""
+
+    @property
+    def engine(self) -> str:
+        """The engine's name, whichever way its bodies go in."""
+        return self.name.removesuffix(f"-via-{self.via}") if self.via else self.name
 
 
 @dataclass(frozen=True)

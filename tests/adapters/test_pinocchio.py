@@ -11,6 +11,7 @@ from mujoco_cases import EPS, at, norm, states, system
 
 from omegadot.adapters.pinocchio.adapter import LOOPED, PREFIX, PinocchioAdapter
 from omegadot.adapters.pinocchio.joint import PinocchioJoint
+from omegadot.adapters.pinocchio.model import build_model
 from omegadot.adapters.protocol import UnsupportedError
 from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import to_coordinates
@@ -72,7 +73,7 @@ def test_the_very_same_scheme_steps_the_reference_a_pendulum_and_pinocchio(schem
     """Pinocchio's coordinates are the reference's but for the order of the quaternion."""
     of, stepped = system("full", "all"), SCHEMES[scheme]
     start = at(states(1, seed=28, far=1.0, fast=2.0), 0)
-    joint = PinocchioJoint(pinocchio, of)
+    joint = PinocchioJoint(pinocchio, of, build_model(pinocchio, of))
     q, v = to_coordinates(of, start, "body-spatial")
     own = stepped.step(body_motion(of, "body-spatial"), q, v, 0.005)
     found = stepped.step(joint.motion, *joint.coordinates(start), 0.005)
@@ -109,7 +110,10 @@ def test_an_answer_is_not_overwritten_by_the_next() -> None:
 def test_the_force_of_rnea_is_newtons() -> None:
     """``F = m (a - g)``: the spatial acceleration that RNEA is given is the one requested."""
     of = system("full", "all")
-    many, joint = states(10, seed=26, fast=2.0), PinocchioJoint(pinocchio, of)
+    many, joint = (
+        states(10, seed=26, fast=2.0),
+        PinocchioJoint(pinocchio, of, build_model(pinocchio, of)),
+    )
     wanted = np.random.default_rng(27).normal(size=(10, 2, 3))
     for n in range(10):
         force = joint.wrench(at(many, n), *wanted[n])[:3]

@@ -24,7 +24,6 @@ from harness.error_controlled import (
     FixedTight,
     Multistep,
 )
-from omegadot.harness.unknown_schemes import probe_unknown_schemes
 
 from omegadot.adapters.exact.adapter import ExactAdapter
 from omegadot.adapters.protocol import Adapter
@@ -36,6 +35,7 @@ from omegadot.harness.in_process import driver_of
 from omegadot.harness.judge import JudgedRun, judge_case
 from omegadot.harness.random_cases import random_case
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.step_probes import probe_steps
 from omegadot.harness.truth_requests import case_truth
 from omegadot.scenarios import load_builtin
 
@@ -58,7 +58,7 @@ def judged(name: str, adapter: Adapter) -> list[JudgedRun]:
     driver = driver_of("engine", adapter)
     result = driver.evaluate_equations(case, states)
     result.runs.update(driver.run_all(case, lambda: None))
-    probe_unknown_schemes(driver, case, states, result)
+    probe_steps(driver, case, states, result)
     finer: Refinements = {}
     with np.errstate(all="ignore"):
         runs = judge_case(truth, case, result, finer)

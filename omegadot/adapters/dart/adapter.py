@@ -7,6 +7,7 @@ Euler: accelerations, then velocities, then positions with the new velocities.
 from __future__ import annotations
 
 from time import perf_counter
+from typing import Literal
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from omegadot.adapters.one_joint import OneJointAdapter
 from omegadot.adapters.protocol import (
     ONE_BODY,
     Description,
+    Format,
     Integrator,
     Setup,
     Trajectory,
@@ -74,10 +76,11 @@ class DartAdapter(OneJointAdapter):
             features=ONE_BODY,
             licence="BSD-2-Clause",
             links=LINKS,
+            importers=("urdf",),  # its reader of MJCF takes no inertia from the file
         )
 
-    def _built(self, system: System) -> DartJoint:
-        model = DartModel(self._engine, system, physics=self._setup == "physics")
+    def _built(self, system: System, via: Format | Literal[""]) -> DartJoint:
+        model = DartModel(self._engine, system, via, physics=self._setup == "physics")
         return DartJoint(model, system)
 
     def forward_dynamics(self, states: State) -> Acceleration:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from types import ModuleType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from omegadot.adapters.body_files import urdf_of
+from omegadot.adapters.protocol import Format, UnsupportedError
 from omegadot.reference_impl.system import Array, System
 
 SWITCHED_OFF = (
@@ -22,6 +24,15 @@ SWITCHED_OFF = (
 TURN = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
+def _read(dart: Any, system: System) -> Any:
+    """The skeleton that DART reads from a URDF of the body, its frame at the body's origin."""
+    reader = dart.utils.DartLoader()
+    found = reader.parseSkeletonString(urdf_of(system, np.zeros(3)), dart.common.Uri(""))
+    if found is None:
+        raise UnsupportedError("DART refuses the URDF of this body.")
+    return found
+
+
 class DartModel:
     """world, skeleton, joint and node are DART's objects; frame is DART's world frame.
 
@@ -29,26 +40,48 @@ class DartModel:
     turn: (3, 3), the attitude of the joint's frame in the world.
     """
 
-    def __init__(self, engine: ModuleType, system: System, *, physics: bool) -> None:
-        body, load = system.body, system.load
+    def __init__(
+        self,
+        engine: ModuleType,
+        system: System,
+        via: Format | Literal[""] = "",
+        *,
+        physics: bool,
+    ) -> None:
         dynamics: Any = engine.dynamics
         self.isometry: Any = engine.math.Isometry3
         self.world: Any = engine.simulation.World()
-        self.world.setGravity(np.array(load.gravity, float))
+        self.world.setGravity(np.array(system.load.gravity, float))
         self.frame: Any = dynamics.Frame.World()
-        self.skeleton: Any = dynamics.Skeleton()
-        if load.pivot is None:
-            self.joint, self.node = self.skeleton.createFreeJointAndBodyNodePair()
-        else:
-            self.joint, self.node = self.skeleton.createBallJointAndBodyNodePair()
-            pivot = self.isometry(np.eye(3), np.array(load.pivot, float))
-            self.joint.setTransformFromChildBodyNode(pivot)
-        center, inertia = np.array(body.center_of_mass, float), np.array(body.inertia, float)
-        self.node.setInertia(dynamics.Inertia(float(body.mass), center, inertia))
+        self.skeleton, self.joint, self.node = self._made(engine, system, via)
         self.world.addSkeleton(self.skeleton)
         self.turn: Array = np.eye(3)
         if physics:
             self._switch_off()
+
+    def _made(
+        self, engine: ModuleType, system: System, via: Format | Literal[""]
+    ) -> tuple[Any, Any, Any]:
+        """Skeleton, joint and body node. A URDF has no ball joint: what was read gives it its body.
+
+        Raises UnsupportedError where DART refuses the file.
+        """
+        pivot, read = system.load.pivot, _read(engine, system) if via else None
+        if read is not None and pivot is None:
+            return read, read.getJoint(0), read.getBodyNode(0)
+        skeleton = engine.dynamics.Skeleton()
+        if pivot is None:
+            joint, node = skeleton.createFreeJointAndBodyNodePair()
+        else:
+            joint, node = skeleton.createBallJointAndBodyNodePair()
+            joint.setTransformFromChildBodyNode(self.isometry(np.eye(3), np.array(pivot, float)))
+        if read is not None:
+            node.setInertia(read.getBodyNode(0).getInertia())
+        else:
+            body = system.body
+            center, inertia = np.array(body.center_of_mass, float), np.array(body.inertia, float)
+            node.setInertia(engine.dynamics.Inertia(float(body.mass), center, inertia))
+        return skeleton, joint, node
 
     def _switch_off(self) -> None:
         """What ``SWITCHED_OFF`` lists; old versions lack some of it."""

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
+from omegadot.adapters.body_files import origin_at_pivot
 from omegadot.adapters.mujoco.coordinates import Coordinates
+from omegadot.adapters.mujoco.importer import read_model
 from omegadot.adapters.mujoco.integrators import (
     Case,
     declared_integrators,
@@ -23,7 +27,14 @@ from omegadot.adapters.mujoco.model import (
     switched_off,
 )
 from omegadot.adapters.mujoco.stepping import Stepper
-from omegadot.adapters.protocol import ONE_BODY, Description, Setup, Trajectory, UnsupportedError
+from omegadot.adapters.protocol import (
+    ONE_BODY,
+    Description,
+    Format,
+    Setup,
+    Trajectory,
+    UnsupportedError,
+)
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
 
@@ -63,6 +74,7 @@ class MujocoAdapter:
             features=ONE_BODY,
             licence="Apache-2.0",
             links=_LINKS,
+            importers=("urdf", "mjcf"),
         )
 
     def _case(self) -> Case:
@@ -80,18 +92,22 @@ class MujocoAdapter:
 
     def load(self, system: System) -> None:
         """Build the model, forgetting any earlier one. Raises what `build_model` raises."""
+        self._take(system, lambda: (build_model(self._mujoco, system), np.zeros(3)))
+
+    def load_file(self, system: System, via: Format) -> None:
+        """The same with a model that MuJoCo reads from a file. Raises what `read_model` raises."""
+        self._take(system, lambda: read_model(self._mujoco, system, via))
+
+    def _take(self, system: System, made: Callable[[], tuple[Any, Array]]) -> None:
         mujoco = self._mujoco
         self._model, self._load = None, Load()  # a refused system leaves nothing behind either
-        self._model = build_model(mujoco, system)
+        self._model, self._origin = made()
         apply_setup(mujoco, self._model, self._setup)
         self._load = system.load
         self._data = mujoco.MjData(self._model)
         self._stepper = Stepper(mujoco, self._model, self._data)
-        pivot = system.load.pivot
-        center = self._model.body_ipos[BODY].copy()
-        self._coordinates = Coordinates(
-            center if pivot is None else center - pivot, pivot is not None
-        )
+        arm = self._model.body_ipos[BODY] + (self._origin - origin_at_pivot(system))
+        self._coordinates = Coordinates(arm, pivoted=system.load.pivot is not None)
         self._reset()
 
     def _reset(self, integrator: str = "Euler") -> None:
@@ -112,7 +128,8 @@ class MujocoAdapter:
 
     def model(self) -> tuple[Body, ...]:
         """Mass, centre of mass and inertia, read back from the compiled model."""
-        return (body_of(self._model),)
+        found = body_of(self._model)
+        return (replace(found, center_of_mass=found.center_of_mass + self._origin),)
 
     def set_state(self, state: State) -> None:
         """Put MuJoCo in a state, its clock at zero."""

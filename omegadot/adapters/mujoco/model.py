@@ -66,9 +66,13 @@ def principal_frame(inertia: Array) -> tuple[Array, Array]:
     return moments, quaternion / np.linalg.norm(quaternion)
 
 
-def _check_size(mujoco: Any, mass: float, moments: Array) -> None:
+def check_body(mujoco: Any, system: System) -> None:
+    """Raise UnsupportedError for more than one body, and for one below MuJoCo's least inertia."""
+    if len(system.bodies) != 1:
+        raise UnsupportedError(f"the MuJoCo adapter takes one body, not {len(system.bodies)}.")
     least = float(getattr(mujoco, "mjMINVAL", 1e-15))
-    smallest = min(mass, float(moments.min()))
+    moments = principal_frame(np.asarray(system.body.inertia, dtype=float))[0]
+    smallest = min(float(system.body.mass), float(moments.min()))
     if not smallest > least:
         raise UnsupportedError(
             f"MuJoCo takes no mass or principal moment of {least:g} or less, and the smallest "
@@ -82,13 +86,11 @@ def build_model(mujoco: Any, system: System) -> Any:
     The compiler is given the frames and a stand-in for mass and inertia; the true values are
     written into the compiled model. Its own way from a full tensor to principal axes loses up to
     nine digits in old versions, and its triangle check turns away flat bodies by one rounding.
-    Raises UnsupportedError for more than one body and for bodies below MuJoCo's least inertia.
+    Raises UnsupportedError as `check_body` does.
     """
-    if len(system.bodies) != 1:
-        raise UnsupportedError(f"the MuJoCo adapter takes one body, not {len(system.bodies)}.")
+    check_body(mujoco, system)
     body, load = system.body, system.load
     moments, axes = principal_frame(np.asarray(body.inertia, dtype=float))
-    _check_size(mujoco, float(body.mass), moments)
     spec = mujoco.MjSpec()
     element = spec.worldbody.add_body(name="body")
     if load.pivot is None:
@@ -121,7 +123,7 @@ def apply_setup(mujoco: Any, model: Any, setup: Setup) -> None:
 
 
 def body_of(model: Any) -> Body:
-    """Mass, centre of mass and inertia as the compiled model holds them."""
+    """Mass, centre of mass from MuJoCo's body frame, and inertia as the compiled model holds."""
     axes = rotation_matrix(model.body_iquat[BODY])
     return Body(
         mass=np.array(model.body_mass[BODY]),

@@ -6,13 +6,17 @@ Pinocchio computes dynamics and has no stepper, so every integrator here is name
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from omegadot.adapters.one_joint import OneJointAdapter
 from omegadot.adapters.pinocchio.joint import PinocchioJoint
+from omegadot.adapters.pinocchio.model import build_model, importers, read_model
 from omegadot.adapters.protocol import (
     ONE_BODY,
     Description,
+    Format,
     Integrator,
     Setup,
     Trajectory,
@@ -82,10 +86,12 @@ class PinocchioAdapter(OneJointAdapter):
             features=ONE_BODY,
             licence="BSD-2-Clause",
             links=LINKS,
+            importers=importers(self._engine),
         )
 
-    def _built(self, system: System) -> PinocchioJoint:
-        return PinocchioJoint(self._engine, system)
+    def _built(self, system: System, via: Format | Literal[""]) -> PinocchioJoint:
+        model = read_model(self._engine, system, via) if via else build_model(self._engine, system)
+        return PinocchioJoint(self._engine, system, model)
 
     def forward_dynamics(self, states: State) -> Acceleration:
         """`pinocchio.aba` at n states."""

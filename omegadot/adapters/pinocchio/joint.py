@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from omegadot.adapters.body_files import origin_at_pivot
+from omegadot.adapters.pinocchio.model import JOINT
 from omegadot.adapters.pinocchio.motion import joint_motion, joint_torque
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System
@@ -22,18 +24,14 @@ class PinocchioJoint:
     Joint axes are the body's, so omega and omega-dot are the joint's own angular parts.
     """
 
-    def __init__(self, engine: ModuleType, system: System) -> None:
-        body, load = system.body, system.load
+    def __init__(self, engine: ModuleType, system: System, model: Any) -> None:
+        load = system.load
         self.system = system
         self._pin: Any = engine
         self._free = load.pivot is None
-        self._origin = np.zeros(3) if load.pivot is None else np.array(load.pivot, float)
-        self._model = self._pin.Model()
-        kind = self._pin.JointModelFreeFlyer if self._free else self._pin.JointModelSpherical
-        self._id = self._model.addJoint(0, kind(), self._pin.SE3.Identity(), "body")
-        lever = np.array(body.center_of_mass, float) - self._origin
-        inertia = np.array(body.inertia, float)
-        self._model.inertias[self._id] = self._pin.Inertia(float(body.mass), lever, inertia)
+        self._origin = origin_at_pivot(system)
+        self._model, self._id = model, JOINT
+        lever = np.array(system.body.center_of_mass, float) - self._origin
         self._model.gravity.linear = np.array(load.gravity, float)
         self._data = self._model.createData()
         self._joint_M_com = self._pin.SE3(np.eye(3), lever)

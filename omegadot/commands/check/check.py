@@ -16,7 +16,7 @@ from omegadot.commands.check.shrink import Failing, kinds_of_failure
 from omegadot.commands.check.shrink import shrink as shrink_check
 from omegadot.commands.check.suite import SEED, Suite
 from omegadot.commands.progress import Count, Reporter, Reporting, reporting
-from omegadot.harness.arguments import adapters_named, several
+from omegadot.harness.arguments import Via, adapters_named, several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios import ScenarioLike
@@ -74,6 +74,7 @@ def check(
     random: int | None = None,
     seed: int = 0,
     integrators: str | Sequence[str] = (),
+    via: Via | Sequence[Via] = (),
     exceptions: str | Path | Sequence[str | Path] = (),
     baseline: str | Path | None = None,
     update_baseline: bool = False,
@@ -86,15 +87,17 @@ def check(
     engine: a name, ``FILE.py:Class``, ``module:Class`` or an adapter's class.  scenarios: built-in
     names, ``random-SEED-INDEX``, paths, scenarios or their tables; all built-in ones without any.
     random: so many random systems of this seed besides; None for 24, or for none where scenarios
-    are given.  integrators: all without any.  exceptions: files of declared exceptions.
-    baseline: a folder of figures to compare with, or to store them in.  timeout: s, for one request
-    to the engine.  shrink: look for the simplest systems that fail, where some do.
+    are given.  integrators: all without any.  via: how bodies go in, as of `omegadot.run`.
+    exceptions: files of declared exceptions.  baseline: a folder of figures to compare with, or to
+    store them in.  timeout: s, for one request to the engine.  shrink: look for the simplest
+    systems that fail, where some do.
     Raises UsageError, ScenarioError, RecordError and NoTruthError.
     """
     arguments = Arguments(
         scenarios=several(scenarios),
         random=random,
         seed=seed,
+        via=several(via),
         exceptions=several(exceptions),
         baseline=baseline,
         update=update_baseline,

@@ -32,6 +32,7 @@ def check(
     ] = None,
     seed: Annotated[int, option("INTEGER", "Seed of the random systems.", min=0)] = 0,
     integrators: options.Integrators = None,
+    via: options.Ways = None,
     exceptions: options.Exceptions = None,
     baseline: Annotated[Text, option("DIR", "Compare with the values stored in DIR.")] = None,
     update_baseline: Annotated[

@@ -29,6 +29,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
         "NAME|FILE",
         "check on this scenario; repeatable; default: every built-in, and random systems",
     ),
+    "via": _repeatable("WAY", "how bodies go in: api, urdf or mjcf; repeatable; default: api"),
     "baseline": {"metavar": "DIR", "help": "compare with the values stored in DIR"},
     "update-baseline": {"action": "store_true", "help": "store the measured values in DIR instead"},
     "exceptions": _repeatable("FILE", "known failures, declared in TOML; repeatable"),

@@ -29,6 +29,7 @@ def _arguments(given: dict[str, Any]) -> Arguments:
         scenarios=given["scenario"] or (),
         random=given["random"],
         seed=given["seed"],
+        via=given["via"] or (),
         exceptions=given["exceptions"] or (),
         baseline=given["baseline"],
         update=bool(given["update-baseline"]),

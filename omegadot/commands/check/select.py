@@ -10,7 +10,13 @@ from pathlib import Path
 from omegadot.adapters.registry import registered
 from omegadot.commands.check.exceptions import DeclaredException, exceptions_of
 from omegadot.gates.case import Case
-from omegadot.harness.arguments import adapters_named, case_of, engine_choices, scenarios_of
+from omegadot.harness.arguments import (
+    adapters_named,
+    by_ways,
+    case_of,
+    engine_choices,
+    scenarios_of,
+)
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, check_count
@@ -27,6 +33,7 @@ class Arguments:
     adapters: Sequence[EngineLike] = ()
     required: Sequence[str] = ()
     scenarios: Sequence[ScenarioLike] = ()
+    via: Sequence[str] = ()
     exceptions: Sequence[str | Path] = ()
     baseline: str | Path | None = None
     update: bool = False
@@ -70,6 +77,7 @@ def select(arguments: Arguments) -> Selection:
         if name in known and name not in {argument.partition(":")[0] for argument in wanted}:
             wanted.append(name)
     choices = [] if unknown and not wanted else engine_choices(wanted, arguments.adapters)
+    choices = by_ways(choices, arguments.via)
     named = scenarios_of(arguments.scenarios)
     drawn = _drawn(arguments, {scenario.name for scenario in named})
     return Selection(

@@ -41,6 +41,10 @@ class Suite:
         self.selection = selection
         self._runner: Runner | None = None
         self.registry = registry or self._start()
+        # By either name: an engine whose bodies go in by a file has another.
+        given = selection.arguments.required
+        own = {c.name for c in selection.choices if c.engine in given}
+        self._required = {*given, *own}
         # Engines that did not start: outcome and reason.
         text = "no engine of this name is known; install the package that announces it"
         unknown = dict.fromkeys(selection.unknown, ("not-installed", text))
@@ -105,7 +109,7 @@ class Suite:
         """The result of one of the checks, from the one run of its scenario."""
         if check.gate == START:
             outcome, reason = self._absent[check.engine]
-            required = check.engine in self.selection.arguments.required
+            required = check.engine in self._required
             if outcome in ("not-installed", "unsupported") and not required:
                 return skipped(f"{outcome}: {reason}")
             return error(outcome, reason)

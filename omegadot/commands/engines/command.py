@@ -58,7 +58,12 @@ def print_text(entries: Sequence[EngineEntry]) -> None:
         console.print(f"{head}  {own.precision}  {escape(own.licence)}")
         for integrator in own.integrators:
             console.print(f"  {escape(_integrator_line(integrator))}")
-        for title, clauses in (("convention", own.conventions), ("switched off", own.switched_off)):
+        clauses_of = {
+            "convention": own.conventions,
+            "switched off": own.switched_off,
+            "reads": own.importers,
+        }
+        for title, clauses in clauses_of.items():
             for clause in clauses:
                 console.print(f"  {title}: {escape(clause)}", style="dim")
 

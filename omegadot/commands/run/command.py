@@ -50,6 +50,7 @@ def run(
             help="physics: defaults that disturb the motion are off; as-shipped: all defaults."
         ),
     ] = options.Setup.physics,
+    via: options.Ways = None,
     adapters: options.Adapters = None,
     exceptions: options.Exceptions = None,
     timeout: options.Timeout = 60.0,

@@ -51,7 +51,8 @@ def _engines(outcome: Outcome) -> list[dict[str, Any]]:
         integrators = [vars(integrator) for integrator in own.integrators]
         parts = {"integrators": integrators, "features": sorted(own.features)}
         named = {"name": engine.name, "installed": True, "reason": ""}  # as the tasks name it
-        found.append({**vars(own), **named, **parts})
+        via = {"via": engine.choice.via or "api"}
+        found.append({**vars(own), **named, **parts, **via})
     for choice, answer in outcome.missing:
         found.append({"name": choice.name, "installed": False, "reason": answer.reason})
     return found

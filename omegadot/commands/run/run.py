@@ -13,7 +13,7 @@ from omegadot.commands.progress import Count, Progress, Reporter, Reporting, rep
 from omegadot.commands.run.declare import with_declared
 from omegadot.commands.run.record import record_of
 from omegadot.commands.run.result import RunInterrupted, RunResult, result_of
-from omegadot.harness.arguments import case_of, engine_choices, scenarios_of, several
+from omegadot.harness.arguments import Via, by_ways, case_of, engine_choices, scenarios_of, several
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import Outcome, RunRequest, tasks_of
 from omegadot.harness.runner import Runner
@@ -30,6 +30,7 @@ def run(
     accuracies: float | Sequence[float] = (),
     out: str | os.PathLike[str] | None = None,
     setup: Setup = "physics",
+    via: Via | Sequence[Via] = (),
     adapters: EngineLike | Sequence[EngineLike] = (),
     exceptions: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (),
     timeout: float = 60.0,
@@ -46,12 +47,13 @@ def run(
     registered without any.  adapters: engines of your own in addition, by class.
     timesteps: s, instead of the scenarios' own.  accuracies: relative, of error-controlled
     integrators, likewise.  out: a folder to write record and page to.
+    via: how bodies go in: "api", or "urdf" or "mjcf" for each engine's own reader of such files.
     exceptions: files of declared exceptions.  timeout: s, for one request to an engine.
     jobs: requests at the same time; as many as cores without it.  memory: GiB that one engine may
     hold.  seed: of the random states.  command: what the record names as the command.
     Raises UsageError, ScenarioError, RecordError, NoTruthError, and RunInterrupted on Ctrl-C.
     """
-    choices = engine_choices(several(engines), several(adapters))
+    choices = by_ways(engine_choices(several(engines), several(adapters)), several(via))
     knobs = several(timesteps), several(accuracies)
     cases = [case_of(scenario, *knobs) for scenario in scenarios_of(several(scenarios))]
     files: list[str | os.PathLike[str]] = several(exceptions)

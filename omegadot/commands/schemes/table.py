@@ -165,6 +165,8 @@ def remarks_of(record: Record) -> list[str]:
     for engine in record["engines"]:
         if engine["outcome"] != "ok":
             lines.append(f"{engine['name']}: {engine['outcome']}: {engine['reason']}")
+        elif not engine["integrators"]:
+            lines.append(f"{engine['name']} {engine['version']} declares no integrator")
         for integrator in engine["integrators"]:
             label = f"{engine['name']} {engine['version']}, {integrator['name']}"
             for kind, probe in integrator["probes"].items():

@@ -19,7 +19,8 @@ class Portrait:
 
     version: as requested.  reported_version: of the engine itself.  faults: where it is not as
     its adapter declares, or wrong.  has: its integrators, those not looked at included.
-    troubles: requests that it failed to answer.  unreported: kinds of metric that it should report
+    troubles: requests that it failed to answer.  unanswered: how many of them are not merely
+    unsupported.  unreported: kinds of metric that it should report
     and did not.
     """
 
@@ -33,6 +34,7 @@ class Portrait:
     figures: dict[Name, Figure] = field(default_factory=dict)
     faults: list[str] = field(default_factory=list)
     troubles: list[str] = field(default_factory=list)
+    unanswered: int = 0
     unreported: frozenset[str] = frozenset()
     speeds: dict[str, list[float]] = field(default_factory=dict)
 

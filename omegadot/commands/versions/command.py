@@ -54,6 +54,14 @@ def versions(
         With, typer.Option(help="Installer of the environments; auto: uv where it is installed.")
     ] = With.auto,
     setup: Annotated[Setup, typer.Option(help="How engines are configured.")] = Setup.physics,
+    via: Annotated[
+        Text,
+        option(
+            "WAY",
+            "How bodies go in: api (default), or urdf or mjcf through the engine's own "
+            "reader of such files.",
+        ),
+    ] = None,
     adapter: Annotated[Text, option("FILE.py:CLASS", "The adapter of your own engine.")] = None,
     package: Annotated[
         Text, option("NAME", "With --adapter: the package whose releases are installed.")
@@ -67,8 +75,9 @@ def versions(
 ) -> None:
     """Find what changed between releases of an engine, each in an environment of its own.
 
-    Exit codes: 0 done, whatever changed, 1 some version is not as its adapter declares, or the
-    ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be measured.
+    Exit codes: 0 done, whatever changed, 1 some version is not as its adapter declares or failed a
+    query, or the ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be
+    measured.
     """
     arguments = {"releases": [], **options.given(locals())}
     from omegadot.commands.versions.versions import versions as compare_versions

@@ -38,6 +38,8 @@ Figures = dict[Name, Figure]
 Wanted = Callable[[Name], bool]
 ROUNDING = "rounding alone"
 BLOWN_UP = Figure("blew up")
+UNSUPPORTED = Figure("unsupported")
+NOT_OFFERED = Answer("unsupported", "the engine offers no such call")
 
 
 def reported_figures(description: Description, native: dict[str, dict[str, str]]) -> Figures:
@@ -108,25 +110,30 @@ def scheme_figures(
 
 
 def equation_figures(
-    case: Case, exact: Exact, request: Callable[..., Answer]
+    case: Case, exact: Exact, features: frozenset[str], request: Callable[..., Answer]
 ) -> tuple[Figures, list[Row]]:
     """Omega-dot, acceleration and torque at random states, against their bounds.
 
+    features: of the engine; what is not among them is not requested of it, and is "unsupported".
     The rows are those of the equations, and those of the body and a state that are read back.
     Raises NoAnswerError.
     """
     system, random = case.system, exact.random
     first = State(*(values[0] for values in vars(random).values()))
     model = request("model", state=first)
-    forward = request("forward", states=random)
-    inverse = request("inverse", states=random, acceleration=exact.acceleration)
+    forward = inverse = NOT_OFFERED
+    if "forward_dynamics" in features:
+        forward = request("forward", states=random)
+    if "inverse_dynamics" in features:
+        inverse = request("inverse", states=random, acceleration=exact.acceleration)
     rows: list[Row] = []
     if forward.ok:
         rows += forward_rows(system, random, Acceleration(**forward.result), "residual")
     if inverse.ok:
         rows += inverse_rows(system, random, exact.acceleration, inverse.result["torque"])
     names = {name[-1]: name for name in equation_names(case)}
-    found = {names[row.channel]: Figure(row.value, row.bound or 0.0) for row in rows}
+    found = dict.fromkeys(names.values(), UNSUPPORTED)
+    found |= {names[row.channel]: Figure(row.value, row.bound or 0.0) for row in rows}
     if model.ok:
         bodies, state = model.result["bodies"], State(**model.result["state"])
         rows = body_rows(case, body_from(bodies[0])) + state_rows(case, first, state) + rows

@@ -19,6 +19,7 @@ from omegadot.commands.versions.release import Product, version_of
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load
 from omegadot.gates.accuracy import usual_for
 from omegadot.gates.case import Case
+from omegadot.harness.arguments import API
 from omegadot.harness.engines import outcome_of
 from omegadot.workers.harness_end.process import WorkerProcess
 
@@ -37,6 +38,7 @@ class Gallery:
     """Where releases are looked at.
 
     place: finds or makes the environment of a release.  pythons: interpreters given by the user.
+    via: how bodies go in.
     """
 
     product: Product
@@ -45,13 +47,15 @@ class Gallery:
     pythons: Mapping[str, str]
     setup: str
     timeout: float
+    via: str = API
     _places: dict[str, Place] = field(default_factory=dict)
     _workers: list[WorkerProcess] = field(default_factory=list)
     _stopping: threading.Event = field(default_factory=threading.Event)
 
     @contextmanager
     def _worker(self, place: Place) -> Iterator[WorkerProcess]:
-        worker = WorkerProcess(self.product.target, self.setup, self.timeout, place.command)
+        target, file = self.product.target, "" if self.via == API else self.via
+        worker = WorkerProcess(target, self.setup, self.timeout, place.command, via=file)
         self._workers.append(worker)
         try:
             yield worker
@@ -73,7 +77,8 @@ class Gallery:
             return portrait
         portrait.origin = place.origin
         with self._worker(place) as worker:
-            sitting = Sitting(portrait, worker, self.aims, self._stopping.is_set)
+            read = self.via != API
+            sitting = Sitting(portrait, worker, self.aims, self._stopping.is_set, read)
             names = sitting.start()
             self._check_start(portrait, place)
             if portrait.ok:

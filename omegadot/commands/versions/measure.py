@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+import numpy as np
+
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.commands.versions.aims import Aims, drift_names, equation_names, names_of, probe_names
 from omegadot.commands.versions.changes import Portrait
 from omegadot.commands.versions.figures import (
+    UNSUPPORTED,
     Figures,
     Wanted,
     drift_figures,
@@ -19,9 +22,10 @@ from omegadot.commands.versions.figures import (
 from omegadot.commands.versions.metric import Figure, Name
 from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
 from omegadot.diagnosis.scheme_study.study import IntegratorStudy, ProbeStudy
-from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load, stepper_of
+from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load, one_of, stepper_of
 from omegadot.gates.accuracy import usual_for
 from omegadot.gates.case import Case
+from omegadot.gates.model import of_read_body
 from omegadot.reference_impl.system import System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
@@ -33,14 +37,23 @@ Measuring = Callable[[Declared], Figures]  # of the integrators as declared for 
 
 
 class Sitting:
-    """One version being measured, through its worker; once `halted`, no further request is sent."""
+    """One version being measured, through its worker; once `halted`, no further request is sent.
+
+    read: whether its bodies are read from files.
+    """
 
     def __init__(
-        self, portrait: Portrait, worker: WorkerProcess, aims: Aims, halted: Callable[[], bool]
+        self,
+        portrait: Portrait,
+        worker: WorkerProcess,
+        aims: Aims,
+        halted: Callable[[], bool],
+        read: bool = False,
     ) -> None:
         self.portrait, self._worker, self._aims = portrait, worker, aims
-        self._halted = halted
+        self._halted, self._read = halted, read
         self._description: Description | None = None
+        self._features: frozenset[str] = frozenset()
         self._timeouts = 0
         self._answered = False
         self._lost: tuple[str, str] | None = None
@@ -56,6 +69,7 @@ class Sitting:
             portrait.outcome, portrait.reason = answer.outcome, answer.reason
             return []
         self._description = description_of(answer.result)
+        self._features = self._description.features
         portrait.reported_version = self._description.version
         portrait.has = [integrator.name for integrator in self._description.integrators]
         portrait.integrators = self._aims.chosen(self._description)
@@ -98,13 +112,14 @@ class Sitting:
         if not any(map(wanted, names)):
             return
         try:
-            self.portrait.figures |= call(self._load(system))
+            with np.errstate(all="ignore"):  # a release may give any numbers
+                self.portrait.figures |= call(self._load(system))
             self._answered = True
         except NoAnswerError as error:
             unsupported = error.answer.outcome == "unsupported"
             self._answered = self._answered or unsupported
             self._lost = self._lost or (error.answer.outcome, error.answer.reason)
-            lost = Figure("unsupported" if unsupported else None)
+            lost = UNSUPPORTED if unsupported else Figure(None)
             self.portrait.figures |= dict.fromkeys(names, lost)
             self._note(what, error.answer)
 
@@ -128,13 +143,14 @@ class Sitting:
         declared: Declared,
     ) -> Figures:
         step = stepper_of(self._worker, name)
-        figures, studies[probe.kind] = scheme_figures(probe, declared[name], step, wanted)
+        integrator = one_of(declared, name)
+        figures, studies[probe.kind] = scheme_figures(probe, integrator, step, wanted)
         return figures
 
     def _equations(self, case: Case, _: Declared) -> Figures:
-        request = partial(_answer_of, self._worker)
-        figures, rows = equation_figures(case, self._aims.truth(case), request)
-        for row in rows:
+        request, features = partial(_answer_of, self._worker), self._features
+        figures, rows = equation_figures(case, self._aims.truth(case), features, request)
+        for row in map(of_read_body, rows) if self._read else rows:
             if row.verdict == "fail":
                 off = f"{row.value:.1e} against a bound of {row.bound:.1e}"
                 what = row.channel.replace("_", " ")
@@ -143,6 +159,7 @@ class Sitting:
 
     def _note(self, what: str, answer: Answer) -> None:
         self._timeouts += answer.outcome == "timeout"
+        self.portrait.unanswered += answer.outcome != "unsupported"
         self.portrait.troubles.append(f"{what}: {answer.outcome}: {answer.reason}")
 
 

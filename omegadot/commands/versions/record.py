@@ -40,6 +40,7 @@ def record_of(
         "engine": gallery.product.engine,
         "package": gallery.product.package,
         "setup": gallery.setup,
+        "via": gallery.via,
         "machine": describe_machine(),
         "cases": [
             {

@@ -82,10 +82,14 @@ class VersionsResult:
 
     @property
     def passed(self) -> bool:
-        """Whether there was something to compare, all is as declared, and a bisection found."""
+        """Whether there was something to compare, all is as declared, and a bisection found.
+
+        A release that ran and did not answer some request is not as declared.
+        """
         bisected = self.record["bisect"]
         found = bisected is None or bool(bisected["found"])
-        return self.comparable and found and not set(self.faults) & set(self.known)
+        ran = [v for v in self.record["versions"] if v["outcome"] == "ok"]
+        return self.comparable and found and not any(v["faults"] or v["unanswered"] for v in ran)
 
     def page(self) -> str:
         """The page: one HTML text that needs no other file."""

@@ -18,7 +18,7 @@ from omegadot.commands.versions.installer import InstallError, installer_named
 from omegadot.commands.versions.record import record_of
 from omegadot.commands.versions.release import product_of, requested_releases
 from omegadot.commands.versions.result import VersionsResult
-from omegadot.harness.arguments import several
+from omegadot.harness.arguments import Via, check_way, several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, check_count, check_number, check_setup
 from omegadot.reports.record.whole_file import make_folder
@@ -37,6 +37,7 @@ def versions(
     offline: bool = False,
     installer: Literal["auto", "uv", "pip"] = "auto",
     setup: Setup = "physics",
+    via: Via = "api",
     adapter: EngineLike | None = None,
     package: str | None = None,
     speed: bool = True,
@@ -51,8 +52,9 @@ def versions(
     ``1.2.0..1.4.0`` of the releases that there are, or ``1.2.3=PYTHON``, an interpreter that has it
     already.  timestep: s, instead of each scenario's middle one.  bisect: the terms of a metric's
     name; the release in which it changed is then found.  cache: where environments are kept.
-    offline: use the cache alone.  adapter, package: of an engine of your own.
-    speed: time the steps too.  jobs: versions at the same time.  out: a folder for record and page.
+    offline: use the cache alone.  via: how bodies go in, as of `omegadot.run`.
+    adapter, package: of an engine of your own.  speed: time the steps too.
+    jobs: versions at the same time.  out: a folder for record and page.
     Raises UsageError, ScenarioError and RecordError.
     """
     own = "" if adapter is None else target_of(adapter)
@@ -60,6 +62,7 @@ def versions(
     if package and not own:
         raise UsageError("--package: only an engine of your own has one; give --adapter too.")
     check_setup(setup)
+    check_way(via)
     check_number("--timeout", timeout, 0.0)
     if jobs is not None:
         check_count("--jobs", jobs, 1)
@@ -72,7 +75,7 @@ def versions(
         raise UsageError(f"--installer {installer}: {error}.") from error
     environments = Environments(Path(cache or default_cache()), product, fetching)
     wanted, pythons = requested_releases(several(releases), environments.releases)
-    gallery = Gallery(product, aims, environments.place, pythons, setup, timeout)
+    gallery = Gallery(product, aims, environments.place, pythons, setup, timeout, via)
     with reporting(progress) as report:
         total = len(wanted) if bisect is None else None
         count = Count(report, "making environments and starting engines", total)

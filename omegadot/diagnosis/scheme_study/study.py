@@ -5,13 +5,21 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.scheme_study.fingerprint import Match, fingerprint
 from omegadot.diagnosis.scheme_study.naming import Naming, name_schemes
 from omegadot.diagnosis.scheme_study.one_step import Defect, defects
 from omegadot.diagnosis.scheme_study.orders import Observed, global_errors, observe
 from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
-from omegadot.diagnosis.scheme_study.subject import NoAnswerError, Stepper, load, stepper_of
+from omegadot.diagnosis.scheme_study.subject import (
+    NoAnswerError,
+    Stepper,
+    load,
+    one_of,
+    stepper_of,
+)
 from omegadot.gates.measured_run import CHANNELS, orders_for
 from omegadot.gates.orders import ORDER_TOLERANCE
 from omegadot.gates.truth import scheme_key
@@ -162,7 +170,8 @@ def study_engine(
 
 def _study(worker: WorkerProcess, probe: Probe, name: str) -> ProbeStudy:
     try:
-        integrator = load(worker, probe.system)[name]
+        integrator = one_of(load(worker, probe.system), name)
     except NoAnswerError as error:
         return ProbeStudy(error.answer)
-    return study_probe(probe, integrator, stepper_of(worker, name))
+    with np.errstate(all="ignore"):  # an engine may give any numbers
+        return study_probe(probe, integrator, stepper_of(worker, name))

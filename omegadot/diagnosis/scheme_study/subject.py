@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.reference_impl.system import State, System
@@ -43,6 +43,13 @@ def load(worker: WorkerProcess, system: System) -> dict[str, Integrator]:
             raise NoAnswerError(started)
     answer = _requested(worker, "load", system=system)
     return {i.name: i for i in description_of(answer.result).integrators}
+
+
+def one_of(declared: Mapping[str, Integrator], name: str) -> Integrator:
+    """The integrator of this name. Raises NoAnswerError where the system has none."""
+    if name not in declared:
+        raise NoAnswerError(Answer("unsupported", "it is not declared for this system"))
+    return declared[name]
 
 
 def stepper_of(worker: WorkerProcess, integrator: str, accuracy: float | None = None) -> Stepper:

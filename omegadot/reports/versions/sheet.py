@@ -77,7 +77,9 @@ def _remarks(record: Record) -> list[str]:
     bisected = record["bisect"]
     if bisected is None:
         cases = [f"{c['name']} ({plain(c['timestep'])} s)" for c in record["cases"]]
-        return [f"Run on {listed(cases)}, setup {record['setup']}."]
+        way = record.get("via", "api")
+        read = "" if way == "api" else f", bodies read from {way} by the engine itself"
+        return [f"Run on {listed(cases)}, setup {record['setup']}{read}."]
     followed = bisected["metrics"]
     if not followed:  # no release ran, so that no metric is known
         return [f"Releases run: {listed(bisected['looked_at'])}."]

@@ -12,6 +12,7 @@ from omegadot.adapters.protocol import (
     Adapter,
     Channel,
     Description,
+    Format,
     Integrator,
     Knob,
     Trajectory,
@@ -27,7 +28,7 @@ SHAPES: dict[type, dict[str, Shape]] = {
     Acceleration: {"angular": _V, "linear": _V},
     Body: {"mass": (), "center_of_mass": _V, "inertia": (3, 3)},
 }
-CHANNELS = get_args(Channel)
+CHANNELS, FORMATS = get_args(Channel), get_args(Format)
 KNOBS = get_args(Knob)
 # In parts of eps, the finest relative tolerance that a rounded estimate of an error can keep.
 ROUNDINGS_OF_AN_ESTIMATE = 450
@@ -117,9 +118,13 @@ def checked_description(found: Any) -> Description:
         _expect(f"description.{name}", getattr(found, name), str)
     if found.precision not in ("float64", "float32"):
         raise AnswerError(f"description.precision is {found.precision!r}; write float64 or float32")
-    for name in ("conventions", "switched_off", "links", "features"):
+    for name in ("conventions", "switched_off", "links", "features", "importers"):
         for item in getattr(found, name):
             _expect(f"an item of description.{name}", item, str)
+    for item in found.importers:
+        if item not in FORMATS:
+            known = ", ".join(FORMATS)
+            raise AnswerError(f"description.importers names {item!r}; give one of {known}")
     for integrator in found.integrators:
         _expect("an item of description.integrators", integrator, Integrator)
         _check_integrator(integrator)

@@ -1,4 +1,4 @@
-"""One engine in a process of its own: ``python -m ...engine_end.worker TARGET [SETUP]``.
+"""One engine in a process of its own: ``python -m ...engine_end.worker TARGET [SETUP [VIA]]``.
 
 Reads requests from what was its standard input and answers on what was its standard output;
 whatever the engine prints goes to standard error instead, so a chatty engine cannot garble an
@@ -63,10 +63,10 @@ def answered(call: Callable[[], Any]) -> tuple[bytes, bool]:
         return encode_frame(failure(error)), True
 
 
-def _built(target: str, setup: Setup) -> tuple[Adapter | None, bytes]:
+def _built(target: str, setup: Setup, via: str) -> tuple[Adapter | None, bytes]:
     """The adapter, with the frame that holds its description; None where it cannot be built."""
     try:
-        adapter = build_adapter(target, setup)
+        adapter = build_adapter(target, setup, via)
     except ImportError as error:
         missing = {"outcome": "not-installed", "reason": one_line(_text_of(error))}
         return None, encode_frame(missing)
@@ -76,10 +76,10 @@ def _built(target: str, setup: Setup) -> tuple[Adapter | None, bytes]:
     return adapter, frame
 
 
-def serve(target: str, setup: Setup, requests: BinaryIO, answers: BinaryIO) -> None:
+def serve(target: str, setup: Setup, via: str, requests: BinaryIO, answers: BinaryIO) -> None:
     """Answer requests until the harness closes the channel."""
     own = os.getpid()
-    adapter, frame = _built(target, setup)
+    adapter, frame = _built(target, setup, via)
     going_on = True
     while True:
         if os.getpid() != own:  # a child that the engine forked; the channel is its parent's
@@ -119,7 +119,8 @@ def main() -> None:
     memory = os.environ.get(MEMORY_VARIABLE)
     if memory:
         limit_memory(int(memory))
-    serve(sys.argv[1], setup, *_private_channels())
+    via = sys.argv[3] if len(sys.argv) > 3 else ""
+    serve(sys.argv[1], setup, via, *_private_channels())
 
 
 if __name__ == "__main__":

@@ -54,6 +54,7 @@ class WorkerProcess:
 
     timeout: s, for one request; a start has 20 s at least.  memory: bytes of data that it may
     hold; half of the machine's where none is given, and no limit where that is not known.
+    via: the format of the files by which systems are loaded; "" for the engine's API.
     """
 
     def __init__(
@@ -63,9 +64,10 @@ class WorkerProcess:
         timeout: float,
         command: Sequence[str] | None = None,
         memory: int | None = None,
+        via: str = "",
     ) -> None:
         python = [sys.executable, "-m", "omegadot.workers.engine_end.worker"]
-        self._command = [*(command or python), target, setup]
+        self._command = [*(command or python), target, setup, via]
         self._timeout = timeout
         self._memory = memory or memory_of_machine() // 2
         self._pipes: Pipes | None = None
