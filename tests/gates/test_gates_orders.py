@@ -103,6 +103,11 @@ def test_an_error_that_falls_into_rounding_has_vanished() -> None:
     for sizes in ((1e-3, 1e-4), (BOUND, 1e-3), (BOUND, BOUND)):
         pair = {0.04: sizes[0] * line, 0.02: sizes[1] * line}
         assert order_of(over_time(pair)) is not VANISHED
+    coarse, fine = (
+        Errors(h, SAMPLES, size * line, bound * line, size * line, True)
+        for h, size, bound in ((0.04, 2e-9, 1e-9), (0.02, 2e-9, 4e-9))
+    )
+    assert order_of([coarse, fine]) is not VANISHED  # the bound has risen above it
     late = np.where(SAMPLES == 0.5, 2 * BOUND, 0.0)  # one sample keeps an error alive
     assert order_of(over_time({0.04: 1e-3 * line, 0.02: late})) is not VANISHED
 
