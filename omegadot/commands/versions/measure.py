@@ -131,7 +131,7 @@ class Sitting:
         return load(self._worker, system)
 
     def _drifts(self, case: Case, name: str, declared: Declared) -> Figures:
-        step = stepper_of(self._worker, name, usual_for(declared[name]))
+        step = stepper_of(self._worker, name, usual_for(one_of(declared, name)))
         return drift_figures(case, name, self._aims.truth(case), step)
 
     def _scheme(
