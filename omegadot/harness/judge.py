@@ -8,7 +8,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import accuracy, cost, equation, invariants, model, phase, scheme, trajectory
+from omegadot.gates import (
+    accuracy,
+    accuracy_followed,
+    cost,
+    equation,
+    invariants,
+    model,
+    phase,
+    scheme,
+    trajectory,
+)
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
@@ -181,18 +191,18 @@ def _judge_accuracies(
                 own = accuracy.measure_accuracy(truth, integrator, sweep, state)
                 measured_runs[sweep] = own
     known = list(measured_runs.values())
-    further = accuracy.finer_sweep(truth, integrator, known) if known else None
+    further = accuracy_followed.finer_sweep(truth, integrator, known) if known else None
     for sweep, answer in answers:
         measured = measured_runs.get(sweep)
         if measured is None:
             yield _failed(integrator, sweep, answer)
             continue
-        findings = accuracy.findings_of(measured, known)
+        findings = accuracy_followed.findings_of(measured, known)
         unknown = rows_of_unknown(truth, integrator, sweep, result)
         rows, broken = _rows_of_run(truth, measured, findings, answer, result.precision)
         broken += [row.note for row in unknown if row.verdict == "fail"]
         why = broken[0] if broken else _why(findings)
-        rows = [*accuracy.rows(measured, known), *unknown, *rows]
+        rows = [*accuracy_followed.rows(measured, known), *unknown, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, further is not None, further)
 
 
