@@ -154,8 +154,8 @@ class Driver:
 
     def replay(self, case: Case, integrator: str, sweep: Sweep, initial: State) -> Answer:
         """The states of a run alone, without what measures its cost: no step goes before it."""
-        how = {"timestep": sweep.timestep, "steps": sweep.steps, "every": sweep.every}
-        return self.request(case, "replay", initial=initial, integrator=integrator, **how)
+        how = {"initial": initial, "integrator": integrator, **vars(sweep)}
+        return self.request(case, "replay", **how)
 
     def evaluate_equations(self, case: Case, evaluation_states: EvaluationStates) -> CaseResult:
         """The model read back, and the engine's equations at the states in question."""

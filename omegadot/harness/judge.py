@@ -10,6 +10,7 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates import (
     accuracy,
+    accuracy_followed,
     cost,
     equation,
     invariants,
@@ -228,22 +229,24 @@ def _judge_accuracies(
     for sweep, answer in (*answers, *finer):
         if answer.ok and len(answer.result["time"]) == len(sweep.times):
             state = State(**answer.result["state"])
-            if is_finite(state):
-                own = accuracy.measure_accuracy(truth, integrator, sweep, state)
-                measured_runs[sweep] = own
+            measured_runs[sweep] = accuracy.measure_accuracy(truth, integrator, sweep, state)
     known = list(measured_runs.values())
-    further = accuracy.finer_sweep(truth, integrator, known) if known else None
+    further = accuracy_followed.finer_sweep(truth, integrator, known) if known else None
     for sweep, answer in answers:
         measured = measured_runs.get(sweep)
         if measured is None:
             yield _failed(integrator, sweep, answer, eps)
             continue
-        findings = accuracy.findings_of(measured, known)
+        findings = accuracy_followed.findings_of(measured, known)
+        if not is_finite(State(**answer.result["state"])):
+            yield _diverged(integrator, sweep, answer, measured, findings, eps)
+            continue
         probed = rows_of_probes(truth, integrator, sweep, result)
+        probed += rows_again(truth, integrator, sweep, result, measured)
         rows, broken = _rows_of_run(truth, measured, findings, answer, result)
         broken += [row.note for row in probed if row.verdict == "fail"]
         why = broken[0] if broken else _why(findings)
-        rows = [*accuracy.rows(measured, known), *probed, *rows]
+        rows = [*accuracy_followed.rows(measured, known), *probed, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, further is not None, further)
 
 

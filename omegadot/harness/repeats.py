@@ -10,6 +10,7 @@ from omegadot.gates import repeats
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.measured_run import MeasuredRun
+from omegadot.gates.repeats import How
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
@@ -62,46 +63,56 @@ def request_again(
     At the end another system is loaded and stepped, and then this one again; forward dynamics are
     requested then as well.
     """
-    sweep = short_sweep(case.sweeps[0])
-    runs = {i.name: result.runs.get((i.name, sweep.timestep)) for i in result.integrators}
-    steppers = [
-        i.name
-        for i in result.integrators
-        if i.knob == "timestep" and (run := runs[i.name]) is not None and run.ok
-    ]
+    sweeps = {i.name: _begun_again(case, i) for i in result.integrators}
+    runs = {name: result.runs.get((name, sweep.knob)) for name, sweep in sweeps.items()}
+    steppers = [i for i in result.integrators if (run := runs[i.name]) is not None and run.ok]
     if not steppers:
         return
-    step = sweep.timestep
+
+    def replay(integrator: Integrator, how: How, initial: State) -> None:
+        name, sweep = integrator.name, sweeps[integrator.name]
+        result.again[name, sweep.knob, how] = driver.replay(case, name, sweep, initial)
+
     negated = replace(case.initial, orientation=-case.initial.orientation)
     # an unknown scheme may step a chart of its own, in which q and -q are different points
-    known = {i.name for i in result.integrators if i.scheme in SCHEMES}
-    for name in steppers:
-        result.again[name, step, "repeated"] = driver.replay(case, name, sweep, case.initial)
-        if name in known:
-            result.again[name, step, "negated"] = driver.replay(case, name, sweep, negated)
+    known = {i.name for i in result.integrators if i.scheme in SCHEMES and i.knob == "timestep"}
+    for integrator in steppers:
+        replay(integrator, "repeated", case.initial)
+        if integrator.name in known:
+            replay(integrator, "negated", negated)
     if not _load_another(driver, case, steppers[0]):
         return
     if "forward_dynamics" in driver.engine.description.features:
         result.reloaded = driver.request(case, "forward", states=evaluation_states.random)
-    for name in steppers:
-        result.again[name, step, "reloaded"] = driver.replay(case, name, sweep, case.initial)
+    for integrator in steppers:
+        replay(integrator, "reloaded", case.initial)
 
 
-def _load_another(driver: Driver, case: Case, integrator: str) -> bool:
+def _begun_again(case: Case, integrator: Integrator) -> Sweep:
+    """The coarsest run's first samples; all of them where the steps are the integrator's own, for
+    these may depend on the length of the run.
+    """
+    coarsest = case.sweeps_of(integrator)[0]
+    return short_sweep(coarsest) if integrator.knob == "timestep" else coarsest
+
+
+def _load_another(driver: Driver, case: Case, integrator: Integrator) -> bool:
     """Whether the engine has taken another system and stepped it; a body is free to be refused."""
     held = case.system.load.pivot is not None
     others = reversed(OTHERS) if held else OTHERS
-    return any(driver.replay(o, integrator, o.sweeps[0], o.initial).ok for o in others)
+    return any(
+        driver.replay(o, integrator.name, o.sweeps_of(integrator)[0], o.initial).ok for o in others
+    )
 
 
 def rows_again(
     truth: Truth, integrator: Integrator, sweep: Sweep, result: CaseResult, measured: MeasuredRun
 ) -> Iterator[Row]:
     """The rows of these answers, for the run that they repeat; none for other runs."""
-    state = State(**result.runs[integrator.name, sweep.timestep].result["state"])
-    count = len(short_sweep(sweep).times)
+    state = State(**result.runs[integrator.name, sweep.knob].result["state"])
+    count = len((short_sweep(sweep) if integrator.knob == "timestep" else sweep).times)
     for how in repeats.NOTES:
-        answer = result.again.get((integrator.name, sweep.timestep, how))
+        answer = result.again.get((integrator.name, sweep.knob, how))
         if answer is None:
             continue
         if answer.ok and len(answer.result["time"]) == count:

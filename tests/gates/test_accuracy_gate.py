@@ -15,15 +15,14 @@ import pytest
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.accuracy import (
     AccuracyRun,
-    findings_of,
     finest_of,
     fixed,
     order_of,
-    rows,
     steps_per_radian,
     tolerated_by,
     usual_for,
 )
+from omegadot.gates.accuracy_followed import findings_of, rows
 from omegadot.gates.case import Sweep
 from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.verdicts import Finding

@@ -20,6 +20,8 @@ from omegadot.reference_impl.schemes.scheme import every_channel
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Array, State, System
 
+MANY = 6  # the runs of one sweep, with the finer ones
+
 
 class ErrorControlled(ReferenceAdapter):
     """A body's quaternion, omega, position and velocity, by one of SciPy's methods."""
@@ -168,6 +170,30 @@ FAULTY = (
     *(ClampsTolerance, IgnoresTolerance, Drags, StartsToDrag, RunsFast, LinearBetweenSteps),
     EulerWhereCoarse,
 )
+
+
+class EndsInNothing(ErrorControlled):
+    """No number comes after the middle of a run."""
+
+    def solved(self, start: Array, times: Array, accuracy: float) -> Array:
+        found = super().solved(start, times, accuracy)
+        found[len(times) // 2 :] = np.nan
+        return found
+
+
+class LaterRunsDrag(ErrorControlled):
+    """Runs after the first drag."""
+
+    runs = 0
+
+    def solved(self, start: Array, times: Array, accuracy: float) -> Array:
+        self.runs += len(times) > 2
+        return super().solved(start, times, accuracy)
+
+    def rate(self, time: float, y: Array) -> Array:
+        found = super().rate(time, y)
+        found[4:7] -= (1e-6 if self.runs > MANY else 0.0) * y[4:7]
+        return found
 
 
 class Fixed(ErrorControlled):

@@ -15,13 +15,16 @@ import numpy as np
 import pytest
 from harness.error_controlled import (
     FAULTY,
+    MANY,
     SOUND,
     EndsAtSamples,
+    EndsInNothing,
     ErrorControlled,
     Fixed,
     FixedAndDrags,
     FixedAndRunsFast,
     FixedTight,
+    LaterRunsDrag,
     Multistep,
 )
 
@@ -35,6 +38,7 @@ from omegadot.harness.in_process import driver_of
 from omegadot.harness.judge import JudgedRun, judge_case
 from omegadot.harness.random_cases import random_case
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.repeats import request_again
 from omegadot.harness.step_probes import probe_steps
 from omegadot.harness.truth_requests import case_truth
 from omegadot.scenarios import load_builtin
@@ -115,6 +119,34 @@ def test_a_tolerance_that_cannot_be_set_is_no_fault(engine: type[Fixed], name: s
 def test_a_fault_beside_it_is_caught(engine: type[Fixed]) -> None:
     assert any("as the step vanishes" in text or "too long" in text
                for text in failures(judged("t-handle", engine())))  # fmt: skip
+
+
+def test_a_run_that_ends_in_nothing_fails() -> None:
+    case, truth, _ = prepared("random-2")
+    driver = driver_of("engine", EndsInNothing())
+    result = driver.evaluate_equations(case, prepared("random-2")[2])
+    result.runs.update(driver.run_all(case, lambda: None))
+    with np.errstate(all="ignore"):
+        runs = judge_case(truth, case, result, {})
+    assert {run.outcome for run in runs} == {"diverged"}
+    assert all(any(row.verdict == "fail" for row in run.rows) for run in runs)
+
+
+def test_a_run_that_is_requested_again_is_the_same_or_fails() -> None:
+    case, truth, states = prepared("random-2")
+    found = []
+    for adapter in (ErrorControlled(), LaterRunsDrag()):
+        driver = driver_of("engine", adapter)
+        result = driver.evaluate_equations(case, states)
+        result.runs.update(driver.run_all(case, lambda: None))
+        if isinstance(adapter, LaterRunsDrag):
+            adapter.runs = MANY + 1
+        request_again(driver, case, states, result)
+        with np.errstate(all="ignore"):
+            runs = judge_case(truth, case, result, {})
+        rows = [row for run in runs for row in run.rows if row.metric in ("repeated", "reloaded")]
+        found.append([row.verdict for row in rows])
+    assert found == [["pass", "pass"], ["fail", "fail"]]
 
 
 def test_the_samples_of_accuracies_are_those_of_the_steps() -> None:

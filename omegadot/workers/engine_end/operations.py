@@ -105,7 +105,7 @@ def _run(adapter: Adapter, request: Request) -> Any:
 def _replay(adapter: Adapter, request: Request) -> Any:
     """The states of a run, and nothing before it: not even a first step to warm up."""
     how = (request["integrator"], request["timestep"], request["steps"], request["every"])
-    trajectory = checked_trajectory(adapter.run(State(**request["initial"]), *how))
+    trajectory = checked_trajectory(_runs_of(adapter, request)(State(**request["initial"]), *how))
     return {"time": trajectory.time, "state": trajectory.state}
 
 
