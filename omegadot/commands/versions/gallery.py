@@ -132,7 +132,7 @@ def _time_steps(portrait: Portrait, worker: WorkerProcess, case: Case) -> None:
         declared = load(worker, case.system)
     except NoAnswerError:
         return
-    for name in portrait.integrators:
+    for name in (name for name in portrait.integrators if name in declared):
         for _ in range(REPEATS):
             own = {"integrator": name, "accuracy": usual_for(declared[name])}
             answer = worker.request("run", initial=case.initial, **own, **plan)
