@@ -13,7 +13,7 @@ from omegadot.scenarios.solids import rotation_of
 
 Array = NDArray[np.float64]
 # Decades, by the trait that they belong to.
-MASSES = {"light": (-3.0, -0.3), "heavy": (0.3, 3.0)}  # kg
+MASSES = {"light": (-3.0, -1.0), "heavy": (1.0, 3.2)}  # kg
 SIZES = {"small": (-3.0, -1.0), "large": (-0.3, 2.7)}  # m
 RATES = {"slow": (-3.0, -1.4), "middle": (-0.7, 0.7), "fast": (1.5, 3.0)}  # rad/s
 AT_REST = 0.25  # of the slow ones: they start at rest, and are driven at a rate of the middle

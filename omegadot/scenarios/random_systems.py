@@ -30,8 +30,8 @@ NAME = re.compile(r"random-(0|[1-9]\d{0,8})-(0|[1-9]\d{0,5})")
 def random_scenario(seed: int, index: int) -> Scenario:
     """The system of this number, called ``random-SEED-INDEX``.
 
-    Masses span six decades (1 g to 1 t), sizes nearly as many (1 mm to 500 m), rates six (0.001 to
-    1000 rad/s, or at rest), speeds go up to 10 km/s. A run lasts 4 to 26 rad at the body's own
+    Masses span six decades (1 g to 1.5 t), sizes nearly as many (1 mm to 500 m), rates six (0.001
+    to 1000 rad/s, or at rest), speeds go up to 10 km/s. A run lasts 4 to 26 rad at the body's own
     rate, in steps of 0.5 rad or of 0.1, up to 1028 of them.
     """
     draw, random = drawn(seed, index), np.random.default_rng([seed, index])

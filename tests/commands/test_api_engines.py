@@ -67,7 +67,7 @@ def test_what_fails_is_named(quick: Path) -> None:
     assert {task.engine for task in found.failures} == {"nogyroscopic"}
     assert all(task.gates["equation"] == "fail" for task in found.failures)
     assert {(task.engine, task.outcome) for task in found.unanswered} == {("killed", "crashed")}
-    checked = api.check(f"{WRONG}:NoGyroscopic", scenarios=quick)
+    checked = api.check(f"{WRONG}:NoGyroscopic", scenarios=quick, shrink=False)
     assert not checked.passed
     assert checked.answered
     failed = checked.failures["nogyroscopic-quick-equation"]

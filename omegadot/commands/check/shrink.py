@@ -27,7 +27,7 @@ from omegadot.scenarios.writing import to_toml
 
 MOST = 3  # failures that are shrunk, each of another kind
 TRIALS = 60  # for each
-SECONDS = 15.0  # for each
+SECONDS = 20.0  # for each
 
 
 @dataclass(frozen=True)

@@ -96,6 +96,12 @@ def _shorter(tables: Tables) -> Tables:
     return _with(tables, "run", duration=duration, sample=min(run["sample"], duration))
 
 
+def _brief(tables: Tables) -> Tables:
+    """One step of the longest size: the gates of the engine itself need no more."""
+    step = max(tables["run"]["timesteps"])
+    return _with(tables, "run", timesteps=[step], duration=step, sample=step)
+
+
 def _one_step_size(tables: Tables, number: int) -> Tables:
     steps = tables["run"]["timesteps"]
     return _with(tables, "run", timesteps=[steps[min(number, len(steps) - 1)]])
@@ -136,6 +142,7 @@ def _rounded_value_of(table: Tables, digits: int) -> Tables:
 
 
 SIMPLER: tuple[Simpler, ...] = (
+    _brief,
     _bare,
     *(partial(_without, loads=(load,)) for load in LOADS),
     partial(_one_step_size, number=0),
