@@ -1,7 +1,12 @@
-"""One engine, sound or not, on one random case: which gates fail, and why."""
+"""One engine, sound or not, on one case, as `check` examines it: which gates fail, and why.
+
+It is examined in stages, cheap ones first: the model and the equations, then one integrator after
+another. What fails at a stage is caught, and the stages after it need not be run.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,9 +16,10 @@ from omegadot.commands.faults.fault import Spoiled
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.rows import Row
 from omegadot.gates.verdicts import UNDECIDED
-from omegadot.harness.drive import CaseResult
+from omegadot.harness.drive import CaseResult, Driver
 from omegadot.harness.in_process import driver_of
 from omegadot.harness.judge import JudgedRun, judge_case, shared_rows
+from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
 from omegadot.harness.unknown_schemes import probe_unknown_schemes
 
 GATES = ("model", "equation", "scheme", "invariants", "trajectory")
@@ -64,6 +70,64 @@ def chosen_integrators(engine: Adapter) -> tuple[Integrator, ...]:
     return tuple(picked[order] for order in (1, 4) if order in picked)
 
 
+def stages(
+    pool: Pool,
+    prepared: Prepared,
+    name: str,
+    adapter: Adapter,
+    integrators: tuple[Integrator, ...] = (),
+) -> Iterator[Judgement]:
+    """What an engine shows, stage by stage, each with its own rows and the answers so far.
+
+    integrators: those to run; one of order 1 and one of order 4 without any.  The adapter may have
+    seen other cases: what it keeps of them shows, as it does in any run.
+    """
+    case, at = prepared.case, prepared.evaluation_states
+    driver = driver_of(name, adapter, integrators or chosen_integrators(adapter))
+    result = driver.evaluate_equations(case, at)
+    with np.errstate(all="ignore"):  # a wrong engine may give any numbers
+        yield _stage(shared_rows(case, at, result), result, ())
+        for integrator in result.integrators:
+            own = replace(result, integrators=(integrator,))
+            for sweep in case.sweeps:
+                answer = driver.run(case, integrator.name, sweep)
+                own.runs[integrator.name, sweep.timestep] = answer
+            probe_unknown_schemes(driver, case, at, own)
+            runs = _judged(pool, prepared, driver, own)
+            yield _stage([row for run in runs for row in run.rows], own, tuple(runs))
+
+
+def _judged(pool: Pool, prepared: Prepared, driver: Driver, own: CaseResult) -> list[JudgedRun]:
+    """One integrator's runs, with finer ones as long as these can still decide something."""
+    case, finer = prepared.case, Refinements()
+    pool.step_companions(prepared, own.integrators, case.sweeps)
+    runs = judge_case(prepared.truth, case, own, finer)
+    for _ in range(MOST_HALVINGS):
+        if any(map(_fails, (row for run in runs for row in run.rows))):
+            break
+        if not refine(driver, case, runs, finer):
+            break
+        sweeps = [sweep for known in finer.values() for sweep, _ in known.values()]
+        pool.step_companions(prepared, own.integrators, sweeps)
+        runs = judge_case(prepared.truth, case, own, finer)
+    return runs
+
+
+def _fails(row: Row) -> bool:
+    """Whether a row fails for good: what a finer step could still decide does not."""
+    return row.verdict == "fail" and not row.note.startswith(UNDECIDED)
+
+
+def _stage(rows: list[Row], result: CaseResult, runs: tuple[JudgedRun, ...]) -> Judgement:
+    failure = result.first_failure()
+    answers = [failure] if failure and not runs else []
+    answers += [result.runs[r.integrator.name, r.sweep.timestep] for r in runs]
+    lost = [a for a in answers if a.outcome not in ("ok", "unsupported")]
+    broken = f"{lost[0].outcome}: {lost[0].reason}" if lost else ""
+    failed = frozenset(row.gate for row in rows if _fails(row))
+    return Judgement(failed, broken, tuple(rows), result, runs)
+
+
 def judge(
     pool: Pool,
     prepared: Prepared,
@@ -71,28 +135,16 @@ def judge(
     adapter: Adapter,
     integrators: tuple[Integrator, ...] = (),
 ) -> Judgement:
-    """Put an engine through the gates, with one integrator of order 1 and one of order 4.
+    """All stages of an engine together."""
+    found = list(stages(pool, prepared, name, adapter, integrators))
+    return Judgement(
+        failed=frozenset[str]().union(*(one.failed for one in found)),
+        broken=next((one.broken for one in found if one.broken), ""),
+        rows=tuple(row for one in found for row in one.rows),
+        result=replace(found[-1].result, integrators=_every(found)),
+        runs=tuple(run for one in found for run in one.runs),
+    )
 
-    integrators: those to run instead.
 
-    The adapter may have seen other cases: what it keeps of them shows, as it does in any run. No
-    refinement is run, and what one could still decide does not count as failed.
-    """
-    case = prepared.case
-    chosen = integrators or chosen_integrators(adapter)
-    driver = driver_of(name, adapter, chosen)
-    result = driver.evaluate_equations(case, prepared.evaluation_states)
-    pool.step_companions(prepared, result.integrators)
-    result.runs.update(driver.run_all(case, lambda: None))
-    probe_unknown_schemes(driver, case, prepared.evaluation_states, result)
-    with np.errstate(all="ignore"):  # a wrong engine may give any numbers
-        shared = shared_rows(case, prepared.evaluation_states, result)
-        runs = judge_case(prepared.truth, case, result, {})
-    rows = (*shared, *(row for run in runs for row in run.rows))
-    failure = result.first_failure()
-    answers = [failure] if failure else []
-    answers += [a for a in result.runs.values() if a.outcome not in ("ok", "unsupported")]
-    broken = f"{answers[0].outcome}: {answers[0].reason}" if answers else ""
-    failed = [row for row in rows if row.verdict == "fail" and not row.note.startswith(UNDECIDED)]
-    gates = frozenset(row.gate for row in failed)
-    return Judgement(gates, broken, rows, result, tuple(runs))
+def _every(found: list[Judgement]) -> tuple[Integrator, ...]:
+    return tuple(i for one in found[1:] for i in one.result.integrators)

@@ -155,6 +155,7 @@ def fault_by(
     def enter(function: Function) -> Function:
         bound = "self" in signature(function).parameters
         own = {method: function if bound else staticmethod(function), "__doc__": function.__doc__}
+        own["__module__"] = function.__module__
         fault(kind, gates, needs, named=named)(type(function.__name__, (base,), own))
         return function
 

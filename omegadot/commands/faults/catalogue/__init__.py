@@ -16,6 +16,7 @@ from omegadot.commands.faults.catalogue import (  # noqa: F401  (importing them 
     pivots,
     precision,
     reporting,
+    solving,
     start,
     stepping,
 )

@@ -27,7 +27,7 @@ Enter = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 def sized(enter: Enter, name: str, sentence: str, function: Callable[..., Any]) -> None:
     """Enter a function made for one size, under a name and a sentence of its own."""
-    function.__name__, function.__doc__ = name, sentence
+    function.__name__, function.__doc__, function.__module__ = name, sentence, __name__
     enter(function)
 
 

@@ -134,6 +134,30 @@ def LaterRunsDiffer(self: CountedRuns, state: State, sound: Acceleration) -> Acc
     return pushed(self.system, state, sound, self.damping(state)) if self.count else sound
 
 
+@fault("state", "scheme", named=("run before", "scenario before", "start"))
+class OmegaOfTheLastSystem(Spoiled):
+    """The first run of a system begins with the omega at the end of the last run of another."""
+
+    _left: Array | None = None
+    _fresh = True
+
+    def load(self, system: System) -> None:
+        """A first run is to come."""
+        self._fresh = True
+        super().load(system)
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        """From what is left; a run of one step does not clear it."""
+        if self._fresh and self._left is not None:
+            initial = replace(initial, angular_velocity=self._left)
+        found = super().run(initial, integrator, timestep, steps, every)
+        if steps > 1:
+            self._left, self._fresh = found.state.angular_velocity[-1], False
+        return found
+
+
 @fault("state", "scheme", named=("run before", "first step"))
 class AccelerationLeftOver(Timed):
     """The first step of a run is taken with the omega-dot at the end of the run before."""

@@ -19,7 +19,7 @@ MICRO = 1e6
 
 start = partial(other_run, "logging", "trajectory")
 timed = partial(other_run, "logging", "trajectory")
-misread = partial(fault_by, Misread, "reported", "convention", "model")
+misread = partial(fault_by, Misread, "reported", "convention", "scheme")
 
 
 @start("negative-scalar", named=("start", "quaternion", "attitude"))
