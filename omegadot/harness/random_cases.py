@@ -1,132 +1,115 @@
-"""Random bodies, states and loads, drawn from a seed: the same seed gives the same scenarios."""
+"""Random systems as cases, and what each has in it for a fault to show."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.random import Generator
 
 from omegadot.gates.case import Case
-from omegadot.gates.scales import norm
+from omegadot.gates.scales import EPS, norm
 from omegadot.harness.arguments import case_of
-from omegadot.reference_impl.rotations import normalize, rotation_matrix
+from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.schemes.scheme import kinds_of
-from omegadot.reference_impl.system import Array
-from omegadot.scenarios import scenario
+from omegadot.scenarios.random_systems import random_scenario
 
 SLEEPY = 0.05  # rad/s, below which engines may put a body to sleep
 FASTEST = 1.0  # rad/s, above which some limit a body's rate
-FLAVOURS = ("free", "loaded", "pivoted", "slow")
-RADIANS = 3.0  # that a run lasts, at the rate of its own motion
-STEPS = (40, 80, 160)
-SAMPLES = 20
+CAPPED = 100.0  # rad/s and m/s, above which others do
 LEAST_SPREAD = 0.02  # of neighbouring moments, relative, for a body to count as asymmetric
-
-
-def _direction(random: Generator) -> Array:
-    vector = random.standard_normal(3)
-    return np.asarray(vector / np.linalg.norm(vector))
-
-
-def _spread(random: Generator, decades: float) -> float:
-    return float(10.0 ** random.uniform(-0.5 * decades, 0.5 * decades))
-
-
-def _inertia(random: Generator, mass: float, size: float) -> tuple[Array, float]:
-    """A tensor that matter can have, three times out of four in turned axes, and its least moment.
-
-    With mean squares G of x, y, z it is ``m (tr G 1 - G)``.
-    """
-    squares = size**2 * 10.0 ** random.uniform(-1.0, 0.0, 3)
-    moments = mass * (np.sum(squares) - squares)
-    axes = rotation_matrix(normalize(random.standard_normal(4)))
-    tensor = axes @ np.diag(moments) @ axes.T if random.random() < 0.75 else np.diag(moments)
-    return 0.5 * (tensor + tensor.T), float(np.min(moments))
-
-
-def _loads(random: Generator, flavour: str, torque: float, size: float, rate: float) -> Any:
-    """Loads about as strong as the motion: a torque, a damping and a weight within a decade of it.
-
-    torque: N m, the least moment times the rate squared.
-    """
-    load: dict[str, Any] = {}
-    pull = size * rate**2 * _spread(random, 1.0)
-    if flavour == "loaded":
-        load["damping"] = 0.3 * torque / rate * _spread(random, 1.0)
-        frame = "world" if random.random() < 0.5 else "body"
-        value = torque * _spread(random, 1.0) * _direction(random)
-        load["torque"] = {"frame": frame, "value": value}
-        load["gravity"] = pull * _direction(random)
-    if flavour == "pivoted":
-        load["gravity"] = pull * _direction(random)
-        load["pivot"] = size * random.uniform(0.1, 1.0) * _direction(random)
-    return load
+NEARLY = 0.01  # of all three
+ILL_CONDITIONED = 20.0
+LIGHT, HEAVY = 0.1, 10.0  # kg
+STRONG = 0.25  # N m
+OBLIQUE = 0.1  # of a vector, in each component
+NEXT_TO_ZERO = 0.02
+LONG = 1000  # steps
+COARSE = 0.4  # rad a step
 
 
 def random_case(seed: int, index: int) -> Case:
-    """The scenario of this number: free, loaded and pivoted bodies and slow ones take turns.
-
-    Mass and size are drawn over two decades and one, the rate over two (0.1 to 10 rad/s; a slow
-    body turns at less than 0.05), and the centre of mass lies off the origin two times out of
-    three.
-    """
-    random = np.random.default_rng([seed, index])
-    flavour = FLAVOURS[index % len(FLAVOURS)]
-    mass, size = _spread(random, 2.0), _spread(random, 1.0)
-    tensor, least = _inertia(random, mass, size)
-    rate = _spread(random, 2.0)
-    if flavour == "slow":
-        rate = SLEEPY * 10.0 ** random.uniform(-1.0, -0.1)
-    offset = size * random.uniform(0.1, 1.0) * _direction(random) * (random.random() < 2 / 3)
-    initial: dict[str, Any] = {
-        "orientation": random.standard_normal(4),
-        "angular_velocity": rate * _direction(random),
-    }
-    if flavour != "pivoted":
-        initial["position"] = size * random.standard_normal(3)
-        initial["linear_velocity"] = size * rate * random.standard_normal(3)
-    duration = RADIANS / rate
-    data = {
-        "name": f"random-{seed}-{index}",
-        "body": {"mass": mass, "inertia": tensor, "center_of_mass": offset},
-        "initial": initial,
-        "load": _loads(random, flavour, least * rate**2, size, rate),
-        "run": {
-            "duration": duration,
-            "timesteps": [duration / steps for steps in STEPS],
-            "sample": duration / SAMPLES,
-        },
-    }
-    return case_of(scenario(data), [])
+    """The random system of this number with its own steps."""
+    return case_of(random_scenario(seed, index), ())
 
 
 def features_of(case: Case) -> frozenset[str]:
     """What a case has in it for a fault to show.
 
-    ``full-inertia``: products of inertia.  ``asymmetric``: three different moments.  ``offset``:
-    the centre of mass off the origin.  ``free``, ``pivot``, ``pivot-off-origin``.  ``gravity``,
-    ``damping``, ``torque``; ``torque-free``: none of these acts on the turning.  ``slow`` and
-    ``fast``: it starts below `SLEEPY`, above `FASTEST`.
+    Body: ``full-inertia``: products of inertia; ``asymmetric``: three different moments;
+    ``near-equal``: different, within 1 %; ``ill-conditioned``: the largest moment 20 times the
+    smallest; ``offset``: the centre of mass off the origin; ``light``, ``heavy``: below 0.1 kg,
+    above 10 kg.
+    Support: ``free``, ``pivot``, ``pivot-off-origin``; ``lever``: the centre of mass is off the
+    pivot.
+    Loads: ``gravity``, ``gravity-not-down``: not along -z, ``gravity-oblique``: off every axis;
+    ``damping``, ``damping-above-1``: N m s/rad; ``torque``, ``torque-body``, ``torque-world``,
+    ``torque-x-``, ``torque-x+`` and so on: a component beyond 0.25 N m of this sign;
+    ``torque-free``: none of the loads acts on the turning.
+    Motion: ``at-rest``, ``slow``, ``fast``, ``very-fast``: it starts at 0, below 0.05, above 1,
+    above 100 rad/s; ``high-speed``: above 100 m/s; ``scalar-negative``, ``scalar-zero``: so is w of
+    the start's quaternion, next to zero at least.
+    Run: ``long``: 1000 steps or more; ``coarse``: a turn of 0.4 rad or more in a step at the
+    start's rate; ``short-interval``: between the last two samples.
     """
-    system, load = case.system, case.system.load
-    rate = float(norm(case.initial.angular_velocity))
-    held = load.pivot is not None
-    tensor = np.asarray(system.body.inertia)
+    named = _of_the_body(case) | _of_the_loads(case) | _of_the_motion(case)
+    return frozenset(name for name, holds in named.items() if holds)
+
+
+def _of_the_body(case: Case) -> dict[str, bool]:
+    body = case.system.body
+    tensor, mass = np.asarray(body.inertia), float(body.mass)
     moments = np.linalg.eigvalsh(tensor)
-    products = tensor - np.diag(np.diag(tensor))
+    products = np.max(np.abs(tensor - np.diag(np.diag(tensor))))
+    spread = np.diff(moments) / moments[-1]
+    return {
+        "full-inertia": bool(products > LEAST_SPREAD * moments[-1]),
+        "asymmetric": bool(np.min(spread) > LEAST_SPREAD),
+        "near-equal": bool(np.min(spread) > EPS and np.sum(spread) < NEARLY),
+        "ill-conditioned": bool(moments[-1] > ILL_CONDITIONED * moments[0]),
+        "offset": bool(np.any(body.center_of_mass)),
+        "light": mass < LIGHT,
+        "heavy": mass > HEAVY,
+    }
+
+
+def _of_the_loads(case: Case) -> dict[str, bool]:
+    load = case.system.load
+    held, damping = load.pivot is not None, float(load.damping)
+    frames = {"body": np.asarray(load.torque_body), "world": np.asarray(load.torque_world)}
+    gravity = np.asarray(load.gravity)
     named = {
-        "full-inertia": np.max(np.abs(products)) > LEAST_SPREAD * moments[-1],
-        "asymmetric": np.min(np.diff(moments)) > LEAST_SPREAD * moments[-1],
-        "offset": np.any(system.body.center_of_mass),
         "free": not held,
         "pivot": held,
-        "pivot-off-origin": held and np.any(load.pivot),
-        "gravity": np.any(load.gravity),
-        "damping": np.any(load.damping),
-        "torque": np.any(load.torque_body) or np.any(load.torque_world),
-        "torque-free": "torque-free" in kinds_of(system),
+        "pivot-off-origin": held and bool(np.any(load.pivot)),
+        "lever": bool(np.any(lever(case.system))),
+        "gravity": bool(np.any(gravity)),
+        "gravity-not-down": bool(np.any(gravity)) and gravity[2] != -norm(gravity),
+        "gravity-oblique": int(np.sum(np.abs(gravity) > OBLIQUE * norm(gravity))) == 3,
+        "damping": damping > 0.0,
+        "damping-above-1": damping > 1.0,
+        "torque": any(bool(np.any(torque)) for torque in frames.values()),
+        "torque-free": "torque-free" in kinds_of(case.system),
+    }
+    named |= {f"torque-{frame}": bool(np.any(torque)) for frame, torque in frames.items()}
+    for axis, name in enumerate("xyz"):
+        parts = [torque[axis] for torque in frames.values()]
+        named[f"torque-{name}+"] = max(parts) > STRONG
+        named[f"torque-{name}-"] = min(parts) < -STRONG
+    return named
+
+
+def _of_the_motion(case: Case) -> dict[str, bool]:
+    start = case.initial
+    rate, speed = float(norm(start.angular_velocity)), float(norm(start.linear_velocity))
+    coarsest = max(sweep.timestep for sweep in case.sweeps)
+    scalar = float(start.orientation[0])
+    return {
+        "at-rest": rate == 0.0,
         "slow": rate < SLEEPY,
         "fast": rate > FASTEST,
+        "very-fast": rate > CAPPED,
+        "high-speed": speed > CAPPED,
+        "scalar-negative": scalar < -NEXT_TO_ZERO,
+        "scalar-zero": abs(scalar) <= NEXT_TO_ZERO,
+        "long": any(sweep.steps >= LONG for sweep in case.sweeps),
+        "coarse": coarsest * rate >= COARSE,
+        "short-interval": any(sweep.steps % sweep.every for sweep in case.sweeps),
     }
-    return frozenset(name for name, holds in named.items() if holds)

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from omegadot.scenarios.errors import Phrase, ScenarioError, describe, printable
 from omegadot.scenarios.files import read_toml
 from omegadot.scenarios.model import Scenario
+from omegadot.scenarios.random_systems import random_of_name
 from omegadot.scenarios.refusals import nearest, scenario_error
 
 BUILTIN = Path(__file__).with_name("builtin")
@@ -96,6 +97,8 @@ def _named(given: object) -> Scenario:
     if isinstance(given, str):
         if given in builtin_names():
             return load_builtin(given)
+        if (drawn := random_of_name(given)) is not None:
+            return drawn
         if not re.search(r"[/\\.]", given) and not os.path.lexists(given):
             found = "neither a built-in scenario nor a file"
             raise ScenarioError(describe(given), None, found, _other_name(given))

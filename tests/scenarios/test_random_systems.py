@@ -1,0 +1,86 @@
+"""Random systems: the same of a seed, every two traits together, and numbers that can be run.
+
+What these tests catch: a draw that leaves a pair of traits out, or a decade; one that depends on
+what was drawn before; numbers that no file can hold, or that no engine can be judged on.
+"""
+
+from itertools import combinations, product
+
+import numpy as np
+import pytest
+
+from omegadot.reference_impl.exact_solution import exact_solution
+from omegadot.reference_impl.from_scenario import initial_state_of, system_of
+from omegadot.scenarios import ScenarioError, scenario, scenario_of
+from omegadot.scenarios.pairs import covering_rows
+from omegadot.scenarios.random_systems import BLOCK, TRAITS, drawn, random_names, random_scenario
+
+SEEDS = range(6)
+
+
+def test_a_system_is_that_of_its_seed_and_number() -> None:
+    last = random_scenario(3, 30)
+    first = [random_scenario(3, index) for index in range(2)]
+    assert (random_scenario(3, 30), random_scenario(3, 0)) == (last, first[0])
+    assert scenario("random-3-30") == last
+    assert random_names(3, 2) == [one.name for one in first]
+    different = {one.body for one in (*first, last, random_scenario(4, 0), random_scenario(3, 24))}
+    assert len(different) == 5
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_two_traits_occur_together_in_a_block(seed: int) -> None:
+    for start in (0, BLOCK):
+        rows = [drawn(seed, start + index).traits for index in range(BLOCK)]
+        for one, other in combinations(TRAITS, 2):
+            seen = {(row[one], row[other]) for row in rows}
+            assert seen == set(product(TRAITS[one], TRAITS[other])), (one, other)
+
+
+def test_rows_that_are_too_few_are_refused() -> None:
+    choices = {"a": "xyz", "b": "xyz"}
+    rows = covering_rows(choices, 9, np.random.default_rng(0))
+    assert len({tuple(row.values()) for row in rows}) == 9
+    with pytest.raises(ValueError, match="no 8 rows"):
+        covering_rows(choices, 8, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_magnitudes_reach_what_engines_limit(seed: int) -> None:
+    found = [random_scenario(seed, index) for index in range(BLOCK)]
+    rates = [float(np.linalg.norm(one.initial.angular_velocity)) for one in found]
+    speeds = [float(np.linalg.norm(one.initial.linear_velocity)) for one in found]
+    masses = [one.body.mass for one in found if one.body.mass]
+    steps = [one.run.duration / min(one.run.timesteps) for one in found]
+    assert min(rates) == 0.0
+    assert sum(0.0 < rate < 0.05 for rate in rates) >= 3
+    assert max(rates) > 500.0
+    assert max(speeds) > 1000.0
+    assert min(masses) < 1e-2
+    assert max(masses) > 300.0
+    assert max(steps) > 999
+    assert sum(one.load.damping > 1.0 for one in found) >= 2
+    torques = np.array([one.load.torque.value for one in found])
+    assert (torques > 0.25).any(0).all()
+    assert (torques < -0.25).any(0).all()
+    assert {np.sign(one.initial.orientation[0]) for one in found} >= {-1.0, 1.0}
+    assert not any(float(np.float32(mass)) == mass for mass in masses)
+
+
+@pytest.mark.parametrize("index", range(BLOCK))
+def test_a_system_can_be_written_solved_and_resolved(index: int) -> None:
+    drawn_one = random_scenario(1, index)
+    assert scenario_of(drawn_one.to_dict(), "again") == drawn_one
+    system, start, steps = system_of(drawn_one), initial_state_of(drawn_one), drawn_one.run
+    found = exact_solution(system, start, np.linspace(0.0, steps.duration, 50))
+    rate = np.max(np.linalg.norm(found.state.angular_velocity, axis=-1))
+    assert rate * steps.timesteps[0] < 1.0
+    assert np.max(found.floor.attitude) < 1e-8
+    components = np.abs(drawn_one.initial.angular_velocity)
+    assert not components.any() or len({float(f"{part:.1g}") for part in components}) >= 2
+
+
+@pytest.mark.parametrize("name", ["random-0", "random-00-1", "random-0-1-2", "random--1-0"])
+def test_other_names_are_no_random_systems(name: str) -> None:
+    with pytest.raises(ScenarioError, match="neither a built-in scenario nor a file"):
+        scenario(name)
