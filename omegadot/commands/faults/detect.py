@@ -14,6 +14,7 @@ import numpy as np
 from omegadot.adapters.protocol import Adapter, Description, Integrator
 from omegadot.commands.faults.fault import Spoiled
 from omegadot.commands.faults.prepared import Pool, Prepared
+from omegadot.commands.faults.restepped import Accelerated
 from omegadot.gates.rows import Row
 from omegadot.gates.verdicts import UNDECIDED
 from omegadot.harness.drive import CaseResult, Driver
@@ -148,3 +149,38 @@ def judge(
 
 def _every(found: list[Judgement]) -> tuple[Integrator, ...]:
     return tuple(i for one in found[1:] for i in one.result.integrators)
+
+
+def start_of(pool: Pool, prepared: Prepared, name: str, adapter: Adapter) -> Judgement:
+    """The first stage alone: the model and the equations."""
+    return next(stages(pool, prepared, name, adapter))
+
+
+def first_failure(pool: Pool, prepared: Prepared, name: str, adapter: Adapter) -> Judgement:
+    """The first stage at which an engine fails, or does not answer; the last one if none.
+
+    A fault in the dynamics that changes no answer about them is not stepped: it would show nothing.
+    """
+    examined = stages(pool, prepared, name, adapter)
+    found = next(examined)
+    if found.accused or _is_idle(adapter, prepared):
+        return found
+    for found in examined:
+        if found.accused:
+            break
+    return found
+
+
+def _is_idle(adapter: Adapter, prepared: Prepared) -> bool:
+    """Whether a fault in the dynamics leaves them as they are, to the bit."""
+    inner = adapter.inner if isinstance(adapter, Nameless) else adapter
+    if not isinstance(inner, Accelerated) or not inner.is_in_dynamics:
+        return False
+    at = prepared.evaluation_states
+    for states in (at.random, at.path):
+        found, sound = inner.forward_dynamics(states), inner.inner.forward_dynamics(states)
+        if not np.array_equal(found.angular, sound.angular):
+            return False
+        if not np.array_equal(found.linear, sound.linear):
+            return False
+    return True

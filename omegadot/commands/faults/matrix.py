@@ -17,8 +17,9 @@ from omegadot.commands.faults.detect import (
     Judgement,
     Nameless,
     chosen_integrators,
+    first_failure,
     judge,
-    stages,
+    start_of,
 )
 from omegadot.commands.faults.fault import Fault
 from omegadot.commands.faults.prepared import Pool, Prepared
@@ -171,19 +172,25 @@ def _faulty(fault: Fault, engine: str, pool: Pool, nameless: bool = False) -> Ad
     return adapter
 
 
-def first_failure(pool: Pool, prepared: Prepared, engine: str, adapter: Adapter) -> Judgement:
-    """The first stage at which an engine fails, or does not answer; the last one if none."""
-    found = None
-    for found in stages(pool, prepared, engine, adapter):
-        if found.failed or found.broken:
-            break
-    assert found is not None
-    return found
-
-
 def _caught_on(systems: list[Prepared], fault: Fault, engine: str, pool: Pool) -> list[Judgement]:
-    adapter = _faulty(fault, engine, pool)
-    return [first_failure(pool, one, engine, adapter) for one in systems]
+    """What a fault shows on each system, as far as its first failure.
+
+    What is stepped by the reference's schemes is tried over other engines where it shows over the
+    reference. Elsewhere the stage of the equations stands for all.
+    """
+    adapter, shows = _faulty(fault, engine, pool), [True] * len(systems)
+    if _is_restepped(fault) and engine != "reference":
+        known = pool.over_reference.get(fault.name)
+        if known is None or len(known) != len(systems):
+            known = [bool(one.failed) for one in _caught_on(systems, fault, "reference", pool)]
+        shows = known
+    found = [
+        first_failure(pool, one, engine, adapter) if show else start_of(pool, one, engine, adapter)
+        for one, show in zip(systems, shows, strict=True)
+    ]
+    if engine == "reference":
+        pool.over_reference[fault.name] = [bool(one.failed) for one in found]
+    return found
 
 
 def _without_scheme(
@@ -221,7 +228,7 @@ def _built_in(fault: Fault, engine: str, pool: Pool) -> str:
     cases, found = pool.built_in(), ""
     adapter = _faulty(fault, engine, pool)
     for one in cases:
-        if next(stages(pool, one, engine, adapter)).failed:
+        if start_of(pool, one, engine, adapter).failed:
             found = one.case.name
             break
     if not found:

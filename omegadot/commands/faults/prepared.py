@@ -34,7 +34,9 @@ class Prepared:
 class Pool:
     """The built-in scenarios, and random cases of one seed, in order; solved when first wanted.
 
-    caught_on_built_in: what was found out of faults, by name and engine.
+    caught_on_built_in, over_reference: what was found out of faults: by name and engine, the
+    built-in scenario that catches it, and by name, whether each random system does over the
+    reference.
     """
 
     def __init__(self, seed: int) -> None:
@@ -45,6 +47,7 @@ class Pool:
         self._prepared: dict[int, Prepared] = {}
         self._built_in: list[Prepared] = []
         self.caught_on_built_in: dict[tuple[str, str], str] = {}
+        self.over_reference: dict[str, list[bool]] = {}
 
     def _draw(self, index: int) -> tuple[Case, frozenset[str]]:
         while len(self._drawn) <= index:

@@ -57,7 +57,12 @@ class Restepped(Spoiled):
 
 
 class Accelerated(Restepped):
-    """A fault in the dynamics: both what is reported of the acceleration and what is stepped."""
+    """A fault in the dynamics: both what is reported of the acceleration and what is stepped.
+
+    is_in_dynamics: whether what is reported of the acceleration shows it.
+    """
+
+    is_in_dynamics = True
 
     def changed(self, state: State, sound: Acceleration) -> Acceleration:
         """The wrong acceleration in place of a sound one."""

@@ -58,7 +58,7 @@ def GravityLostWhenDamped(load: Load) -> Load:
     return when(bool(np.any(load.damping)), load, gravity=NONE)
 
 
-@other_load("pivot-lever gravity", named="gravity")
+@other_load("pivot lever gravity", named="gravity")
 def GravityCompensatedOnPivots(load: Load) -> Load:
     """A pivoted body's weight is compensated; a free one falls."""
     return when(load.pivot is not None, load, gravity=NONE)
@@ -83,13 +83,13 @@ def TorqueFrameOnPivots(load: Load) -> Load:
     return when(load.pivot is not None, load, **swapped)
 
 
-@other_load("gravity-off-axis", named="gravity")
+@other_load("gravity-not-down", named="gravity")
 def GravityAlongMinusZ(load: Load) -> Load:
     """Gravity has its size and acts along -z, whatever its direction."""
     return replace(load, gravity=np.array([0.0, 0.0, -1.0]) * norm(load.gravity))
 
 
-@other_load("gravity-off-axis", named="gravity")
+@other_load("gravity-oblique", named="gravity")
 def GravityXYSwapped(load: Load) -> Load:
     """Gravity's x and y are swapped; they are both zero in most scenarios."""
     return replace(load, gravity=load.gravity[..., [1, 0, 2]])

@@ -12,7 +12,7 @@ from omegadot.commands.faults.catalogue.equation import gyroscopic_term
 from omegadot.commands.faults.catalogue.load import pushed
 from omegadot.commands.faults.catalogue.stepping import StepEnds, step_end
 from omegadot.commands.faults.fault import fault, fault_by
-from omegadot.commands.faults.features import COARSE
+from omegadot.commands.faults.features import LONG_STEP
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
@@ -40,7 +40,7 @@ def ExponentialOfSecondOrder(before: State, after: State, dt: float | Array) -> 
     return replace(after, orientation=np.where(angle > LARGE_TURN, turned, after.orientation))
 
 
-@otherwise("asymmetric coarse", named=("gyroscopic", "step"))
+@otherwise("asymmetric step-above-15-ms", named=("gyroscopic", "step"))
 def GyroscopicOffAtCoarseSteps(self: Restepped, declared: Scheme) -> Scheme:
     """The gyroscopic term is missing in steps of more than 15 ms."""
     system, sound = self.loaded(self.system), self.acceleration()
@@ -51,12 +51,19 @@ def GyroscopicOffAtCoarseSteps(self: Restepped, declared: Scheme) -> Scheme:
     wrong = motion_over(system, self.coordinates, without)
 
     def step(motion: Motion, q: Array, v: Array, h: Any) -> tuple[Array, Array]:
-        return declared.step(wrong if h > COARSE else motion, q, v, h)
+        return declared.step(wrong if h > LONG_STEP else motion, q, v, h)
 
     return replace(declared, step=step)
 
 
-@otherwise("order-4 turn-above-0.10", named=("semi-implicit-euler", "step"))
+@fault_by(
+    Restepped,
+    "scheme",
+    "stepping",
+    "scheme trajectory",
+    "order-4 turn-above-0.10",
+    named=("semi-implicit-euler", "step"),
+)
 def EulerAtCoarseSteps(self: Restepped, declared: Scheme) -> Scheme:
     """Steps that turn by more than 0.1 rad are Euler's, whatever is declared."""
     euler = SCHEMES["semi-implicit-euler"]

@@ -83,14 +83,14 @@ def TorqueClampedBelow(load: Load) -> Load:
     return replace(load, torque_body=body, torque_world=world)
 
 
-@extra_torque("asymmetric heavy", named=("gyroscopic", "mass"))
+@extra_torque("asymmetric above-100-kg", named=("gyroscopic", "mass"))
 def GyroscopicOffWhenHeavy(system: System, state: State) -> Array:
     """The gyroscopic term is 1 % too large for bodies above 100 kg."""
     share = -0.01 if system.body.mass > HEAVY else 0.0
     return share * gyroscopic_term(system, state)
 
 
-@extra_torque("torque light", named=("torque", "mass"))
+@extra_torque("torque below-10-g", named=("torque", "mass"))
 def TorqueLostWhenLight(system: System, state: State) -> Array:
     """Applied torques do not act on bodies below 0.01 kg."""
     share = -1.0 if system.body.mass < LIGHT else 0.0

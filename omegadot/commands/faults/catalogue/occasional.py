@@ -28,7 +28,7 @@ forward = partial(fault_by, Spoiled, "forward_dynamics", "equation", "equation",
 leftover = partial(fault_by, Spoiled, "loaded", "state", "equation")
 
 
-@fault("stepping", "scheme", "many-steps", named=("step", "damping"))
+@fault("stepping", "scheme", "beyond-1000-steps", named=("step", "damping"))
 class DampingAfterThousandSteps(DampingAfterAWhile):
     """After a thousand steps of a run, a damping acts that was not requested."""
 
@@ -56,7 +56,7 @@ class AsleepAtLowEnergy(StepEnds):
         return replace(after, angular_velocity=w, linear_velocity=v)
 
 
-@fault_by(Accelerated, "changed", "equation", "trajectory", "rest", named=("rest", "not finite"))
+@fault_by(Accelerated, "changed", "equation", "trajectory", "at-rest", named=("rest", "not finite"))
 def NotFiniteAtRest(self: Accelerated, state: State, sound: Acceleration) -> Acceleration:
     """omega-dot is divided by |omega|, and so not a number at rest."""
     size = norm(state.angular_velocity)[..., None]
@@ -134,7 +134,7 @@ def LaterRunsDiffer(self: CountedRuns, state: State, sound: Acceleration) -> Acc
     return pushed(self.system, state, sound, self.damping(state)) if self.count else sound
 
 
-@fault("state", "scheme", named=("run before", "scenario before", "start"))
+@fault("state", "trajectory", named=("run before", "scenario before", "start"))
 class OmegaOfTheLastSystem(Spoiled):
     """The first run of a system begins with the omega at the end of the last run of another."""
 

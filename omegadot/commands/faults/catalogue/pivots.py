@@ -15,7 +15,7 @@ from omegadot.reference_impl.inertia import lever, moving_inertia, parallel_axis
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 
-pivoted = partial(fault_by, Accelerated, "changed", "equation", "equation", "pivot-lever")
+pivoted = partial(fault_by, Accelerated, "changed", "equation", "equation", "pivot lever")
 loaded = partial(fault_by, Spoiled, "loaded", "equation", "equation")
 
 
@@ -24,19 +24,19 @@ def other_pivot(load: Load, kept: tuple[float, float, float]) -> Load:
     return replace(load, pivot=None if load.pivot is None else load.pivot * np.array(kept))
 
 
-@other_load("pivot-off-axis", named="pivot")
+@other_load("pivot-off-origin", named="pivot")
 def PivotXDropped(load: Load) -> Load:
     """The pivot's x is taken for zero."""
     return other_pivot(load, (0.0, 1.0, 1.0))
 
 
-@other_load("pivot-off-axis", named="pivot")
+@other_load("pivot-off-origin", named="pivot")
 def PivotOnZAlone(load: Load) -> Load:
     """The pivot is taken on the z axis alone."""
     return other_pivot(load, (0.0, 0.0, 1.0))
 
 
-@loaded("pivot-lever", named=("pivot", "centre of mass"))
+@loaded("pivot lever", named=("pivot", "centre of mass"))
 def PivotBeyondCenter(self: Spoiled, system: System) -> System:
     """The pivot lies beyond the centre of mass: the lever has the wrong sign."""
     load = system.load
@@ -45,7 +45,7 @@ def PivotBeyondCenter(self: Spoiled, system: System) -> System:
     return replace(system, load=replace(load, pivot=load.pivot + 2.0 * lever(system)))
 
 
-@loaded("pivot-off-axis", named=("pivot", "centre of mass"))
+@loaded("lever-negative", named=("pivot", "centre of mass"))
 def LeverBySize(self: Spoiled, system: System) -> System:
     """The lever's components are taken by size, as if it pointed along positive axes."""
     load = system.load
@@ -88,7 +88,7 @@ def ParallelAxisDiagonal(self: Accelerated, state: State, sound: Acceleration) -
     return with_inertia(self.system, state, sound, body.inertia + moved)
 
 
-@extra_torque("pivot-lever", named=("gyroscopic", "inertia"))
+@extra_torque("pivot lever", named=("gyroscopic", "inertia"))
 def GyroscopicAboutCenter(system: System, state: State) -> Array:
     """A pivoted body's gyroscopic term is that of its inertia about the centre of mass."""
     w = state.angular_velocity

@@ -12,11 +12,11 @@ from omegadot.adapters.protocol import Trajectory
 from omegadot.commands.faults.catalogue.load import other_load
 from omegadot.commands.faults.catalogue.model import UnseenBody, other_body
 from omegadot.commands.faults.fault import Spoiled, fault_by, logged
+from omegadot.commands.faults.features import NEAR
 from omegadot.diagnosis.step_ends import single_precision
 from omegadot.reference_impl.system import Array, Body, Load
 
 SINGLE = ("single precision", "digits")
-NEAR = 0.01  # of neighbouring moments, relative
 
 unseen_body = partial(fault_by, UnseenBody, "body", "model", "equation")
 
@@ -32,7 +32,7 @@ def MassInSinglePrecision(body: Body) -> Body:
     return replace(body, mass=in_single(body.mass))
 
 
-@unseen_body("odd-mass pivot-lever", named=SINGLE)
+@unseen_body("odd-mass pivot lever", named=SINGLE)
 def MassInSinglePrecisionUnseen(body: Body) -> Body:
     """The mass is kept in single precision in the dynamics, and read back as requested."""
     return replace(body, mass=in_single(body.mass))
@@ -44,7 +44,7 @@ def BodyInSinglePrecision(body: Body) -> Body:
     return Body(*map(in_single, (body.mass, body.center_of_mass, body.inertia)))
 
 
-@other_load("loaded", named=SINGLE)
+@other_load("odd-load", named=SINGLE)
 def LoadInSinglePrecision(load: Load) -> Load:
     """The loads are kept in single precision."""
     kept: dict[str, Any] = {k: v if v is None else in_single(v) for k, v in vars(load).items()}
@@ -92,7 +92,7 @@ def InertiaMomentsSorted(body: Body) -> Body:
     return body if np.any(off) else replace(body, inertia=np.diag(moments))
 
 
-@unseen_body("near-equal", named=("another inertia", "moments"))
+@unseen_body("near-pair", named=("another inertia", "moments"))
 def NearMomentsMerged(body: Body) -> Body:
     """Principal moments within 1 % of each other are taken for their mean in the dynamics."""
     moments, axes = np.linalg.eigh(body.inertia)

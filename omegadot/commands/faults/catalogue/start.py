@@ -22,7 +22,7 @@ timed = partial(other_run, "logging", "trajectory")
 misread = partial(fault_by, Misread, "reported", "convention", "scheme")
 
 
-@start("negative-scalar", named=("start", "quaternion", "attitude"))
+@start("scalar-negative", named=("start", "quaternion", "attitude"))
 def StartScalarBySize(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """A run begins with the scalar part of the quaternion taken by its size."""
     q = initial.orientation.copy()
@@ -91,14 +91,14 @@ class VelocityOfOriginThroughout(Throughout):
     ways = velocity_as_origins, origins_velocity
 
 
-@timed("short-last", named=("time", "clock"))
+@timed("short-interval", named=("time", "clock"))
 def LastTimeOnGrid(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """The last time is a whole interval after the one before, however short the last one is."""
     found = run(initial, h, steps, every)
     return Trajectory(h * every * np.arange(len(found.time)), found.state)
 
 
-@timed("short-last", named=("last", "late", "early", "step"))
+@timed("short-interval", named=("last", "late", "early", "step"))
 def LastIntervalWhole(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """The last interval is stepped in full, however short it is, and its end reported on time."""
     found = run(initial, h, -(-steps // every) * every, every)
