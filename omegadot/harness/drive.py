@@ -15,6 +15,7 @@ from typing import Any
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.equation import EvaluationStates
+from omegadot.gates.repeats import How
 from omegadot.gates.vanishing_step import Probe
 from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import State
@@ -25,6 +26,7 @@ MOST_TIMEOUTS_IN_A_ROW = 3
 # Outcomes of loading a scenario that deserve a second attempt; the others would come again.
 MAY_PASS = {"crashed", "timeout", "interrupted"}
 INTERRUPTED = Answer("interrupted", "the run was interrupted before this task")
+LACKING = Answer("unsupported", "the engine offers no such call")
 
 
 @dataclass
@@ -34,6 +36,9 @@ class CaseResult:
     integrators: those that are run, as the engine declares them for this system.
     first_steps, restarts: of integrators whose scheme is unknown, what was requested and what came:
     steps from several states, and the sample from which a run was restarted with the rest of it.
+    alone, inverse_alone: forward and inverse dynamics of the first random state by itself.
+    reloaded: forward dynamics after another system was loaded in between.  again: the beginnings
+    of runs that were requested again, by integrator, step, and how (see `gates.repeats`).
     """
 
     integrators: tuple[Integrator, ...] = ()
@@ -44,6 +49,10 @@ class CaseResult:
     runs: dict[tuple[str, float], Answer] = field(default_factory=dict)
     first_steps: dict[str, tuple[Probe, Answer]] = field(default_factory=dict)
     restarts: dict[tuple[str, float], tuple[int, Answer]] = field(default_factory=dict)
+    alone: Answer = LACKING
+    inverse_alone: Answer = LACKING
+    reloaded: Answer = LACKING
+    again: dict[tuple[str, float, How], Answer] = field(default_factory=dict)
     precision: str = "float64"
 
     def first_failure(self) -> Answer | None:
@@ -53,6 +62,9 @@ class CaseResult:
             "forward dynamics": self.forward,
             "forward dynamics along the trajectory": self.path,
             "inverse dynamics": self.inverse,
+            "forward dynamics of one state": self.alone,
+            "inverse dynamics of one state": self.inverse_alone,
+            "forward dynamics after another system": self.reloaded,
         }
         for name, answer in named.items():
             if answer.outcome not in ("ok", "unsupported"):
@@ -136,6 +148,11 @@ class Driver:
             every=sweep.every,
         )
 
+    def replay(self, case: Case, integrator: str, sweep: Sweep, initial: State) -> Answer:
+        """The states of a run alone, without what measures its cost: no step goes before it."""
+        how = {"timestep": sweep.timestep, "steps": sweep.steps, "every": sweep.every}
+        return self.request(case, "replay", initial=initial, integrator=integrator, **how)
+
     def evaluate_equations(self, case: Case, evaluation_states: EvaluationStates) -> CaseResult:
         """The model read back, and the engine's equations at the states in question."""
         result = CaseResult(precision=self.engine.description.precision)
@@ -143,18 +160,16 @@ class Driver:
         first = evaluation_states.random[0]
         result.model = self.request(case, "model", state=first)
         result.integrators = self.integrators()
-        lacking = Answer("unsupported", "the engine offers no such call")
-        result.forward = result.path = result.inverse = lacking
+        result.forward = result.path = result.inverse = LACKING
+        states, acceleration = evaluation_states.random, evaluation_states.acceleration
+        one, its = states[:1], acceleration[:1]
         if "forward_dynamics" in features:
-            result.forward = self.request(case, "forward", states=evaluation_states.random)
+            result.alone = self.request(case, "forward", states=one)
+            result.forward = self.request(case, "forward", states=states)
             result.path = self.request(case, "forward", states=evaluation_states.path)
         if "inverse_dynamics" in features:
-            result.inverse = self.request(
-                case,
-                "inverse",
-                states=evaluation_states.random,
-                acceleration=evaluation_states.acceleration,
-            )
+            result.inverse_alone = self.request(case, "inverse", states=one, acceleration=its)
+            result.inverse = self.request(case, "inverse", states=states, acceleration=acceleration)
         return result
 
     def run_all(

@@ -16,6 +16,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
 from omegadot.harness.drive import CaseResult
+from omegadot.harness.repeats import rows_again
 from omegadot.harness.unknown_schemes import rows_of_unknown
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.harness_end.process import Answer
@@ -39,21 +40,29 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
     """The rows that belong to engine and scenario, whatever the integrator."""
     rows: list[Row] = []
     if result.model.ok:
-        answer = result.model.result
-        for body in answer["bodies"]:
+        found = result.model.result
+        for body in found["bodies"]:
             rows += model.body_rows(case, body_from(body))
-        rows += model.state_rows(case, evaluation_states.random[0], State(**answer["state"]))
-    named = {"residual": (result.forward, evaluation_states.random)}
-    named["residual_on_path"] = (result.path, evaluation_states.path)
-    for metric, (found, states) in named.items():
-        if found.ok:
-            acceleration = Acceleration(**found.result)
+        rows += model.state_rows(case, evaluation_states.random[0], State(**found["state"]))
+    random = evaluation_states.random
+    named = {
+        "residual": (result.forward, random),
+        "residual_on_path": (result.path, evaluation_states.path),
+        "residual_alone": (result.alone, random[:1]),
+        "residual_reloaded": (result.reloaded, random),
+    }
+    for metric, (answer, states) in named.items():
+        if answer.ok:
+            acceleration = Acceleration(**answer.result)
             rows += equation.forward_rows(case.system, states, acceleration, metric)
-    if result.inverse.ok:
-        torque = result.inverse.result["torque"]
-        rows += equation.inverse_rows(
-            case.system, evaluation_states.random, evaluation_states.acceleration, torque
-        )
+    for metric, answer, count in (
+        ("residual", result.inverse, None),
+        ("residual_alone", result.inverse_alone, 1),
+    ):
+        if answer.ok:
+            states, acceleration = random[:count], evaluation_states.acceleration[:count]
+            torque = answer.result["torque"]
+            rows += equation.inverse_rows(case.system, states, acceleration, torque, metric)
     return rows
 
 
@@ -130,6 +139,7 @@ def _judge_integrator(
         rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
         misreported = trajectory.reported_rows(truth, measured, state, result.precision)
         misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
+        misreported += rows_again(truth, integrator, sweep, result, measured)
         rows += invariants.rows(measured, findings, sweep.times)
         rows.append(trajectory.time_row(sweep, answer.result["time"]))
         rows += [*misreported, *trajectory.rows(measured, findings)]

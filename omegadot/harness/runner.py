@@ -25,6 +25,7 @@ from omegadot.harness.outcome import (
 )
 from omegadot.harness.plan import Engine
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.repeats import request_again
 from omegadot.harness.truth_requests import Companions, case_companions, case_truth, reference_runs
 from omegadot.harness.unknown_schemes import probe_unknown_schemes
 
@@ -115,6 +116,8 @@ class Runner:
         else:
             result.runs.update(driver.run_all(case, lambda: self.on_advance(1)))
             probe_unknown_schemes(driver, case, evaluation_states, result)
+        if engine.name != "exact":
+            request_again(driver, case, evaluation_states, result)
         return result
 
     def _submit_case(self, case: Case) -> PendingCase:

@@ -89,3 +89,7 @@ class Acceleration:
 
     angular: Array
     linear: Array
+
+    def __getitem__(self, places: Any) -> Acceleration:
+        """Those at these places of the leading axes."""
+        return Acceleration(self.angular[places], self.linear[places])

@@ -64,7 +64,7 @@ def test_magnitudes_reach_what_engines_limit(seed: int) -> None:
     assert (torques > 0.25).any(0).all()
     assert (torques < -0.25).any(0).all()
     assert {np.sign(one.initial.orientation[0]) for one in found} >= {-1.0, 1.0}
-    assert not any(float(np.float32(mass)) == mass for mass in masses)
+    assert sum(float(np.float32(mass)) == mass for mass in masses) <= 1
 
 
 @pytest.mark.parametrize("index", range(BLOCK))

@@ -26,12 +26,14 @@ class CheckResult:
     """What came of one engine's checks.
 
     by_check: every check with its result.  subjects: the engine, its version and integrators; none
-    where it did not start.  only_skipped: a sentence where every check was skipped, which is no
-    pass.  baselines: the files that were written.
+    where it did not start.  drawn: the random systems among the scenarios that were not named.
+    only_skipped: a sentence where every check was skipped, which is no pass.  baselines: the files
+    that were written.
     """
 
     by_check: Mapping[Check, Result]
     subjects: tuple[Subject, ...]
+    drawn: frozenset[str] = frozenset()
     only_skipped: tuple[str, ...] = ()
     baselines: tuple[Path, ...] = ()
 
@@ -65,6 +67,8 @@ def check(
     engine: EngineLike,
     *,
     scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
+    random: int | None = None,
+    seed: int = 0,
     integrators: str | Sequence[str] = (),
     exceptions: str | Path | Sequence[str | Path] = (),
     baseline: str | Path | None = None,
@@ -75,13 +79,17 @@ def check(
     """Put one engine, built in or your own, through every check.
 
     engine: a name, ``FILE.py:Class``, ``module:Class`` or an adapter's class.  scenarios: built-in
-    names, paths, scenarios or their tables; all built-in ones without any.  integrators: all
-    without any.  exceptions: files of declared exceptions.  baseline: a folder of figures to
-    compare with, or to store them in.  timeout: s, for one request to the engine.
+    names, ``random-SEED-INDEX``, paths, scenarios or their tables; all built-in ones without any.
+    random: so many random systems of this seed besides; None for 24, or for none where scenarios
+    are given.  integrators: all without any.  exceptions: files of declared exceptions.
+    baseline: a folder of figures to compare with, or to store them in.  timeout: s, for one request
+    to the engine.
     Raises UsageError, ScenarioError, RecordError and NoTruthError.
     """
     arguments = Arguments(
         scenarios=several(scenarios),
+        random=random,
+        seed=seed,
         exceptions=several(exceptions),
         baseline=baseline,
         update=update_baseline,
@@ -102,7 +110,9 @@ def check(
     for one, result in results.items():
         tally.add(one.engine, result.verdict, result.message)
     skipped = tally.only_skipped(choice.name for choice in selection.choices)
-    return CheckResult(results, suite.registry.subjects, tuple(skipped), tuple(suite.store()))
+    return CheckResult(
+        results, suite.registry.subjects, selection.drawn, tuple(skipped), tuple(suite.store())
+    )
 
 
 def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Arguments) -> Arguments:

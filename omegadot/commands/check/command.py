@@ -21,10 +21,16 @@ def check(
         Texts,
         option(
             "NAME",
-            "A built-in name or a path; repeatable. Default: all built-in scenarios.",
+            "A built-in name, random-SEED-INDEX or a path; repeatable. Default: all built-in "
+            "scenarios, and random systems.",
             "--scenario",
         ),
     ] = None,
+    random: Annotated[
+        int | None,
+        option("N", "Random systems. Default: 24, or none where a scenario is given.", min=0),
+    ] = None,
+    seed: Annotated[int, option("INTEGER", "Seed of the random systems.", min=0)] = 0,
     integrators: options.Integrators = None,
     exceptions: options.Exceptions = None,
     baseline: Annotated[Text, option("DIR", "Compare with the values stored in DIR.")] = None,

@@ -15,6 +15,7 @@ from omegadot.commands.check.result import (
     error,
     skipped,
 )
+from omegadot.gates import repeats
 from omegadot.gates.exact import exact_rows
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.judge import JudgedRun
@@ -25,7 +26,7 @@ from omegadot.workers.harness_end.process import Answer
 # Their notes are the whole sentence, with the figures in it.
 NOTE_ALONE = ("match", "observed_order", "sample_times")
 # For these the note is clearer than the figure, a fraction of its bound.
-NOTE_BEFORE_FIGURE = ("restarted", "rate_at_no_step", "start", "precision")
+NOTE_BEFORE_FIGURE = ("restarted", "rate_at_no_step", "start", "precision", *repeats.NOTES)
 
 
 def _excess(row: Row) -> float:
@@ -65,7 +66,10 @@ def failure(rows: Sequence[Row], cause: str = "") -> str:
 
 
 # The answers, besides runs, that a gate of a scenario judges.
-REQUESTED = {"model": ("model",), "equation": ("forward", "path", "inverse")}
+REQUESTED = {
+    "model": ("model",),
+    "equation": ("forward", "path", "inverse", "alone", "inverse_alone", "reloaded"),
+}
 MEASURED = ("ok", "diverged")
 
 

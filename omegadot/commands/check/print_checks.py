@@ -32,12 +32,16 @@ def _cell(verdicts: Counter[Verdict]) -> Text:
     return Text(sentence, STYLES.get(worst, "green"))
 
 
-def _table(results: Mapping[Check, Result]) -> Table:
-    scenarios = list(dict.fromkeys(check.scenario for check in results if check.scenario))
-    gates = list(dict.fromkeys(check.gate for check in results if check.scenario))
+def _table(found: CheckResult) -> Table:
+    """A row for a scenario, and one for all random systems that were not named."""
+    together = f"{len(found.drawn)} random systems"
+    results = {c: result for c, result in found.by_check.items() if c.scenario}
+    names = {c.scenario: together if c.scenario in found.drawn else c.scenario for c in results}
+    scenarios = list(dict.fromkeys(names.values()))
+    gates = list(dict.fromkeys(check.gate for check in results))
     cells: dict[tuple[str, str], Counter[Verdict]] = defaultdict(Counter)
     for check, result in results.items():
-        cells[check.scenario, check.gate][result.verdict] += 1
+        cells[names[check.scenario], check.gate][result.verdict] += 1
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
     for name in ("scenario", *gates):
         table.add_column(name, no_wrap=True)
@@ -77,7 +81,7 @@ def print_checks(found: CheckResult) -> None:
     for line in coverage(found.subjects, list(results)):
         console.print(Text(line, "bold"))
     if any(check.scenario for check in results):
-        console.print(_table(results))
+        console.print(_table(found))
     for verdict in ("error", "fail", "declared"):
         for message, checks in _grouped(results, verdict).items():
             for check in checks:

@@ -26,11 +26,27 @@ OPTIONS: dict[str, dict[str, Any]] = {
         "NAME", "check this engine, and fail where it is missing; repeatable"
     ),
     "scenario": _repeatable(
-        "NAME|FILE", "check on this scenario; repeatable; default: every built-in"
+        "NAME|FILE",
+        "check on this scenario; repeatable; default: every built-in, and random systems",
     ),
     "baseline": {"metavar": "DIR", "help": "compare with the values stored in DIR"},
     "update-baseline": {"action": "store_true", "help": "store the measured values in DIR instead"},
     "exceptions": _repeatable("FILE", "known failures, declared in TOML; repeatable"),
+}
+# With long names only, and no reason to start.
+SETTINGS: dict[str, dict[str, Any]] = {
+    "timeout": {
+        "type": float,
+        "metavar": "S",
+        "default": 60.0,
+        "help": "limit for one request to an engine in s (60)",
+    },
+    "random": {
+        "type": int,
+        "metavar": "N",
+        "help": "random systems (24, or none where a scenario is given)",
+    },
+    "seed": {"type": int, "metavar": "N", "default": 0, "help": "seed of random systems (0)"},
 }
 HELP = ("-h", "--help")
 
@@ -43,11 +59,8 @@ def dest_of(name: str) -> str:
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the long names."""
     group = parser.getgroup("omegadot", "checks of rigid-body engines")
-    for name, how in OPTIONS.items():
+    for name, how in {**OPTIONS, **SETTINGS}.items():
         group.addoption(PREFIX + name, dest=dest_of(name), **how)
-    text = "limit for one request to an engine in s (60)"
-    limit: dict[str, Any] = {"type": float, "metavar": "S", "default": 60.0, "help": text}
-    group.addoption(PREFIX + "timeout", dest=dest_of("timeout"), **limit)
 
 
 def _is_free(option: str, parser: pytest.Parser) -> bool:
@@ -82,7 +95,7 @@ def pytest_load_initial_conftests(
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
     """Start only where an option of ours is given."""
-    given = {name: config.getoption(dest_of(name), None) for name in (*OPTIONS, "timeout")}
+    given = {name: config.getoption(dest_of(name), None) for name in (*OPTIONS, *SETTINGS)}
     if any(given[name] for name in OPTIONS):
         from omegadot.commands.check.pytest_session import start_session
 

@@ -27,6 +27,8 @@ def _arguments(given: dict[str, Any]) -> Arguments:
         adapters=given["adapter"] or (),
         required=given["require-engine"] or (),
         scenarios=given["scenario"] or (),
+        random=given["random"],
+        seed=given["seed"],
         exceptions=given["exceptions"] or (),
         baseline=given["baseline"],
         update=bool(given["update-baseline"]),

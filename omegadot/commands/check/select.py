@@ -13,8 +13,9 @@ from omegadot.gates.case import Case
 from omegadot.harness.arguments import adapters_named, case_of, engine_choices, scenarios_of
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
-from omegadot.harness.usage import UsageError
-from omegadot.scenarios import ScenarioLike
+from omegadot.harness.usage import UsageError, check_count
+from omegadot.scenarios import Scenario, ScenarioLike, scenario
+from omegadot.scenarios.random_systems import BLOCK, random_names
 
 
 @dataclass(frozen=True)
@@ -29,11 +30,16 @@ class Arguments:
     baseline: str | Path | None = None
     update: bool = False
     timeout: float = 60.0
+    random: int | None = None
+    seed: int = 0
 
 
 @dataclass(frozen=True)
 class Selection:
-    """What to check. unknown: engines that are required and unknown.  baseline: a folder."""
+    """What to check. unknown: engines that are required and unknown.  baseline: a folder.
+
+    drawn: names of the random systems that nobody named. They have no baseline.
+    """
 
     arguments: Arguments
 
@@ -42,6 +48,7 @@ class Selection:
     exceptions: list[DeclaredException]
     unknown: tuple[str, ...]
     baseline: Path | None
+    drawn: frozenset[str] = frozenset()
     jobs: int = field(default_factory=lambda: os.cpu_count() or 1)
 
 
@@ -49,7 +56,8 @@ def select(arguments: Arguments) -> Selection:
     """Make ready what was requested. Raises UsageError and ScenarioError.
 
     Without an argument about engines these are all that are registered; otherwise those that are
-    named, given by an adapter, or required.
+    named, given by an adapter, or required. Without one about scenarios these are all built-in ones
+    and 24 random systems.
     """
     if arguments.update and arguments.baseline is None:
         raise UsageError("--update-baseline: give the folder of the baselines with --baseline DIR.")
@@ -61,11 +69,25 @@ def select(arguments: Arguments) -> Selection:
         if name in known and name not in {argument.partition(":")[0] for argument in wanted}:
             wanted.append(name)
     choices = [] if unknown and not wanted else engine_choices(wanted, arguments.adapters)
+    named = scenarios_of(arguments.scenarios)
+    drawn = _drawn(arguments, {scenario.name for scenario in named})
     return Selection(
         arguments,
         choices,
-        cases=[case_of(scenario, ()) for scenario in scenarios_of(arguments.scenarios)],
+        cases=[case_of(scenario, ()) for scenario in (*named, *drawn)],
         exceptions=exceptions_of(choices, map(Path, arguments.exceptions)),
         unknown=unknown,
         baseline=None if arguments.baseline is None else Path(arguments.baseline),
+        drawn=frozenset(scenario.name for scenario in drawn),
     )
+
+
+def _drawn(arguments: Arguments, named: set[str]) -> list[Scenario]:
+    """The random systems besides those named: 24 unless a scenario is named. Raises UsageError."""
+    count = arguments.random
+    if count is None:
+        count = 0 if arguments.scenarios else BLOCK
+    check_count("--random", count, 0)
+    check_count("--seed", arguments.seed, 0)
+    names = random_names(arguments.seed, count)
+    return [scenario(name) for name in names if name not in named]

@@ -96,7 +96,8 @@ class Suite:
         comparing = self.selection.baseline and not self.selection.arguments.update
         for case in self.selection.cases:
             found += checks_of(self.registry.subjects, [case])
-            for subject in self.registry.subjects if comparing else ():
+            compared = comparing and case.name not in self.selection.drawn
+            for subject in self.registry.subjects if compared else ():
                 found += baseline_checks(subject, [case], self._stored[subject.name])
         return found
 
@@ -112,7 +113,8 @@ class Suite:
             return Result("fail", " ".join(map(matches_nothing, self._unmatched[check.engine])))
         if check not in self._results:
             self._run(next(c for c in self.selection.cases if c.name == check.scenario))
-        return with_exceptions(check, self._results[check], self.selection.exceptions)
+        drawn = check.scenario in self.selection.drawn
+        return with_exceptions(check, self._results[check], self.selection.exceptions, drawn)
 
     def _run(self, case: Case) -> None:
         """Run one scenario on every engine; keep its checks' results, not the trajectories."""
@@ -129,7 +131,8 @@ class Suite:
                 raise
             for found in judged.engines:
                 self._results |= dict(results_of(judged, found, causes_of(judged, found, SEED)))
-                if judged.truth is not None and answered(found):
+                kept = judged.truth is not None and case.name not in self.selection.drawn
+                if kept and answered(found):
                     self.figures.setdefault(found.engine.name, {})[case.name] = figures_of(found)
         lost = error("raised", judged.reason or "the engine gave no answer")
         for check in self.checks:

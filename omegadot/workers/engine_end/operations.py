@@ -94,6 +94,13 @@ def _run(adapter: Adapter, request: Request) -> Any:
     }
 
 
+def _replay(adapter: Adapter, request: Request) -> Any:
+    """The states of a run, and nothing before it: not even a first step to warm up."""
+    how = (request["integrator"], request["timestep"], request["steps"], request["every"])
+    trajectory = checked_trajectory(adapter.run(State(**request["initial"]), *how))
+    return {"time": trajectory.time, "state": trajectory.state}
+
+
 def _first_steps(adapter: Adapter, request: Request) -> Any:
     """The states (m, k, ...) that single steps of (m, k) sizes lead to from m states."""
     states, integrator = State(**request["states"]), request["integrator"]
@@ -148,5 +155,6 @@ OPERATIONS: dict[str, Callable[[Adapter, Request], Any]] = {
     "forward": _forward,
     "inverse": _inverse,
     "run": _run,
+    "replay": _replay,
     "first_steps": _first_steps,
 }

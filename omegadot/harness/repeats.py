@@ -1,0 +1,108 @@
+"""Requests made again: the answers may not depend on what was requested, or loaded, before."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates import repeats
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.equation import EvaluationStates
+from omegadot.gates.measured_run import MeasuredRun
+from omegadot.gates.rows import Row
+from omegadot.gates.truth import Truth
+from omegadot.harness.arguments import case_of
+from omegadot.harness.drive import CaseResult, Driver
+from omegadot.reference_impl.system import State
+from omegadot.scenarios import scenario
+
+FEWEST_STEPS = 8
+
+# Each with every load, and as unlike any other system as can be.
+OTHERS = tuple(
+    case_of(
+        scenario(
+            name=f"another-{support}",
+            body={
+                "mass": 7.3,
+                "inertia": [[1.9, 0.3, -0.2], [0.3, 1.3, 0.1], [-0.2, 0.1, 1.1]],
+                "center_of_mass": [0.31, -0.23, 0.17],
+            },
+            initial={"orientation": [-0.1, 0.7, 0.5, -0.5], "angular_velocity": [1.3, -0.9, 0.7]},
+            load={
+                "gravity": [1.7, -3.1, 5.3],
+                "damping": 0.7,
+                "torque": {"frame": frame, "value": [-0.9, 1.1, 0.6]},
+                **pivot,
+            },
+            run={"duration": 0.04, "timesteps": [0.01], "sample": 0.01},
+        ),
+        (),
+    )
+    for support, frame, pivot in (
+        ("pivoted", "world", {"pivot": [-0.19, 0.29, 0.13]}),
+        ("free", "body", {}),
+    )
+)
+
+
+def short_sweep(sweep: Sweep) -> Sweep:
+    """The first samples of a sweep, of a few steps: as many as its own at most."""
+    samples = -(-FEWEST_STEPS // sweep.every)
+    return Sweep(sweep.timestep, min(sweep.steps, samples * sweep.every), sweep.every)
+
+
+def request_again(
+    driver: Driver, case: Case, evaluation_states: EvaluationStates, result: CaseResult
+) -> None:
+    """Have the coarsest run of every integrator begun again, in three ways, into `result`.
+
+    At the end another system is loaded and stepped, and then this one again; forward dynamics are
+    requested then as well.
+    """
+    sweep = short_sweep(case.sweeps[0])
+    runs = {i.name: result.runs.get((i.name, sweep.timestep)) for i in result.integrators}
+    steppers = [
+        i.name
+        for i in result.integrators
+        if i.knob == "timestep" and (run := runs[i.name]) is not None and run.ok
+    ]
+    if not steppers:
+        return
+    step = sweep.timestep
+    negated = replace(case.initial, orientation=-case.initial.orientation)
+    for name in steppers:
+        result.again[name, step, "repeated"] = driver.replay(case, name, sweep, case.initial)
+        result.again[name, step, "negated"] = driver.replay(case, name, sweep, negated)
+    if not _load_another(driver, case, steppers[0]):
+        return
+    if "forward_dynamics" in driver.engine.description.features:
+        result.reloaded = driver.request(case, "forward", states=evaluation_states.random)
+    for name in steppers:
+        result.again[name, step, "reloaded"] = driver.replay(case, name, sweep, case.initial)
+
+
+def _load_another(driver: Driver, case: Case, integrator: str) -> bool:
+    """Whether the engine has taken another system and stepped it; a body is free to be refused."""
+    held = case.system.load.pivot is not None
+    others = reversed(OTHERS) if held else OTHERS
+    return any(driver.replay(o, integrator, o.sweeps[0], o.initial).ok for o in others)
+
+
+def rows_again(
+    truth: Truth, integrator: Integrator, sweep: Sweep, result: CaseResult, measured: MeasuredRun
+) -> Iterator[Row]:
+    """The rows of these answers, for the run that they repeat; none for other runs."""
+    state = State(**result.runs[integrator.name, sweep.timestep].result["state"])
+    count = len(short_sweep(sweep).times)
+    for how in repeats.NOTES:
+        answer = result.again.get((integrator.name, sweep.timestep, how))
+        if answer is None:
+            continue
+        if answer.ok and len(answer.result["time"]) == count:
+            yield repeats.row(truth, measured, state, how, State(**answer.result["state"]))
+        elif answer.ok:
+            yield repeats.refused(how, "it has another number of samples")
+        elif answer.outcome == "raised":
+            yield repeats.refused(how, answer.reason)
