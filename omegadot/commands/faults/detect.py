@@ -21,6 +21,7 @@ from omegadot.harness.drive import CaseResult, Driver
 from omegadot.harness.in_process import driver_of
 from omegadot.harness.judge import JudgedRun, judge_case, shared_rows
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.repeats import request_again
 from omegadot.harness.unknown_schemes import probe_unknown_schemes
 
 GATES = ("model", "equation", "scheme", "invariants", "trajectory")
@@ -94,8 +95,11 @@ def stages(
                 answer = driver.run(case, integrator.name, sweep)
                 own.runs[integrator.name, sweep.timestep] = answer
             probe_unknown_schemes(driver, case, at, own)
+            request_again(driver, case, at, own)
             runs = _judged(pool, prepared, driver, own)
-            yield _stage([row for run in runs for row in run.rows], own, tuple(runs))
+            rows = shared_rows(case, at, CaseResult(reloaded=own.reloaded))
+            rows += [row for run in runs for row in run.rows]
+            yield _stage(rows, own, tuple(runs))
 
 
 def _judged(pool: Pool, prepared: Prepared, driver: Driver, own: CaseResult) -> list[JudgedRun]:
@@ -121,7 +125,7 @@ def _fails(row: Row) -> bool:
 
 def _stage(rows: list[Row], result: CaseResult, runs: tuple[JudgedRun, ...]) -> Judgement:
     failure = result.first_failure()
-    answers = [failure] if failure and not runs else []
+    answers = [failure] if failure else []
     answers += [result.runs[r.integrator.name, r.sweep.timestep] for r in runs]
     lost = [a for a in answers if a.outcome not in ("ok", "unsupported")]
     broken = f"{lost[0].outcome}: {lost[0].reason}" if lost else ""

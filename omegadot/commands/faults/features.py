@@ -31,8 +31,8 @@ def features_of(case: Case) -> frozenset[str]:
     ``lever-negative``: a pivoted body with a component of the lever below zero;
     ``attitude-dependent`` torques; ``torque-below-clamp``: a component below -0.25 N m;
     ``low-energy``; ``omega-above-R`` in rad/s at the start, ``speed-above-V`` in m/s at either end;
-    ``step-above-15-ms``, ``turn-above-A`` in rad a step, ``beyond-1000-steps``, ``fine-times``:
-    times that microseconds do not hold.
+    ``step-above-15-ms``, ``turn-above-A`` in rad a step, ``beyond-1000-steps``; ``fine-steps``,
+    ``fine-times``: steps, and times of samples, that microseconds do not hold.
     """
     groups = (_of_body(case.system), _of_load(case.system), _of_start(case), _of_steps(case))
     own = {name for group in groups for name, holds in group.items() if holds}
@@ -93,10 +93,15 @@ def _of_start(case: Case) -> dict[str, bool]:
 def _of_steps(case: Case) -> dict[str, bool]:
     rate = float(norm(case.initial.angular_velocity))
     coarsest = max(sweep.timestep for sweep in case.sweeps)
-    in_microseconds = [sweep.timestep / MICROSECOND for sweep in case.sweeps]
     return {
         "step-above-15-ms": coarsest > LONG_STEP,
         **{f"turn-above-{most:.2f}": rate * coarsest > most for most in TURNS},
         "beyond-1000-steps": max(sweep.steps for sweep in case.sweeps) > 1000,
-        "fine-times": any(abs(n - round(n)) > 1e-3 for n in in_microseconds),
+        "fine-steps": any(_is_finer(np.array(sweep.timestep)) for sweep in case.sweeps),
+        "fine-times": any(_is_finer(sweep.times) for sweep in case.sweeps),
     }
+
+
+def _is_finer(times: Array) -> bool:
+    parts = times / MICROSECOND
+    return bool(np.any(np.abs(parts - np.round(parts)) > 1e-3))

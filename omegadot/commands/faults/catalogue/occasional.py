@@ -119,7 +119,7 @@ class CountedRuns(SecretTorque):
         return -1e-3 * norm(w)[..., None] * apply(moving_inertia(self.system), w)
 
 
-counted = partial(fault_by, CountedRuns, "changed", "state", "scheme")
+counted = partial(fault_by, CountedRuns, "changed", "state", "trajectory")
 
 
 @counted(named=("first run", "run before", "damping"))

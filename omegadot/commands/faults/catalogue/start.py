@@ -112,7 +112,7 @@ def ClockInMicroseconds(run: Run, initial: State, h: float, steps: int, every: i
     return Trajectory(np.round(found.time * MICRO) / MICRO, found.state)
 
 
-@timed("fine-times", named=("clock", "time", "step"))
+@timed("fine-steps", named=("clock", "time", "step"))
 def StepInMicroseconds(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """Steps are rounded to whole microseconds, and reported as requested."""
     found = run(initial, max(1.0, np.round(h * MICRO)) / MICRO, steps, every)
