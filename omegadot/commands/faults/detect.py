@@ -7,12 +7,13 @@ another. What fails at a stage is caught, and the stages after it need not be ru
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, is_dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from omegadot.adapters.protocol import Adapter, Description, Integrator
-from omegadot.commands.faults.fault import Spoiled
+from omegadot.commands.faults.fault import OtherSystem, Spoiled
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.commands.faults.restepped import Accelerated
 from omegadot.gates.rows import Row
@@ -163,7 +164,8 @@ def start_of(pool: Pool, prepared: Prepared, name: str, adapter: Adapter) -> Jud
 def first_failure(pool: Pool, prepared: Prepared, name: str, adapter: Adapter) -> Judgement:
     """The first stage at which an engine fails, or does not answer; the last one if none.
 
-    A fault in the dynamics that changes no answer about them is not stepped: it would show nothing.
+    A fault that changes neither the system nor an answer about the dynamics, where it acts on these
+    alone, is not stepped: it would show nothing.
     """
     examined = stages(pool, prepared, name, adapter)
     found = next(examined)
@@ -176,15 +178,23 @@ def first_failure(pool: Pool, prepared: Prepared, name: str, adapter: Adapter) -
 
 
 def _is_idle(adapter: Adapter, prepared: Prepared) -> bool:
-    """Whether a fault in the dynamics leaves them as they are, to the bit."""
-    inner = adapter.inner if isinstance(adapter, Nameless) else adapter
-    if not isinstance(inner, Accelerated) or not inner.is_in_dynamics:
+    """Whether a fault leaves the system or the dynamics as they are, to the bit."""
+    faulty = adapter.inner if isinstance(adapter, Nameless) else adapter
+    if isinstance(faulty, OtherSystem):
+        return _same(faulty.loaded(faulty.system), faulty.system)
+    if not isinstance(faulty, Accelerated) or not faulty.is_in_dynamics:
         return False
-    at = prepared.evaluation_states
-    for states in (at.random, at.path):
-        found, sound = inner.forward_dynamics(states), inner.inner.forward_dynamics(states)
-        if not np.array_equal(found.angular, sound.angular):
-            return False
-        if not np.array_equal(found.linear, sound.linear):
-            return False
-    return True
+    at, sound = prepared.evaluation_states, faulty.inner
+    return all(
+        _same(faulty.forward_dynamics(states), sound.forward_dynamics(states))
+        for states in (at.random, at.path)
+    )
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two bodies, loads, systems or accelerations hold the same numbers."""
+    if isinstance(one, tuple):
+        return all(map(_same, one, other))
+    if is_dataclass(one):
+        return _same(tuple(vars(one).values()), tuple(vars(other).values()))
+    return one is other or bool(np.array_equal(one, other))

@@ -88,6 +88,13 @@ class Spoiled:
         return self.logged(found)
 
 
+class OtherSystem(Spoiled):
+    """The engine is given another system than is requested, by `loaded`; all else is sound.
+
+    What it is given depends on the system requested alone.
+    """
+
+
 @dataclass(frozen=True)
 class Fault:
     """One fault.

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from omegadot.commands.faults.catalogue.load import extra_torque, other_load, pushed
-from omegadot.commands.faults.fault import Spoiled, fault_by
+from omegadot.commands.faults.fault import OtherSystem, fault_by
 from omegadot.commands.faults.restepped import Accelerated
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia, parallel_axis
@@ -16,7 +16,7 @@ from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 
 pivoted = partial(fault_by, Accelerated, "changed", "equation", "equation", "pivot lever")
-loaded = partial(fault_by, Spoiled, "loaded", "equation", "equation")
+loaded = partial(fault_by, OtherSystem, "loaded", "equation", "equation")
 
 
 def other_pivot(load: Load, kept: tuple[float, float, float]) -> Load:
@@ -37,7 +37,7 @@ def PivotOnZAlone(load: Load) -> Load:
 
 
 @loaded("pivot lever", named=("pivot", "centre of mass"))
-def PivotBeyondCenter(self: Spoiled, system: System) -> System:
+def PivotBeyondCenter(self: OtherSystem, system: System) -> System:
     """The pivot lies beyond the centre of mass: the lever has the wrong sign."""
     load = system.load
     if load.pivot is None:
@@ -46,7 +46,7 @@ def PivotBeyondCenter(self: Spoiled, system: System) -> System:
 
 
 @loaded("lever-negative", named=("pivot", "centre of mass"))
-def LeverBySize(self: Spoiled, system: System) -> System:
+def LeverBySize(self: OtherSystem, system: System) -> System:
     """The lever's components are taken by size, as if it pointed along positive axes."""
     load = system.load
     if load.pivot is None:
@@ -56,7 +56,7 @@ def LeverBySize(self: Spoiled, system: System) -> System:
 
 
 @loaded("pivot offset", named=("centre of mass", "pivot"))
-def CenterOfMassIgnoredOnPivots(self: Spoiled, system: System) -> System:
+def CenterOfMassIgnoredOnPivots(self: OtherSystem, system: System) -> System:
     """A pivoted body's centre of mass is taken to be its origin."""
     if system.load.pivot is None:
         return system
