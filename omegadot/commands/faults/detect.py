@@ -79,11 +79,14 @@ def stages(
     name: str,
     adapter: Adapter,
     integrators: tuple[Integrator, ...] = (),
+    *,
+    whole: bool = True,
 ) -> Iterator[Judgement]:
     """What an engine shows, stage by stage, each with its own rows and the answers so far.
 
-    integrators: those to run; one of order 1 and one of order 4 without any.  The adapter may have
-    seen other cases: what it keeps of them shows, as it does in any run.
+    integrators: those to run; one of order 1 and one of order 4 without any.  whole: False leaves
+    out the further requests to an integrator whose runs fail already.  The adapter may have seen
+    other cases: what it keeps of them shows, as it does in any run.
     """
     case, at = prepared.case, prepared.evaluation_states
     driver = driver_of(name, adapter, integrators or chosen_integrators(adapter))
@@ -95,9 +98,12 @@ def stages(
             for sweep in case.sweeps:
                 answer = driver.run(case, integrator.name, sweep)
                 own.runs[integrator.name, sweep.timestep] = answer
-            probe_unknown_schemes(driver, case, at, own)
-            request_again(driver, case, at, own)
-            runs = _judged(pool, prepared, driver, own)
+            pool.step_companions(prepared, own.integrators, case.sweeps)
+            runs = [] if whole else judge_case(prepared.truth, case, own, {})
+            if not _any_fails(runs):
+                probe_unknown_schemes(driver, case, at, own)
+                request_again(driver, case, at, own)
+                runs = _judged(pool, prepared, driver, own)
             rows = shared_rows(case, at, CaseResult(reloaded=own.reloaded))
             rows += [row for run in runs for row in run.rows]
             yield _stage(rows, own, tuple(runs))
@@ -106,10 +112,9 @@ def stages(
 def _judged(pool: Pool, prepared: Prepared, driver: Driver, own: CaseResult) -> list[JudgedRun]:
     """One integrator's runs, with finer ones as long as these can still decide something."""
     case, finer = prepared.case, Refinements()
-    pool.step_companions(prepared, own.integrators, case.sweeps)
     runs = judge_case(prepared.truth, case, own, finer)
     for _ in range(MOST_HALVINGS):
-        if any(map(_fails, (row for run in runs for row in run.rows))):
+        if _any_fails(runs):
             break
         if not refine(driver, case, runs, finer):
             break
@@ -117,6 +122,10 @@ def _judged(pool: Pool, prepared: Prepared, driver: Driver, own: CaseResult) -> 
         pool.step_companions(prepared, own.integrators, sweeps)
         runs = judge_case(prepared.truth, case, own, finer)
     return runs
+
+
+def _any_fails(runs: list[JudgedRun]) -> bool:
+    return any(_fails(row) for run in runs for row in run.rows)
 
 
 def _fails(row: Row) -> bool:
@@ -167,7 +176,7 @@ def first_failure(pool: Pool, prepared: Prepared, name: str, adapter: Adapter) -
     A fault that changes neither the system nor an answer about the dynamics, where it acts on these
     alone, is not stepped: it would show nothing.
     """
-    examined = stages(pool, prepared, name, adapter)
+    examined = stages(pool, prepared, name, adapter, whole=False)
     found = next(examined)
     if found.accused or _is_idle(adapter, prepared):
         return found

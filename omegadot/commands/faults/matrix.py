@@ -31,7 +31,8 @@ from omegadot.diagnosis.diagnose import diagnose
 OF_ENGINE = frozenset({"order-4"})  # needs that are an engine's, not a scenario's
 SOUND = 4  # times as many systems as for a fault: an accusation is the worse mistake
 DEFAULT = 24  # random systems of a plain check
-NAMED_ON = 2  # systems on which a cause is sought
+NAMED_ON = 1  # systems on which a cause is sought: those with the fewest steps that show it
+NAMELESS_ON = 8  # systems that show a fault in runs on which it is tried without a scheme
 POSES = 5  # from which a published check starts
 
 
@@ -71,8 +72,8 @@ class Detection:
 
     @property
     def caught_without_scheme(self) -> bool:
-        """Whether it is caught where no scheme is declared. A built-in scenario counts, too."""
-        return bool(self.built_in) or self.no_scheme > 0.0
+        """Whether a random system catches it where no scheme is declared."""
+        return self.no_scheme > 0.0
 
 
 def of_several(share: float) -> float:
@@ -149,7 +150,8 @@ def detection(
     systems = pool.first(count)
     found = _caught_on(systems, fault, engine, pool)
     answered = [one for one in found if not one.broken]
-    caught = [(s, one) for s, one in zip(systems, found, strict=True) if one.failed]
+    caught = [s for s, one in zip(systems, found, strict=True) if one.failed]
+    caught.sort(key=lambda one: one.case.sweeps[-1].steps)
     checks = PUBLISHED if published else ()
     return Detection(
         fault=fault,
@@ -159,7 +161,7 @@ def detection(
         gates={gate: _share(gate in one.failed for one in answered) for gate in GATES},
         any=_share(bool(one.failed) for one in answered),
         no_scheme=_without_scheme(systems, found, fault, engine, pool),
-        named=_named([system for system, _ in caught[:NAMED_ON]], fault, engine, pool),
+        named=_named(caught[:NAMED_ON], fault, engine, pool),
         published={check.name: _published(check, engine, fault, pool.seed) for check in checks},
     )
 
@@ -196,19 +198,18 @@ def _caught_on(systems: list[Prepared], fault: Fault, engine: str, pool: Pool) -
 def _without_scheme(
     systems: list[Prepared], found: list[Judgement], fault: Fault, engine: str, pool: Pool
 ) -> float:
-    """The share of systems on which the engine fails without a declared scheme.
+    """The share of systems on which the engine fails without a declared scheme, an estimate.
 
-    The model and the equations know of no scheme. Where no system shows the fault with a scheme,
-    all are tried without; otherwise those that do.
+    The model and the equations know of no scheme. Of the systems that show the fault in runs a few
+    are tried without one, and where none shows it with a scheme, all.
     """
-    some = any(one.failed for one in found)
-    adapter, caught = _faulty(fault, engine, pool, nameless=True), 0
-    for system, one in zip(systems, found, strict=True):
-        if one.failed and not one.runs:
-            caught += 1
-        elif (one.failed or not some) and not one.broken:
-            caught += bool(first_failure(pool, system, engine, adapter).failed)
-    return caught / max(1, sum(not one.broken for one in found))
+    answered = [(s, one) for s, one in zip(systems, found, strict=True) if not one.broken]
+    at_once = sum(bool(one.failed) and not one.runs for _, one in answered)
+    in_runs = [s for s, one in answered if one.failed and one.runs]
+    tried = in_runs[:NAMELESS_ON] if at_once or in_runs else [s for s, _ in answered]
+    adapter = _faulty(fault, engine, pool, nameless=True)
+    caught = _share(bool(first_failure(pool, s, engine, adapter).failed) for s in tried)
+    return (at_once + caught * len(in_runs or tried)) / max(1, len(answered))
 
 
 def _is_restepped(fault: Fault) -> bool:
