@@ -81,13 +81,22 @@ def faults(
 
 @contextmanager
 def quiet_engines() -> Iterator[None]:
-    """What engines print from native code would stand among the results: it is dropped."""
-    sys.stdout.flush()
-    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    """What engines print from native code would stand among the results: it is dropped.
+
+    A wrong one may print a warning at every step. What Python prints to stderr is kept.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    kept, nowhere, own = [os.dup(1), os.dup(2)], os.open(os.devnull, os.O_WRONLY), sys.stderr
     try:
-        os.dup2(nowhere, 1)
+        sys.stderr = os.fdopen(kept[1], "w", buffering=1, closefd=False)
+        for descriptor in (1, 2):
+            os.dup2(nowhere, descriptor)
         yield
     finally:
-        os.dup2(kept, 1)
-        os.close(kept)
+        sys.stderr.flush()
+        sys.stderr = own
+        for descriptor, copy in zip((1, 2), kept, strict=True):
+            os.dup2(copy, descriptor)
+            os.close(copy)
         os.close(nowhere)
