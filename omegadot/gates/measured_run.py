@@ -2,35 +2,24 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Sweep
 from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
+from omegadot.gates.orders import FEWEST_STEPS, Errors, ObservedOrder, excess_of, order_of
 from omegadot.gates.truth import Companion, Truth, scheme_key
-from omegadot.gates.verdicts import (
-    ORDER_TOLERANCE,
-    VANISHED,
-    Evidence,
-    Finding,
-    ObservedOrder,
-    judge,
-    observed_order,
-)
+from omegadot.gates.verdicts import Evidence, Finding, judge
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
 
 CHANNELS = (*TRAJECTORY_UNITS, *INVARIANT_CHANNELS)
 ROTATION = ("omega", "attitude")
-# Beyond half a radian, or half its size, an error is no longer a power of the step: it saturates.
-SATURATED = 0.5
-# Rounding is then a tenth of the error at most, and its bound is seldom reached.
-CLEAR_OF_ROUNDING = 10.0
-HORIZONS = tuple(0.5**n for n in range(7))  # of a run's samples
-FEWEST_STEPS = 3  # two slopes, which must agree
+SATURATING = (*ROTATION, "linear_momentum")
+# The state; energy and angular momentum follow from it, and their errors cancel now and then.
+STATE = (*ROTATION, "position", "linear_momentum")
 
 
 @dataclass(frozen=True)
@@ -43,90 +32,70 @@ class MeasuredRun:
     against_scheme: dict[str, Array] = field(default_factory=dict)
     floor: dict[str, Array] = field(default_factory=dict)
 
+    @property
+    def saturating_error(self) -> Array:
+        """(n,), the largest error of those that saturate where they are as large as the motion."""
+        worst: Array = np.maximum.reduce([self.error[channel] for channel in SATURATING])
+        return worst
+
 
 def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> MeasuredRun:
-    """Distances of `state` from the exact trajectory and, where there is one, the scheme's own."""
+    """Distances of `state` from the exact trajectory and, where there is one, the scheme's own.
+
+    What is not a number is infinitely far off, and where the scheme's own state is none there is
+    no bound.
+    """
     yardstick, rows, exact = truth.yardstick, truth.rows(sweep), truth.at(sweep)
 
     def apart(other: State) -> dict[str, Array]:
-        return {c: yardstick.distance(c, state, other) for c in CHANNELS}
+        return {c: _sizes(yardstick.distance(c, state, other)) for c in CHANNELS}
 
     growth = own.growth if own else truth.growth[rows]
+    faster = yardstick.faster(own.state) if own else 1.0
+    bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth, faster)
     return MeasuredRun(
         sweep=sweep,
         error=apart(exact),
-        round_off=yardstick.round_off(sweep.timestep, sweep.sample_steps, growth),
+        round_off={channel: _sizes(bound) for channel, bound in bounds.items()},
         against_scheme=apart(own.state) if own else {},
         floor={channel: values[rows] for channel, values in truth.floor.items()},
     )
 
 
-def _sizes(
-    measured_runs: list[MeasuredRun], channel: str, left: bool
-) -> list[tuple[MeasuredRun, Array]]:
-    """Runs with their error, or with what is left of it after the declared scheme."""
-    if left:
-        return [(run, run.against_scheme[channel]) for run in measured_runs if run.against_scheme]
-    return [(run, run.error[channel]) for run in measured_runs]
+def _sizes(values: Array) -> Array:
+    return np.where(np.isnan(values), np.inf, values)
 
 
-def saturates(run: MeasuredRun, samples: int | None = None) -> bool:
-    """Whether a run is so far off, within its first samples, that no power of the step is seen."""
-    return not all(np.max(run.error[c][:samples]) <= SATURATED for c in ROTATION)
+def errors_of(run: MeasuredRun, channel: str, *, left: bool = False) -> Errors | None:
+    """A run's errors in a channel, or what is left of them after the declared scheme."""
+    if left and not run.against_scheme:
+        return None
+    size = run.against_scheme[channel] if left else run.error[channel]
+    bound = np.maximum(run.round_off[channel], run.floor.get(channel, 0.0))
+    largest, saturates = run.saturating_error, channel in SATURATING
+    return Errors(run.sweep.timestep, run.sweep.times, size, bound, largest, saturates)
 
 
-def order_of(
-    measured_runs: list[MeasuredRun], channel: str, *, left: bool = False
-) -> ObservedOrder | None:
-    """The order over the steps of one integrator, of errors that stand above rounding.
-
-    It is that of the whole run, where this shows one. Late errors may saturate, and late bounds of
-    rounding hide all but the coarsest steps: then a shorter horizon decides, the longest that can.
-    left: of what is left after the declared scheme.
-    """
-    shown = None
-    for horizon in HORIZONS:
-        steps, errors, clear, saturated = [], [], 0, False
-        for run, size in _sizes(measured_runs, channel, left):
-            samples = math.ceil(horizon * len(size))
-            largest = float(np.max(size[:samples]))
-            bound = float(np.max(run.round_off[channel][:samples]))
-            if largest > bound:
-                steps.append(run.sweep.timestep)
-                errors.append(largest)
-            clear += largest > CLEAR_OF_ROUNDING * bound
-            saturated |= saturates(run, samples)
-        found = observed_order(steps, errors)
-        # Of errors that saturate, only those that do not shrink at all show something: no order.
-        usable = not saturated or (found is not None and found.value <= ORDER_TOLERANCE)
-        if found is not None and found.resolved and usable:
-            return found
-        shown = shown or (found and replace(found, resolved=False))
-        if clear >= FEWEST_STEPS and not saturated:
-            break  # nothing hides the order: the errors follow no power of the step
-    return shown
-
-
-def _order_shown(
-    measured_runs: list[MeasuredRun], channel: str, left: bool
-) -> ObservedOrder | None:
-    """`order_of`; VANISHED where an error above rounding somewhere is within it at the finest."""
-    above = {
-        run.sweep.timestep: bool(np.any(size > run.round_off[channel]))
-        for run, size in _sizes(measured_runs, channel, left)
-    }
-    if any(above.values()) and not above[min(above)]:
-        return VANISHED
-    return order_of(measured_runs, channel, left=left)
-
-
-def evidence_of(measured: MeasuredRun, measured_runs: list[MeasuredRun], channel: str) -> Evidence:
-    """What one run and the others of its sweep show in a channel."""
+def evidence_of(
+    measured: MeasuredRun,
+    measured_runs: list[MeasuredRun],
+    channel: str,
+    declared: int | None = None,
+) -> Evidence:
+    """What one run and the others of its sweep show in a channel. declared: its order."""
     left = measured.against_scheme.get(channel)
-    parts = (False,) if left is None else (False, True)
-    orders = tuple(_order_shown(measured_runs, channel, part) for part in parts)
+    orders: list[ObservedOrder | None] = []
+    excess, finer = 0.0, sum(r.sweep.timestep < measured.sweep.timestep for r in measured_runs)
+    for part in (False,) if left is None else (False, True):
+        errors = [errors_of(run, channel, left=part) for run in measured_runs]
+        known = [one for one in errors if one is not None]
+        orders.append(order_of(known))
+        if channel in STATE and declared is not None:
+            own = next(one for one in known if one.timestep == measured.sweep.timestep)
+            excess = max(excess, excess_of(own, known, declared + part))
     bound, floor = measured.round_off[channel], measured.floor.get(channel)
-    return Evidence(measured.error[channel], bound, left, orders, floor)
+    settled = finer >= FEWEST_STEPS
+    return Evidence(measured.error[channel], bound, left, tuple(orders), floor, excess, settled)
 
 
 @dataclass(frozen=True)
@@ -151,6 +120,6 @@ def findings_of(
 ) -> dict[str, Finding]:
     """Judge every channel of one run; the other runs of its sweep show the orders."""
     return {
-        c: judge(evidence_of(measured, measured_runs, c), declared.scheme, declared.orders[c])
-        for c in CHANNELS
+        c: judge(evidence_of(measured, measured_runs, c, order), declared.scheme, order)
+        for c, order in declared.orders.items()
     }

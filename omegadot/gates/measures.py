@@ -67,34 +67,52 @@ class Yardstick:
                 gap = norm(momentum(self.system, one) - momentum(self.system, other))
             return np.asarray(gap / self.sizes[channel])
 
-    def round_off(self, timestep: float, steps: Array, growth: Array) -> dict[str, Array]:
+    def faster(self, state: State) -> Array:
+        """(n,): how many times faster than in the exact motion the body has been, at least one."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            times: Array = norm(state.linear_velocity) / (self.speed or np.inf)
+        times = np.where(np.isfinite(times), times, np.inf)
+        return np.maximum.accumulate(np.maximum(times, 1.0))
+
+    def round_off(
+        self, timestep: float, steps: Array, growth: Array, faster: Array | float = 1.0
+    ) -> dict[str, Array]:
         """(n,) per channel: how far rounding may take a sound engine after so many steps.
 
         Each step adds ``c eps (1 + h A / rate)`` (A the greatest size of omega-dot, so that an
         ill-conditioned inertia counts), and what was added earlier grows by at most `growth`:
         ``theta = c eps (n + 1) (1 + h A / rate) growth``, for attitude in rad and for
-        omega / rate alike. The others follow from it to first order.
+        omega / rate alike. The others follow from it to first order; a velocity that is kept in
+        body axes is turned by theta. faster: of a scheme whose velocity grows beyond the exact one,
+        and rounding with it, see `faster`; ``m |v|^2`` may be among the terms of omega-dot.
         """
         amount = ROUNDINGS_PER_STEP * EPS * (steps + 1.0)
-        theta = amount * (1.0 + timestep * self.acceleration / self.rate) * growth
+        theta = amount * (1.0 + timestep * self.acceleration * faster**2 / self.rate) * growth
         time = timestep * steps
-        speed = amount * (self.speed + self.gravity * time) + theta * self.rate * self.scale.lever
+        swift = self.speed * faster
+        speed = amount * (swift + self.gravity * time) + theta * self.rate * self.scale.lever
+        speed = speed + theta * swift
         reach = amount * self.reach + time * speed + theta * self.scale.lever
         return {
             "omega": theta,
             "attitude": theta,
             "position": reach,
-            **self.invariant_round_off(theta, speed, reach),
+            **self.invariant_round_off(theta, speed, reach, swift),
         }
 
-    def invariant_round_off(self, theta: Array, speed: Array, reach: Array) -> dict[str, Array]:
+    def invariant_round_off(
+        self, theta: Array, speed: Array, reach: Array, swift: Array | float | None = None
+    ) -> dict[str, Array]:
         """(n,) per invariant: how far it is off where omega and attitude are off by theta, the
         velocity by speed in m/s and the position by reach in m, to first order.
+
+        swift: m/s, the body's own greatest speed, if it is not that of the exact motion.
         """
+        own = self.speed if swift is None else swift
         mass, spin = self.scale.mass, self.scale.largest * self.rate
         turning = 2.0 * spin * theta  # |I d_omega| + |d_theta x I omega|
-        moving = mass * self.speed * speed + mass * self.gravity * reach
-        lever = mass * (self.scale.lever * speed + self.speed * reach)
+        moving = mass * own * speed + mass * self.gravity * reach
+        lever = mass * (self.scale.lever * speed + own * reach)
         pivoted = 0.0 if self.system.load.pivot is None else lever
         return {
             "energy": (turning * self.rate + moving) / self.sizes["energy"],

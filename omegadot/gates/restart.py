@@ -52,7 +52,8 @@ def row(
     apart = {c: yardstick.distance(c, rest, restarted) for c in CHANNELS}
 
     def alike(growth: Array) -> Likeness:
-        bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth)
+        faster = yardstick.faster(state)
+        bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth, faster)
         return likeness(apart, {c: 2.0 * bounds[c][sample:] for c in CHANNELS})
 
     found = alike(np.ones(len(sweep.times)))

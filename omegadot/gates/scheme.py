@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,16 +10,14 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.gates.likeness import Likeness, like_schemes, likeness
 from omegadot.gates.measured_run import (
     CHANNELS,
-    CLEAR_OF_ROUNDING,
     Declared,
     MeasuredRun,
+    errors_of,
     evidence_of,
-    order_of,
-    saturates,
 )
+from omegadot.gates.orders import ORDER_TOLERANCE, VANISHED, ObservedOrder, is_whole, order_of
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
-from omegadot.gates.verdicts import ORDER_TOLERANCE, ObservedOrder, is_whole
 from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
@@ -30,45 +27,20 @@ BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
 NOTHING = Likeness(float("nan"), "omega", float("nan"))
 
 
-@dataclass(frozen=True)
-class Seen:
-    """The order that a sweep shows in a channel. reason: why it cannot be judged; "" if it can."""
-
-    order: ObservedOrder
-    reason: str
-
-
-def _clear(measured: MeasuredRun, channel: str) -> bool:
-    """Whether an error stands clear of rounding, the engine's and that of the exact answer."""
-    floor = float(np.max(measured.floor.get(channel, 0.0)))
-    bound = max(float(np.max(measured.round_off[channel])), floor)
-    return float(np.max(measured.error[channel])) > CLEAR_OF_ROUNDING * bound
-
-
-def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, Seen]:
-    """The order of every channel with an error above rounding, from all runs of one sweep.
-
-    It can be judged where the two finest slopes agree, of errors that stand clear of rounding and
-    come from runs that do not saturate.
-    """
-    unsaturated = [measured for measured in measured_runs if not saturates(measured)]
-    saturate = len(unsaturated) < len(measured_runs)
+def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, ObservedOrder]:
+    """The order of every channel with an error above rounding, from all runs of one sweep."""
     found = {}
     for channel in CHANNELS:
-        shown = order_of(measured_runs, channel)
-        if shown is None:
-            continue
-        usable = [measured for measured in unsaturated if _clear(measured, channel)]
-        clear = shown if len(usable) == len(measured_runs) else order_of(usable, channel)
-        reason = ""
-        if clear is None or not clear.resolved:
-            why = ": errors saturate" if saturate else ": errors are close to rounding"
-            reason = "not resolved by this sweep" + why * (len(usable) < len(measured_runs))
-        found[channel] = Seen(clear or shown, reason)
+        errors = [errors_of(run, channel) for run in measured_runs]
+        order = order_of([one for one in errors if one is not None])
+        if order is not None:
+            found[channel] = order
     return found
 
 
-def order_rows(seen: Mapping[str, Seen], declared: Declared, measured: MeasuredRun) -> list[Row]:
+def order_rows(
+    seen: Mapping[str, ObservedOrder], declared: Declared, measured: MeasuredRun
+) -> list[Row]:
     """The orders that one integrator's sweep shows, against those that it declares.
 
     A channel in which the engine equals its declared scheme is not held to an order that the
@@ -77,12 +49,15 @@ def order_rows(seen: Mapping[str, Seen], declared: Declared, measured: MeasuredR
     found = []
     for channel, shown in seen.items():
         limit, left = declared.orders[channel], measured.against_scheme.get(channel)
-        verdict, note = "info", shown.reason
-        if not note:
+        hidden = f": {shown.hidden}" if shown.hidden else ""
+        verdict, note = "info", f"not resolved by this sweep{hidden}"
+        if shown is VANISHED:
+            verdict, note = "info", "the error falls into rounding"
+        elif shown.resolved:
             explained = left is not None and bool(np.all(left <= measured.round_off[channel]))
-            verdict, note = _held_to(shown.order, limit, explained)
-        bound, value = None if limit is None else float(limit), shown.order.value
-        found.append(Row(GATE, channel, "observed_order", value, "1", bound, verdict, note))
+            verdict, note = _held_to(shown, limit, explained)
+        bound = None if limit is None else float(limit)
+        found.append(Row(GATE, channel, "observed_order", shown.value, "1", bound, verdict, note))
     return found
 
 
@@ -155,11 +130,11 @@ def _left_is_of_higher_order(
 ) -> bool:
     """Whether, in every channel, what is left of the scheme is rounding or of a higher order."""
     for channel in CHANNELS:
-        evidence = evidence_of(measured, measured_runs, channel)
+        evidence = evidence_of(measured, measured_runs, channel, integrator.orders.get(channel))
         if evidence.left is None or np.all(evidence.left <= evidence.round_off):
             continue
         left, declared = evidence.orders[-1], integrator.orders.get(channel)
-        if left is None or declared is None or not left.resolved:
+        if left is None or declared is None or not left.resolved or evidence.excess > 1.0:
             return False
         if left.value < declared + 1 - ORDER_TOLERANCE:
             return False

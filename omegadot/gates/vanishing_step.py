@@ -1,4 +1,4 @@
-"""Gate 3 for an unknown scheme: steps made ever smaller must follow the equation.
+"""Gate 3: steps made ever smaller must follow the equation.
 
 One step from a state x leads to ``Phi_h(x)``, and for every consistent scheme, whatever its order,
 ``(Phi_h(x) - x) / h`` tends to the equation's rate at x. The limit is extrapolated from halved
@@ -74,6 +74,7 @@ def _extrapolants(quotients: Array) -> tuple[Array, Array, Array]:
 
 
 _WEIGHTS = np.abs(_extrapolants(np.eye(5))[0])
+_AMPLIFIED = float(np.sum(_WEIGHTS))  # what the extrapolation makes of roundings of the rates
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,8 @@ def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
 
     A step rounds what it steps by ``16 eps``, which is divided by the step. What it steps may be
     the angular momentum: omega is then rounded by ``16 eps |J omega| / lambda``, J the inertia and
-    lambda its least eigenvalue; and by velocities so rounded attitude and position move.
+    lambda its least eigenvalue; and by velocities so rounded attitude and position move. A screw
+    motion is a turn about an axis at the distance |v| / |omega|, which is rounded as places are.
     """
     states, h = probe.states, probe.timesteps
     before = states[:, None]
@@ -123,7 +125,9 @@ def limits(system: System, probe: Probe, stepped: State) -> dict[str, Limit]:
     turn = rotation_between(before.orientation, stepped.orientation)
     spin = stepped.angular_velocity - before.angular_velocity
     way, push = stepped.position - before.position, stepped.linear_velocity - before.linear_velocity
-    place = norm(states.position) + lever
+    # Turns much shorter than this are taken by their series, which is no turn about an axis.
+    least_turn = EPS**0.25 / h[:, 0]
+    place = norm(states.position) + lever + norm(v) / np.maximum(norm(w), least_turn)
     parts = {  # what changes, its rate, and the roundings of what is stepped and of the rate
         "attitude": (turn, w, step * np.ones(len(w)), step * spinning),
         "omega": (spin, true.angular, step * spinning, of_omega),
@@ -139,7 +143,7 @@ def _limit(h: Array, change: Array, expected: Array, rounding: Array, per_rate: 
         best, worse, worst = _extrapolants(change[:, steps] / h[:, steps, None])
         rounded = rounding * np.sum(_WEIGHTS / h[:, steps], axis=-1)
         found.append(best)
-        bounds.append(norm(best - worse) + norm(worse - worst) + rounded + per_rate)
+        bounds.append(norm(best - worse) + norm(worse - worst) + rounded + per_rate * _AMPLIFIED)
     return Limit(np.array(found), expected, np.array(bounds))
 
 

@@ -8,17 +8,16 @@ with the step at the declared order). Otherwise it fails.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from omegadot.gates.orders import ORDER_TOLERANCE, ObservedOrder, is_whole
 from omegadot.reference_impl.system import Array
 
-# How far an observed order may lie below the declared one where the sweep resolves it.
-ORDER_TOLERANCE = 0.15
 ONE_STEP = "one step size cannot show an order"
 UNSETTLED = "the sweep does not resolve the order"
+NOT_FINITE = "not finite"
 UNDECIDED = (ONE_STEP, UNSETTLED)
 """How the notes begin of failures that a finer step could lift."""
 
@@ -28,7 +27,7 @@ class Finding:
     """One channel of one run, judged.
 
     kind: "round-off", "explained", "consistent", "beyond" (there is nothing to judge by),
-    "unresolved" or "unexplained".
+    "unresolved" (the order is hidden), "unsettled" (it is not, and there is none) or "unexplained".
     note: the reason as text.
     """
 
@@ -38,52 +37,14 @@ class Finding:
     @property
     def verdict(self) -> str:
         """The verdict on the error: pass, fail, or info where it cannot be judged."""
-        if self.kind == "beyond":
+        if self.kind in ("beyond", "unresolved"):
             return "info"
         return "pass" if self.kind in ("round-off", "explained", "consistent") else "fail"
 
-
-@dataclass(frozen=True)
-class ObservedOrder:
-    """The slope of log error over log step. resolved: neighbouring slopes agree.
-
-    rise: by how much the slope rose with the last halving. Where the next term of the error is one
-    order higher, what a slope lacks halves with the step, so that it is heading for
-    ``value + rise``.
-    """
-
-    value: float
-    resolved: bool
-    rise: float = 0.0
-
-
-def is_whole(order: float) -> bool:
-    """Whether an order can be one: those of smooth motion are whole numbers, and 0 is no order.
-
-    Between two of them, terms of different orders are still of a size, or the largest error has
-    moved to another sample.
-    """
-    return abs(order - round(order)) <= ORDER_TOLERANCE
-
-
-VANISHED = ObservedOrder(float("inf"), True)
-"""Of an error that falls into rounding at the finest step: it shrinks, if too fast to measure."""
-
-
-def observed_order(timesteps: Sequence[float], errors: Sequence[float]) -> ObservedOrder | None:
-    """The order seen between the finest steps: ``log(e1 / e2) / log(h1 / h2)``.
-
-    Resolved where the two finest slopes agree within the tolerance. None with fewer than two
-    positive errors.
-    """
-    points = sorted((h, e) for h, e in zip(timesteps, errors, strict=True) if 0.0 < e < np.inf)
-    if len(points) < 2:
-        return None
-    steps, sizes = np.log(np.array(points)).T
-    slopes = np.diff(sizes) / np.diff(steps)
-    resolved = len(slopes) > 1 and abs(slopes[0] - slopes[1]) <= ORDER_TOLERANCE
-    rise = float(slopes[0] - slopes[1]) if len(slopes) > 1 else 0.0
-    return ObservedOrder(float(slopes[0]), bool(resolved), rise)
+    @property
+    def open(self) -> bool:
+        """Whether a finer step could still decide."""
+        return self.kind in ("unresolved", "unsettled")
 
 
 @dataclass(frozen=True)
@@ -95,6 +56,8 @@ class Evidence:
     left: (n,), the distance from the reference stepping the declared scheme, where there is one.
     orders: the observed orders of `error` and, where there is one, of `left`.
     floor: (n,), how far a perfect answer may be off, where that is known.
+    excess: how many times larger the error is than those at finer steps let it be.
+    settled: there are so many finer steps that more would not change that.
     """
 
     error: Array
@@ -102,6 +65,8 @@ class Evidence:
     left: Array | None
     orders: tuple[ObservedOrder | None, ...]
     floor: Array | None = None
+    excess: float = 0.0
+    settled: bool = True
 
 
 def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Finding:
@@ -112,35 +77,49 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
     does not. A declared order of None means conserved: only rounding or the scheme can account
     for an error then.
     """
-    if not np.all(np.isfinite(evidence.error)):
-        return Finding("unexplained", "not finite")
     # From where the scheme itself blows up there is no bound, and nothing to be held against.
     bounded = np.isfinite(evidence.round_off)
     if not bounded[1:].any():
         return Finding("beyond", "not judged: the scheme itself blows up at so large a step")
     if np.all(evidence.error <= evidence.round_off) and bounded.all():
         return Finding("round-off", "within round-off")
-    if evidence.left is not None and np.all(evidence.left <= evidence.round_off):
+    known = bool(np.all(np.isfinite(evidence.error[bounded])))
+    if known and evidence.left is not None and np.all(evidence.left <= evidence.round_off):
         largest = float(np.max(evidence.left[bounded]))
         until = "" if bounded.all() else ", until the scheme blows up"
         return Finding("explained", f"explained by {scheme}, to {largest:.1e}{until}")
     if evidence.floor is not None and np.all(evidence.error <= evidence.round_off + evidence.floor):
         return Finding("beyond", "not judged: below the resolvable floor of this motion")
+    finite = bool(np.all(np.isfinite(evidence.error)))
     if declared is None:
-        return Finding("unexplained", "declared conserved, and it drifts")
-    return _by_order(evidence.orders, declared)
+        return Finding("unexplained", "declared conserved, and it drifts" if finite else NOT_FINITE)
+    found = _by_order(evidence, declared)
+    if finite:
+        return found
+    if found.kind == "consistent":
+        return Finding("beyond", "not judged: it blows up at so large a step")
+    return Finding("unsettled" if found.open else "unexplained", NOT_FINITE)
 
 
-def _by_order(orders: tuple[ObservedOrder | None, ...], declared: int) -> Finding:
-    seen = [order for order in orders if order is not None]
-    if len(seen) < len(orders):
+def _by_order(evidence: Evidence, declared: int) -> Finding:
+    seen = [order for order in evidence.orders if order is not None]
+    if len(seen) < len(evidence.orders):
         return Finding("unresolved", ONE_STEP)
     lowest = min(seen, key=lambda order: order.value)
+    least = declared - ORDER_TOLERANCE
     text = f"observed order {lowest.value:.2f}, declared {declared}"
     if not all(order.resolved for order in seen):
-        return Finding("unresolved", f"{UNSETTLED}: {text}")
-    if lowest.value >= declared - ORDER_TOLERANCE:
-        return Finding("consistent", f"consistent: {text}")
-    if lowest.value + lowest.rise >= declared - ORDER_TOLERANCE or not is_whole(lowest.value):
-        return Finding("unresolved", f"{UNSETTLED}: {text}")
-    return Finding("unexplained", text)
+        shown = [order for order in seen if not order.resolved and not order.hidden]
+        # Clear errors that do not even begin to shrink as they should.
+        falls = any(o.value < declared - 0.5 and o.rise <= ORDER_TOLERANCE for o in shown)
+        return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
+    if lowest.value < least:
+        if lowest.value + lowest.rise >= least or not is_whole(lowest.value):
+            falls = lowest.value < declared - 0.5 and lowest.rise <= ORDER_TOLERANCE
+            return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
+        return Finding("unexplained", text)
+    if evidence.excess > 1.0:
+        times = f"{evidence.excess:.1e} times what the errors at finer steps let it be"
+        note = f"at this step the error is {times}"
+        return Finding("unexplained" if evidence.settled else "unsettled", note)
+    return Finding("consistent", f"consistent: {text}")

@@ -17,7 +17,7 @@ from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.repeats import rows_again
-from omegadot.harness.unknown_schemes import rows_of_unknown
+from omegadot.harness.step_probes import rows_of_probes
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.harness_end.process import Answer
 from omegadot.workers.wire import body_from
@@ -71,10 +71,16 @@ def is_finite(state: State) -> bool:
     return all(bool(np.all(np.isfinite(values))) for values in vars(state).values())
 
 
+# From the least favourable.
+_FINDINGS = (
+    *("unexplained", "unsettled", "unresolved", "beyond"),
+    *("consistent", "explained", "round-off"),
+)
+
+
 def _why(findings: dict[str, Finding]) -> str:
     """One reason for the whole run: the least favourable among its channels."""
-    order = ["unexplained", "unresolved", "beyond", "consistent", "explained", "round-off"]
-    channel = min(findings, key=lambda c: order.index(findings[c].kind))
+    channel = min(findings, key=lambda c: _FINDINGS.index(findings[c].kind))
     finding = findings[channel]
     alone = finding.kind in ("explained", "round-off", "beyond")
     return finding.note if alone else f"{channel}: {finding.note}"
@@ -83,16 +89,35 @@ def _why(findings: dict[str, Finding]) -> str:
 def _measured_runs(
     truth: Truth, integrator: Integrator, answers: Iterable[tuple[Sweep, Answer]]
 ) -> dict[float, MeasuredRun]:
-    """The runs of one integrator that can be measured: finite, with the samples requested."""
+    """The runs of one integrator that can be measured: those with the samples requested."""
     measured_runs = {}
     for sweep, answer in answers:
-        if not answer.ok or len(answer.result["time"]) != len(sweep.times):
-            continue
-        state = State(**answer.result["state"])
-        if is_finite(state):
+        if answer.ok and len(answer.result["time"]) == len(sweep.times):
             own = truth.companion(integrator, sweep)
+            state = State(**answer.result["state"])
             measured_runs[sweep.timestep] = measure(truth, sweep, state, own)
     return measured_runs
+
+
+def _diverged(
+    integrator: Integrator,
+    sweep: Sweep,
+    answer: Answer,
+    measured: MeasuredRun,
+    findings: dict[str, Finding],
+) -> JudgedRun:
+    """A run whose state ceases to be finite; what its scheme does as well is not judged."""
+    finite = np.isfinite(measured.saturating_error) & np.isfinite(answer.result["time"])
+    bad = np.flatnonzero(~finite)
+    when = f" from t = {sweep.times[bad[0]]:g} s" if len(bad) else ""
+    note = f"the state is not finite{when}"
+    worst = min(findings.values(), key=lambda f: _FINDINGS.index(f.kind))
+    rows = [
+        trajectory.time_row(sweep, answer.result["time"]),
+        Row("trajectory", "omega", "error_max", float("nan"), "1", None, worst.verdict, worst.note),
+    ]
+    why = note if worst.verdict == "fail" else worst.note
+    return JudgedRun(integrator, sweep, "diverged", note, rows, why, worst.open)
 
 
 def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
@@ -100,17 +125,7 @@ def _failed(integrator: Integrator, sweep: Sweep, answer: Answer) -> JudgedRun:
     if not answer.ok:
         return JudgedRun(integrator, sweep, answer.outcome, answer.reason)
     rows = [trajectory.time_row(sweep, answer.result["time"])]
-    state = State(**answer.result["state"])
-    if is_finite(state):
-        return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
-    finite = np.isfinite(state.orientation).all(-1) & np.isfinite(state.angular_velocity).all(-1)
-    bad = np.flatnonzero(~finite & np.isfinite(answer.result["time"]))
-    when = f" from t = {answer.result['time'][bad[0]]:g} s" if len(bad) else ""
-    note = f"the state is not finite{when}"
-    rows.append(
-        Row("trajectory", "omega", "error_max", float("nan"), "1", None, "fail", "diverged")
-    )
-    return JudgedRun(integrator, sweep, "diverged", note, rows, why=note)
+    return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
 
 
 def _judge_integrator(
@@ -134,8 +149,11 @@ def _judge_integrator(
             continue
         state = State(**answer.result["state"])
         findings = findings_of(measured, declared, known)
+        if not is_finite(state):
+            yield _diverged(integrator, sweep, answer, measured, findings)
+            continue
         match = scheme.match_row(truth, integrator, measured, state, known)
-        unknown = rows_of_unknown(truth, integrator, sweep, result)
+        unknown = rows_of_probes(truth, integrator, sweep, result)
         rows = [match, *scheme.order_rows(seen, declared, measured), *unknown]
         misreported = trajectory.reported_rows(truth, measured, state, result.precision)
         misreported += trajectory.omega_dot_rows(system, state, answer.result["omega_dot"])
@@ -147,7 +165,7 @@ def _judge_integrator(
         rows += cost.rows(sweep.timestep, answer.result["seconds_per_step"])
         broken = [row.note for row in (*misreported, match, *unknown) if row.verdict == "fail"]
         why = broken[0] if broken else _why(findings)
-        unresolved = any(f.kind == "unresolved" for f in findings.values())
+        unresolved = any(f.open for f in findings.values())
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
 
 

@@ -42,7 +42,7 @@ def features_of(case: Case) -> frozenset[str]:
     Loads: ``gravity``, ``gravity-not-down``: not along -z, ``gravity-oblique``: off every axis;
     ``damping``, ``damping-above-1``: N m s/rad; ``torque``, ``torque-body``, ``torque-world``,
     ``torque-x-``, ``torque-x+`` and so on: a component beyond 0.25 N m of this sign;
-    ``torque-free``: none of the loads acts on the turning.
+    ``torque-free``: it turns, and nothing acts on it.
     Motion: ``at-rest``, ``slow``, ``fast``, ``very-fast``: it starts at 0, below 0.05, above 1,
     above 100 rad/s; ``high-speed``: above 100 m/s; ``scalar-negative``, ``scalar-zero``: so is w of
     the start's quaternion, next to zero at least.
@@ -73,6 +73,7 @@ def _of_the_body(case: Case) -> dict[str, bool]:
 def _of_the_loads(case: Case) -> dict[str, bool]:
     load = case.system.load
     held, damping = load.pivot is not None, float(load.damping)
+    turns = bool(np.any(case.initial.angular_velocity))
     frames = {"body": np.asarray(load.torque_body), "world": np.asarray(load.torque_world)}
     gravity = np.asarray(load.gravity)
     named = {
@@ -86,7 +87,7 @@ def _of_the_loads(case: Case) -> dict[str, bool]:
         "damping": damping > 0.0,
         "damping-above-1": damping > 1.0,
         "torque": any(bool(np.any(torque)) for torque in frames.values()),
-        "torque-free": "torque-free" in kinds_of(case.system),
+        "torque-free": "torque-free" in kinds_of(case.system) and turns and not np.any(gravity),
     }
     named |= {f"torque-{frame}": bool(np.any(torque)) for frame, torque in frames.items()}
     for axis, name in enumerate("xyz"):

@@ -26,8 +26,8 @@ from omegadot.harness.outcome import (
 from omegadot.harness.plan import Engine
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
 from omegadot.harness.repeats import request_again
+from omegadot.harness.step_probes import probe_steps
 from omegadot.harness.truth_requests import Companions, case_companions, case_truth, reference_runs
-from omegadot.harness.unknown_schemes import probe_unknown_schemes
 
 
 class Runner:
@@ -115,7 +115,7 @@ class Runner:
             self.on_advance(tasks_of(engine, case))
         else:
             result.runs.update(driver.run_all(case, lambda: self.on_advance(1)))
-            probe_unknown_schemes(driver, case, evaluation_states, result)
+            probe_steps(driver, case, evaluation_states, result)
         if engine.name != "exact":
             request_again(driver, case, evaluation_states, result)
         return result

@@ -49,7 +49,7 @@ SPREADS = {"near-equal": (-6.0, -3.0), "thin": (-4.0, -1.5)}
 # Radians a step at the rate of the body, steps between samples and of the run, and step sizes.
 RUNS = {
     ("coarse", "whole"): (0.5, 1, 13, 4),
-    ("coarse", "short"): (0.5, 3, 14, 4),
+    ("coarse", "short"): (0.5, 2, 15, 4),
     ("medium", "whole"): (0.1, 2, 40, 3),
     ("medium", "short"): (0.1, 4, 43, 3),
     ("long", "whole"): (0.1, 10, 250, 3),

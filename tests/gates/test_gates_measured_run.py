@@ -14,12 +14,10 @@ from omegadot.gates.measured_run import (
     evidence_of,
     findings_of,
     measure,
-    order_of,
     orders_for,
 )
 from omegadot.gates.measures import Yardstick
 from omegadot.gates.truth import Companion, SchemeKey, Truth, scheme_key
-from omegadot.gates.verdicts import VANISHED
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
@@ -62,80 +60,24 @@ def test_the_channels() -> None:
 
 
 @pytest.mark.parametrize("order", [1, 2, 4])
-def test_the_order_of_a_sweep(order: int) -> None:
-    seen = order_of(sweep(order), "omega")
-    assert seen is not None
-    assert seen.value == pytest.approx(order)
-    assert seen.resolved
-    left = order_of(sweep(1, order), "energy", left=True)
+def test_the_orders_of_an_error_and_of_what_is_left_of_it(order: int) -> None:
+    runs = sweep(1, order)
+    own, left = evidence_of(runs[-1], runs, "energy", 1).orders
+    assert own is not None
     assert left is not None
-    assert left.value == pytest.approx(order)
-    assert order_of(sweep(order), "energy", left=True) is None
+    assert (own.value, left.value) == (pytest.approx(1), pytest.approx(order))
+    alone = sweep(order)
+    assert len(evidence_of(alone[0], alone, "energy", 1).orders) == 1
 
 
-SAMPLES = np.arange(65) / 64.0
-STEPS = (0.04, 0.02, 0.01)
-
-
-def over_time(sizes: dict[float, Array], bound: Array) -> list[MeasuredRun]:
-    """Runs with these errors along time, of all channels."""
-    return [
-        MeasuredRun(Sweep(h, 64, 1), dict.fromkeys(CHANNELS, size), dict.fromkeys(CHANNELS, bound))
-        for h, size in sizes.items()
-    ]
-
-
-def test_late_errors_that_saturate_hide_no_order() -> None:
-    late = np.where(SAMPLES > 0.3, np.array([0.9, 0.7, 0.6])[:, None], 0.0)
-    sizes = {h: h**2 * SAMPLES + more for h, more in zip(STEPS, late, strict=True)}
-    seen = order_of(over_time(sizes, np.full(65, BOUND)), "omega")
-    assert seen is not None
-    assert (seen.value, seen.resolved) == (pytest.approx(2.0), True)
-
-
-def test_late_bounds_of_rounding_hide_no_order() -> None:
-    sizes = {h: h**2 * SAMPLES * (1.0 + 200.0 * h * SAMPLES**2) for h in STEPS}
-    bound = np.where(SAMPLES > 0.2, 4e-4, BOUND)  # above the finest two
-    seen = order_of(over_time(sizes, bound), "omega")
-    assert seen is not None
-    assert (round(seen.value, 1), seen.resolved) == (2.0, True)
-
-
-def test_what_goes_wrong_late_is_not_passed_over_for_a_good_start() -> None:
-    # Clear of rounding and small, so nothing hides the order: late errors follow no power of h.
-    sizes = {h: h**2 * SAMPLES + np.where(SAMPLES > 0.8, 4e-4, 0.0) for h in STEPS}
-    seen = order_of(over_time(sizes, np.full(65, BOUND)), "omega")
-    assert seen is not None
-    assert not seen.resolved
-    # Where they saturate at once, and alike, the whole run shows that they do not shrink.
-    sizes = {h: h**2 * SAMPLES + np.where(SAMPLES > 0.8, 1.0, 0.0) for h in STEPS}
-    seen = order_of(over_time(sizes, np.full(65, BOUND)), "omega")
-    assert seen is not None
-    assert (round(seen.value, 1), seen.resolved) == (0.0, True)
-
-
-def test_errors_within_rounding_show_no_order() -> None:
-    two = [measured(0.04, 4e-4), measured(0.02, 2e-4)]
-    seen = order_of([*two, measured(0.01, BOUND)], "omega")
-    assert seen is not None
-    assert (seen.value, seen.resolved) == (pytest.approx(1.0), False)
-    assert order_of([two[0], measured(0.01, BOUND / 2)], "omega") is None
-
-
-def test_an_error_that_falls_into_rounding_has_vanished() -> None:
-    runs = [measured(0.04, 1e-3, 1e-3), measured(0.02, BOUND, BOUND)]
-    assert evidence_of(runs[0], runs, "omega").orders == (VANISHED, VANISHED)
-    # One that stays, or comes back at the finest step, has not; nor has one that was never there.
-    for sizes in ((1e-3, 1e-4), (BOUND, 1e-3), (BOUND, BOUND)):
-        runs = [measured(0.04, sizes[0], sizes[0]), measured(0.02, sizes[1], sizes[1])]
-        assert VANISHED not in evidence_of(runs[0], runs, "omega").orders
-
-
-def test_one_sample_above_rounding_keeps_an_error_alive() -> None:
-    late = measured(0.02, 0.0)
-    late.error["omega"][1] = 2 * BOUND
-    runs = [measured(0.04, 1e-3), late]
-    assert evidence_of(runs[0], runs, "omega").orders != (VANISHED,)
+def test_each_run_has_an_excess_of_its_own() -> None:
+    runs = [measured(h, h**2 + (0.4 if h == 0.04 else 0.0)) for h in (0.04, 0.02, 0.01, 0.005)]
+    excess = [evidence_of(run, runs, "omega", 2).excess for run in runs]
+    assert excess[0] > 10.0
+    assert all(one < 1.0 for one in excess[1:])
+    assert [evidence_of(run, runs, "omega", 2).settled for run in runs] == [True] + 3 * [False]
+    found = findings_of(runs[0], Declared(None, dict.fromkeys(CHANNELS, 2)), runs)["omega"]
+    assert found.note.startswith("at this step the error is 3.1e+01 times")
 
 
 def test_evidence_holds_what_was_measured() -> None:

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from omegadot.gates.verdicts import Evidence, ObservedOrder, judge, observed_order
+from omegadot.gates.orders import ObservedOrder, observed_order
+from omegadot.gates.verdicts import Evidence, judge
 
 BOUND = np.full(3, 1e-12)
 LARGE = np.array([0.0, 1e-3, 1e-2])
@@ -89,7 +90,8 @@ def test_what_lies_below_the_floor_is_not_judged() -> None:
 
 
 def test_nan_is_never_explained() -> None:
-    assert kind(np.array([0.0, np.nan, 0.0]), BOUND / 2, (RESOLVED,), 1) == "unexplained"
+    error, slow = np.array([0.0, np.nan, 0.0]), ObservedOrder(0.0, True)
+    assert kind(error, BOUND / 2, (slow, slow), 1) == "unexplained"
 
 
 def test_beyond_the_schemes_own_end_nothing_is_judged() -> None:
@@ -102,7 +104,7 @@ def test_beyond_the_schemes_own_end_nothing_is_judged() -> None:
     assert finding.kind == "explained"
     assert "until the scheme blows up" in finding.note
     left[1] = 1e-11
-    assert judge(Evidence(LARGE, bound, left, (None, None)), "scheme", 1).verdict == "fail"
+    assert judge(Evidence(LARGE, bound, left, (None, None)), "scheme", 1).kind == "unresolved"
 
 
 def test_a_slope_that_is_still_rising_fails_no_run() -> None:

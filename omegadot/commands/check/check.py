@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import shlex
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 from omegadot.adapters.registry import registered
 from omegadot.commands.check.result import Check, Result, Subject, Tally
-from omegadot.commands.check.select import Arguments, select
-from omegadot.commands.check.suite import Suite
+from omegadot.commands.check.select import Arguments, Selection, select
+from omegadot.commands.check.shrink import Failing, kinds_of_failure
+from omegadot.commands.check.shrink import shrink as shrink_check
+from omegadot.commands.check.suite import SEED, Suite
 from omegadot.commands.progress import Count, Reporting, reporting
 from omegadot.harness.arguments import adapters_named, several
 from omegadot.harness.engine_target import EngineLike, target_of
@@ -28,7 +31,7 @@ class CheckResult:
     by_check: every check with its result.  subjects: the engine, its version and integrators; none
     where it did not start.  drawn: the random systems among the scenarios that were not named.
     only_skipped: a sentence where every check was skipped, which is no pass.  baselines: the files
-    that were written.
+    that were written.  failing: for each kind of failure, three at most, the simplest system found.
     """
 
     by_check: Mapping[Check, Result]
@@ -36,6 +39,7 @@ class CheckResult:
     drawn: frozenset[str] = frozenset()
     only_skipped: tuple[str, ...] = ()
     baselines: tuple[Path, ...] = ()
+    failing: tuple[Failing, ...] = ()
 
     @cached_property
     def results(self) -> dict[str, Result]:
@@ -74,6 +78,7 @@ def check(
     baseline: str | Path | None = None,
     update_baseline: bool = False,
     timeout: float = 60.0,
+    shrink: bool = True,
     progress: Reporting = False,
 ) -> CheckResult:
     """Put one engine, built in or your own, through every check.
@@ -83,7 +88,7 @@ def check(
     random: so many random systems of this seed besides; None for 24, or for none where scenarios
     are given.  integrators: all without any.  exceptions: files of declared exceptions.
     baseline: a folder of figures to compare with, or to store them in.  timeout: s, for one request
-    to the engine.
+    to the engine.  shrink: look for the simplest systems that fail, where some do.
     Raises UsageError, ScenarioError, RecordError and NoTruthError.
     """
     arguments = Arguments(
@@ -111,8 +116,28 @@ def check(
         tally.add(one.engine, result.verdict, result.message)
     skipped = tally.only_skipped(choice.name for choice in selection.choices)
     return CheckResult(
-        results, suite.registry.subjects, selection.drawn, tuple(skipped), tuple(suite.store())
+        results,
+        suite.registry.subjects,
+        selection.drawn,
+        tuple(skipped),
+        tuple(suite.store()),
+        tuple(_shrunk(engine, selection, results)) if shrink else (),
     )
+
+
+def _shrunk(
+    engine: EngineLike, selection: Selection, results: Mapping[Check, Result]
+) -> Iterator[Failing]:
+    """The simplest system for each kind of failure of the one engine."""
+    cases = {case.name: case for case in selection.cases}
+    given = engine if isinstance(engine, str) else target_of(engine)
+    for one in kinds_of_failure(results, cases):
+        words = ["omegadot", "check", given]
+        words += ["--integrator", one.integrator] if one.integrator else []
+        choice = next(choice for choice in selection.choices if choice.name == one.engine)
+        how = (selection.arguments.timeout, SEED, shlex.join(words))
+        if found := shrink_check(one, cases[one.scenario], choice, *how):
+            yield found
 
 
 def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Arguments) -> Arguments:

@@ -41,6 +41,13 @@ def check(
         ),
     ] = False,
     timeout: options.Timeout = 60.0,
+    shrink: Annotated[
+        bool,
+        typer.Option(
+            "--shrink/--no-shrink",
+            help="Look for the simplest system on which a gate fails, where one does.",
+        ),
+    ] = True,
     output: options.Output = options.Format.text,
 ) -> None:
     """Check one engine, built in or your own, at every gate.

@@ -14,8 +14,9 @@ from rich.text import Text
 
 from omegadot.commands.check.check import CheckResult
 from omegadot.commands.check.result import Check, Result, Verdict, coverage
+from omegadot.commands.check.shrink import Failing
 from omegadot.commands.options import exit_code
-from omegadot.reports.text.numbers import times
+from omegadot.reports.text.numbers import listed, times
 
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
 STYLES = {"error": "bold magenta", "fail": "bold red", "declared": "yellow", "skip": "dim"}
@@ -69,6 +70,18 @@ def print_json(found: CheckResult) -> None:
         "engines": [vars(subject) for subject in found.subjects],
         "verdicts": {v: counts[v] for v in ("pass", "fail", "declared", "skip", "error")},
         "only_skipped": found.only_skipped,
+        "failing": [
+            {
+                "check": one.check.id,
+                "message": one.message,
+                "has": one.has,
+                "scenario": one.toml,
+                "command": one.command,
+                "trials": one.trials,
+                "finished": one.finished,
+            }
+            for one in found.failing
+        ],
         "checks": [{"id": c.id, **vars(c), **vars(r)} for c, r in found.by_check.items()],
     }
     typer.echo(json.dumps(printed, indent=2))
@@ -91,7 +104,19 @@ def print_checks(found: CheckResult) -> None:
         console.print(Text(f"skip  {times(len(checks), 'check')}: {reason}", "dim"))
     for line in (*found.only_skipped, *(f"Baseline written: {path}" for path in found.baselines)):
         console.print(Text(line))
+    for one in found.failing:
+        _print_failing(console, one)
     counts = Counter(result.verdict for result in results.values())
     parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
     total = f"{times(len(results), 'check')}: {parts}."
     console.print(Text(total if parts else "There is nothing to check.", "bold"))
+
+
+def _print_failing(console: Console, found: Failing) -> None:
+    """The simplest failing system as a file, what is left in it, and how to run it alone."""
+    left = listed(list(found.has)) if found.has else "a free body on which nothing acts"
+    searched = "" if found.finished else f" (the search ended after {found.trials} systems)"
+    console.print(Text(f"Smallest failing system of {found.check.id}{searched}:", "bold"))
+    console.print(Text(f"    It has {left}. {found.message}"))
+    console.print(Text(f"    Save as {found.scenario.name}.toml, then: {found.command}"))
+    console.print(Text(found.toml))

@@ -23,7 +23,7 @@ from omegadot.harness.in_process import driver_of
 from omegadot.harness.judge import JudgedRun, judge_case, shared_rows
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
 from omegadot.harness.repeats import request_again
-from omegadot.harness.unknown_schemes import probe_unknown_schemes
+from omegadot.harness.step_probes import probe_steps
 
 GATES = ("model", "equation", "scheme", "invariants", "trajectory")
 
@@ -101,7 +101,7 @@ def stages(
             pool.step_companions(prepared, own.integrators, case.sweeps)
             runs = [] if whole else judge_case(prepared.truth, case, own, {})
             if not _any_fails(runs):
-                probe_unknown_schemes(driver, case, at, own)
+                probe_steps(driver, case, at, own)
                 request_again(driver, case, at, own)
                 runs = _judged(pool, prepared, driver, own)
             rows = shared_rows(case, at, CaseResult(reloaded=own.reloaded))

@@ -24,9 +24,9 @@ from omegadot.gates.case import Case
 from omegadot.gates.equation import forward_rows, inverse_rows
 from omegadot.gates.measured_run import CHANNELS, orders_for
 from omegadot.gates.model import body_rows, state_rows
+from omegadot.gates.orders import ORDER_TOLERANCE
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import scheme_key
-from omegadot.gates.verdicts import ORDER_TOLERANCE
 from omegadot.harness.judge import is_finite
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.growth import growth_along

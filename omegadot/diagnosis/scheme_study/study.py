@@ -13,8 +13,8 @@ from omegadot.diagnosis.scheme_study.orders import Observed, global_errors, obse
 from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, Stepper, load, stepper_of
 from omegadot.gates.measured_run import CHANNELS, orders_for
+from omegadot.gates.orders import ORDER_TOLERANCE
 from omegadot.gates.truth import scheme_key
-from omegadot.gates.verdicts import ORDER_TOLERANCE
 from omegadot.harness.arguments import integrators_chosen
 from omegadot.harness.plan import EngineChoice
 from omegadot.workers.harness_end.process import Answer, WorkerProcess

@@ -1,4 +1,4 @@
-"""Further requests to an integrator whose declared scheme is unknown to the reference."""
+"""Further requests to an integrator: first steps, and of unknown schemes runs begun again."""
 
 from __future__ import annotations
 
@@ -13,20 +13,23 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State
 
 
-def probe_unknown_schemes(
+def probe_steps(
     driver: Driver, case: Case, evaluation_states: EvaluationStates, result: CaseResult
 ) -> None:
-    """Have unknown schemes take first steps, and begin their runs again, into `result`."""
+    """Have integrators take first steps, and unknown schemes begin runs again, into `result`.
+
+    A known scheme's runs are held against the reference's, which depend on nothing else.
+    """
     for integrator in result.integrators:
-        if integrator.scheme in SCHEMES or integrator.knob != "timestep":
-            continue  # the reference has a run to hold its steps against
+        if integrator.knob != "timestep":
+            continue
         runs = {s: result.runs.get((integrator.name, s.timestep)) for s in case.sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue
         probe = vanishing_step.probe_of(case.system, evaluation_states)
         answer = driver.request(case, "first_steps", integrator=integrator.name, **vars(probe))
         result.first_steps[integrator.name] = (probe, answer)
-        for sweep, run in runs.items():
+        for sweep, run in runs.items() if integrator.scheme not in SCHEMES else ():
             found = restart.restart_of(sweep)
             if found and run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
                 sample, left = found
@@ -35,7 +38,7 @@ def probe_unknown_schemes(
                 result.restarts[integrator.name, sweep.timestep] = (sample, answer)
 
 
-def rows_of_unknown(
+def rows_of_probes(
     truth: Truth, integrator: Integrator, sweep: Sweep, result: CaseResult
 ) -> list[Row]:
     """The rows of these answers for one run; none where they were not requested, or failed."""

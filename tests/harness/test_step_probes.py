@@ -149,7 +149,7 @@ def judged(pool: Pool, adapter: Adapter, needs: set[str]) -> Judgement:
 
 
 def test_a_conserving_method_of_its_own_is_not_accused(pool: Pool) -> None:
-    found = judged(pool, Projected(), {"torque-free", "asymmetric"})
+    found = judged(pool, Projected(), {"torque-free", "asymmetric", "free"})
     assert failures(found) == []
     energy = [r for r in found.rows if (r.channel, r.metric) == ("energy", "drift_full")]
     assert {row.note for row in energy} == {"within round-off"}
@@ -174,11 +174,13 @@ def test_the_rate_at_no_step_shows_how_long_the_steps_are(pool: Pool) -> None:
     assert set(rows_of(found, "rate_at_no_step")) - {""} == {"a run of one step does not move"}
 
 
-def test_a_known_scheme_needs_no_further_runs(pool: Pool) -> None:
+def test_a_known_scheme_takes_first_steps_and_restarts_no_run(pool: Pool) -> None:
     named = ReferenceAdapter()
     own = tuple(i for i in named.description.integrators if i.name == "lie-rk4")
     found = judge(pool, pool.prepare(0), "named", named, own)
-    assert (found.result.first_steps, found.result.restarts) == ({}, {})
+    assert list(found.result.first_steps) == ["lie-rk4"]
+    assert {row.verdict for row in found.rows if row.metric == "rate_at_no_step"} == {"pass"}
+    assert found.result.restarts == {}
 
 
 def test_a_run_is_restarted_at_its_middle() -> None:

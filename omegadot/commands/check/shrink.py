@@ -1,0 +1,164 @@
+"""From a check that fails to the simplest system on which the same gate fails.
+
+Greedy: every simplification is tried on the simplest system so far, and kept where the same gate
+fails for the same metric; again from the first, until none is left or the budget is used up.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from omegadot.commands.check.judge import failure
+from omegadot.commands.check.result import GATES_OF_A_RUN, GATES_OF_A_SCENARIO, Check, Result
+from omegadot.commands.check.simpler import SIMPLER, Tables, ingredients, tables_of
+from omegadot.gates.case import Case
+from omegadot.gates.rows import Row
+from omegadot.gates.verdicts import UNDECIDED
+from omegadot.harness.arguments import case_of
+from omegadot.harness.outcome import RunRequest
+from omegadot.harness.plan import EngineChoice
+from omegadot.harness.runner import Runner
+from omegadot.scenarios import Scenario, ScenarioError, scenario_of
+from omegadot.scenarios.writing import to_toml
+
+MOST = 3  # failures that are shrunk, each of another kind
+TRIALS = 60  # for each
+SECONDS = 15.0  # for each
+
+
+@dataclass(frozen=True)
+class Failing:
+    """The simplest system found on which a check fails.
+
+    check: the one that was shrunk.  message: what fails of the simplest.  has: what is left in it.
+    trials: systems tried.  finished: nothing simpler was left to try within the budget.
+    command: runs it alone, once `toml` is in the file that it names.
+    """
+
+    check: Check
+    scenario: Scenario
+    message: str
+    has: tuple[str, ...]
+    trials: int
+    finished: bool
+    command: str
+
+    @property
+    def toml(self) -> str:
+        """The scenario file."""
+        return to_toml(self.scenario)
+
+
+def kinds_of_failure(results: Mapping[Check, Result], cases: Mapping[str, Case]) -> list[Check]:
+    """One failing check a kind, gate by integrator, three at most: on the case of fewest steps.
+
+    Where a gate of the engine fails, those of its runs fail in consequence, and are left out; of an
+    integrator the first of its gates that fails is taken.
+    """
+
+    def cost(check: Check) -> int:
+        return sum(sweep.steps for sweep in cases[check.scenario].sweeps)
+
+    failed = [c for c, r in results.items() if r.verdict == "fail" and c.scenario in cases]
+    found: list[Check] = []
+    for gates, key in ((GATES_OF_A_SCENARIO, "gate"), (GATES_OF_A_RUN, "integrator")):
+        kinds: dict[object, list[Check]] = {}
+        for gate in gates:
+            for check in (c for c in failed if c.gate == gate):
+                own = kinds.setdefault(getattr(check, key), [])
+                if not own or own[0].gate == gate:
+                    own.append(check)
+        found = found or [min(own, key=cost) for own in kinds.values()]
+    return found[:MOST]
+
+
+def shrink(
+    check: Check, case: Case, choice: EngineChoice, timeout: float, seed: int, command: str
+) -> Failing | None:
+    """The simplest system on which this check's gate fails; None where it fails no more.
+
+    choice: the engine.  seed: of the evaluation states.  command: the words before the scenario.
+    """
+    chosen = replace(choice, integrators=(check.integrator,) if check.integrator else ())
+    request = RunRequest([], [chosen], seed=seed, timeout=timeout)
+    runner = Runner(request)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        try:
+            runner.engines.start()
+            return _search(runner, check, case, command)
+        except BaseException:
+            runner.engines.stop()
+            raise
+        finally:
+            runner.engines.finish()
+
+
+def _failed_rows(runner: Runner, gate: str, case: Case) -> list[Row]:
+    """The rows of a gate that fail on a case: of the engine, or of the first run that fails."""
+    for found in runner.run_case(case).engines:
+        shared = [found.shared] if gate in GATES_OF_A_SCENARIO else []
+        for rows in shared or [run.rows for run in found.runs]:
+            failed = [row for row in rows if row.verdict == "fail" and row.gate == gate]
+            if failed:
+                return failed
+    return []
+
+
+def _metrics(rows: Sequence[Row]) -> set[str]:
+    """What fails; that steps cannot show an order is no failure to look for in another system."""
+    return {row.metric for row in rows if not row.note.startswith(UNDECIDED)}
+
+
+def _candidates(start: Tables) -> Generator[Tables, bool, None]:
+    """Simpler systems than the simplest so far, each once; what was kept is simplified again.
+
+    Sent in return is whether the system is kept.
+    """
+    simplest, tried, again = start, {repr(start)}, True
+    while again:
+        again = False
+        for simpler in SIMPLER:
+            while repr(tables := simpler(simplest)) not in tried:
+                tried.add(repr(tables))
+                if not (yield tables):
+                    break
+                simplest, again = tables, True
+
+
+def _search(runner: Runner, check: Check, case: Case, command: str) -> Failing | None:
+    name = f"{case.name}-shrunk"
+    simplest = tables_of(case, name)
+
+    def failed(tables: Tables) -> list[Row]:
+        try:
+            return _failed_rows(runner, check.gate, case_of(scenario_of(tables, name), ()))
+        except ScenarioError:  # no body has this inertia
+            return []
+
+    last = failed(simplest)
+    wanted = _metrics(last)
+    deadline, trials, finished = time.monotonic() + SECONDS, 1, True
+    if not wanted:
+        return None
+    candidates = _candidates(simplest)
+    tables = next(candidates, None)
+    while tables is not None:
+        finished = trials < TRIALS and time.monotonic() < deadline
+        if not finished:
+            break
+        trials += 1
+        rows = failed(tables)
+        kept = bool(wanted & _metrics(rows))
+        if kept:
+            simplest, last = tables, rows
+        try:
+            tables = candidates.send(kept)
+        except StopIteration:
+            break
+    found = scenario_of(simplest, name)
+    alone = f"{command} --scenario {name}.toml"
+    return Failing(check, found, failure(last), ingredients(found), trials, finished, alone)

@@ -1,0 +1,222 @@
+"""The order at which errors shrink with the step, and whether each step's error follows it.
+
+An error shows an order where it is clear of rounding and small against the motion. Late errors may
+saturate, and late bounds of rounding may hide them; a shorter time is then looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.reference_impl.system import Array
+
+Known = tuple[Array, NDArray[np.bool_]]
+
+# How far an observed order may lie below the declared one where the sweep resolves it.
+ORDER_TOLERANCE = 0.15
+# Beyond half a radian, or half its size, an error is no longer a power of the step: it saturates.
+SATURATED = 0.5
+# Rounding is then a tenth of the error at most, and its bound is seldom reached.
+CLEAR_OF_ROUNDING = 10.0
+HORIZONS = tuple(0.5**n for n in range(7))  # of a run's samples
+FEWEST_STEPS = 3  # two slopes, which must agree
+FEWEST_SAMPLES = 5  # an error may be nothing at one sample, as its sign changes there
+EXCESS_ORDERS = 3.0  # by which an error may exceed what finer steps and their order explain
+# From one sample to the next, what stepping adds may be this many times all that it added before.
+LARGEST_RISE = 100.0
+SATURATE, NEAR_ROUNDING = "errors saturate", "errors are close to rounding"
+
+
+@dataclass(frozen=True)
+class ObservedOrder:
+    """The slope of log error over log step. resolved: neighbouring slopes agree.
+
+    rise: by how much the slope rose with the last halving. Where the next term of the error is one
+    order higher, what a slope lacks halves with the step, so that it is heading for
+    ``value + rise``.  hidden: why errors show no order here; "" where nothing hides it.
+    """
+
+    value: float
+    resolved: bool
+    rise: float = 0.0
+    hidden: str = ""
+
+
+VANISHED = ObservedOrder(float("inf"), True)
+"""Of an error that falls into rounding at the finest step: it shrinks, if too fast to measure."""
+
+
+@dataclass(frozen=True)
+class Errors:
+    """One channel of one run: the step, and (n,) each: times, errors, and bounds of rounding.
+
+    overall: (n,), the largest error of omega, attitude and velocity, which saturate where they are
+    as large as the motion.  saturates: whether this is one of them.
+    """
+
+    timestep: float
+    times: Array
+    size: Array
+    bound: Array
+    overall: Array
+    saturates: bool
+
+    def largest(self, horizon: float) -> tuple[float, float, bool]:
+        """Error and bound over a part of the samples, and whether errors saturate there."""
+        samples = int(np.ceil(horizon * len(self.size)))
+        error, bound = np.max(self.size[:samples]), np.max(self.bound[:samples])
+        return float(error), float(bound), not np.max(self.overall[:samples]) <= SATURATED
+
+    @property
+    def saturates_at(self) -> int:
+        """The first sample whose error saturates; the number of samples if none does."""
+        beyond = ~(self.overall <= SATURATED)
+        return int(np.argmax(beyond)) if beyond.any() else len(beyond)
+
+
+def is_whole(order: float) -> bool:
+    """Whether an order can be one: those of smooth motion are whole numbers, and 0 is no order.
+
+    Between two of them, terms of different orders are still of a size, or the largest error has
+    moved to another sample.
+    """
+    return abs(order - round(order)) <= ORDER_TOLERANCE
+
+
+def observed_order(timesteps: Sequence[float], errors: Sequence[float]) -> ObservedOrder | None:
+    """The order seen between the finest steps: ``log(e1 / e2) / log(h1 / h2)``.
+
+    Resolved where the two finest slopes agree within the tolerance. None with fewer than two
+    positive errors.
+    """
+    points = sorted((h, e) for h, e in zip(timesteps, errors, strict=True) if 0.0 < e < np.inf)
+    if len(points) < 2:
+        return None
+    steps, sizes = np.log(np.array(points)).T
+    slopes = np.diff(sizes) / np.diff(steps)
+    resolved = len(slopes) > 1 and abs(slopes[0] - slopes[1]) <= ORDER_TOLERANCE
+    rise = float(slopes[0] - slopes[1]) if len(slopes) > 1 else 0.0
+    return ObservedOrder(float(slopes[0]), bool(resolved), rise)
+
+
+def order_of(sweep: Sequence[Errors]) -> ObservedOrder | None:
+    """The order over the steps of one integrator in a channel; None where none is to be seen.
+
+    It is that of the longest time over which errors show one. `VANISHED` where an error above
+    rounding is within it at the finest step.
+    """
+    if _vanishes(sweep):
+        return VANISHED
+    shown = None
+    for horizon in HORIZONS:
+        found, clear, saturated = _over(sweep, horizon)
+        # Errors that saturate show something where they do so by a jump: that is no scheme's.
+        usable = not saturated or (
+            found is not None and found.value <= ORDER_TOLERANCE and _jumps(sweep)
+        )
+        if found is not None and found.resolved and usable:
+            return found
+        shown = shown or (found and replace(found, resolved=False))
+        if clear and not saturated:
+            return shown  # nothing hides the order: the errors follow no power of the step
+    if shown is None or len(sweep) < FEWEST_STEPS:
+        return shown
+    saturated = any(errors.largest(1.0)[2] for errors in sweep)
+    return replace(shown, hidden=SATURATE if saturated else NEAR_ROUNDING)
+
+
+def _vanishes(sweep: Sequence[Errors]) -> bool:
+    above = {one.timestep: bool(np.any(one.size > one.bound)) for one in sweep}
+    return any(above.values()) and not above[min(above)]
+
+
+def _over(sweep: Iterable[Errors], horizon: float) -> tuple[ObservedOrder | None, bool, bool]:
+    """The order over a horizon, whether enough errors are clear of rounding, and if any saturate.
+
+    Errors close to rounding are used only where too few are clear, and then resolve nothing.
+    """
+    points = [(one.timestep, *one.largest(horizon)) for one in sweep]
+    clear = [(h, error) for h, error, bound, _ in points if error > CLEAR_OF_ROUNDING * bound]
+    enough = len(clear) >= FEWEST_STEPS
+    above = [(h, error) for h, error, bound, _ in points if error > bound]
+    used = clear if enough else above
+    found = observed_order([h for h, _ in used], [error for _, error in used])
+    if found is not None and not enough:
+        found = replace(found, resolved=False)
+    return found, enough, any(saturated for *_, saturated in points)
+
+
+def _jumps(sweep: Sequence[Errors]) -> bool:
+    """Whether errors saturate at the finest step from one sample to the next.
+
+    What rounding has made by then shows by how much the motion itself makes an error grow.
+    """
+    finest = min(sweep, key=lambda one: one.timestep)
+    at = finest.saturates_at
+    if not 1 < at < len(finest.size):
+        return False
+    before, bound = np.max(finest.overall[:at]), finest.bound
+    growth = bound[at] / bound[at - 1]
+    return bool(LARGEST_RISE * growth * before < SATURATED)
+
+
+def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
+    """How many times larger a step's error is than the errors at finer steps let it be.
+
+    With e1, e2, e3 at the next finer steps the error follows from e1 by an order: the declared one,
+    or the slope s12 from e1 to e2 where that is higher. It may be three orders more, since leading
+    terms may nearly cancel, and a slope may differ from the next by four times what that differs
+    from the one after. This must hold up to where the error saturates, and up to parts of that
+    time; there e1 is the largest up to twice that time, as an error may pass through nothing. Zero
+    for the finest step.
+    """
+    finer = sorted((one for one in sweep if one.timestep < own.timestep), key=lambda e: -e.timestep)
+    count = min(own.saturates_at + own.saturates, len(own.size))
+    if not finer or count == 0:
+        return 0.0
+    ends = np.unique([max(FEWEST_SAMPLES, round(part * count)) for part in HORIZONS])
+    ends = np.minimum(ends, count) - 1
+    until = own.times[ends]
+    near = [_at(one, until) for one in finer[:3]]
+    e1, _ = _at(finer[0], np.minimum(2.0 * until, own.times[count - 1]))
+    order = np.full(len(ends), float(declared))
+    if len(near) > 1:
+        first = _slopes(finer[0], finer[1], near[0], near[1])
+        second = np.full(len(ends), np.nan)
+        if len(near) > 2:
+            second = _slopes(finer[1], finer[2], near[1], near[2])
+        second = np.where(np.isnan(second), np.fmin(first, declared), second)
+        change = 4.0 * np.abs(first - second)
+        # What is hidden by rounding at one time may show at another.
+        order = np.maximum(order, np.max(first, where=~np.isnan(first), initial=declared))
+        order = np.where(np.isnan(first), order, np.maximum(first, declared) + change)
+    error = np.maximum.accumulate(own.size)[ends]
+    if own.saturates:
+        error = np.minimum(error, SATURATED)
+    least = CLEAR_OF_ROUNDING * np.maximum.accumulate(own.bound)[ends]
+    with np.errstate(all="ignore"):
+        allowed = e1 * (own.timestep / finer[0].timestep) ** (order + EXCESS_ORDERS)
+        excess = error / np.maximum(allowed, least)
+    return float(np.max(np.nan_to_num(excess, nan=0.0, posinf=np.inf)))
+
+
+def _slopes(one: Errors, finer: Errors, e1: Known, e2: Known) -> Array:
+    """(n,): the order from one step to a finer one; NaN where an error is not above rounding."""
+    with np.errstate(all="ignore"):
+        slopes = np.log(e1[0] / e2[0]) / np.log(one.timestep / finer.timestep)
+    return np.where(e1[1] & e2[1], slopes, np.nan)
+
+
+def _at(errors: Errors, until: Array) -> Known:
+    """The largest error up to each of these times, at least ten times its bound, and if above it.
+
+    Below that nothing is known of an error but that it is no larger.
+    """
+    place = np.searchsorted(errors.times, until * (1.0 + 1e-9), side="right") - 1
+    size = np.maximum.accumulate(errors.size)[place]
+    least = CLEAR_OF_ROUNDING * np.maximum.accumulate(errors.bound)[place]
+    return np.maximum(size, least), size > least

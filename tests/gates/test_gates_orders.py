@@ -1,0 +1,191 @@
+"""Where errors show an order, and whether each step's error follows it."""
+
+import numpy as np
+import pytest
+
+from omegadot.gates.orders import (
+    LARGEST_RISE,
+    NEAR_ROUNDING,
+    ORDER_TOLERANCE,
+    SATURATE,
+    VANISHED,
+    Errors,
+    ObservedOrder,
+    excess_of,
+    is_whole,
+    observed_order,
+    order_of,
+)
+from omegadot.reference_impl.system import Array
+
+BOUND = 1e-12
+SAMPLES = np.arange(65) / 64.0
+STEPS = (0.04, 0.02, 0.01)
+
+
+def over_time(sizes: dict[float, Array], bound: Array | None = None) -> list[Errors]:
+    """Errors along time at each step, of omega."""
+    limit = np.full(65, BOUND) if bound is None else bound
+    return [Errors(h, SAMPLES, size, limit, size, True) for h, size in sizes.items()]
+
+
+def powers(order: float, steps: tuple[float, ...] = STEPS) -> dict[float, Array]:
+    return {h: h**order * SAMPLES for h in steps}
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_the_order_of_a_sweep(order: int) -> None:
+    seen = order_of(over_time(powers(order)))
+    assert seen is not None
+    assert (seen.value, seen.resolved, seen.hidden) == (pytest.approx(order), True, "")
+
+
+def test_late_errors_that_saturate_hide_no_order() -> None:
+    sizes = {h: np.where(SAMPLES > 0.4, 0.9, h**2 * 10 ** (5 * SAMPLES)) for h in STEPS}
+    bound = BOUND * 10 ** (6 * SAMPLES)
+    bound[26:] *= 1e4  # an instability, in which rounding grows as well
+    seen = order_of(over_time(sizes, bound))
+    assert seen is not None
+    assert (seen.value, seen.resolved) == (pytest.approx(2.0), True)
+
+
+def test_late_bounds_of_rounding_hide_no_order() -> None:
+    sizes = {h: h**2 * SAMPLES * (1.0 + 200.0 * h * SAMPLES**2) for h in STEPS}
+    bound = np.where(SAMPLES > 0.2, 4e-4, BOUND)  # above the finest two
+    seen = order_of(over_time(sizes, bound))
+    assert seen is not None
+    assert (round(seen.value, 1), seen.resolved) == (2.0, True)
+
+
+def test_what_goes_wrong_late_is_not_passed_over_for_a_good_start() -> None:
+    # Clear of rounding and small, so nothing hides the order: late errors follow no power of h.
+    late = {h: h**2 * SAMPLES + np.where(SAMPLES > 0.8, 4e-4, 0.0) for h in STEPS}
+    seen = order_of(over_time(late))
+    assert seen is not None
+    assert (seen.resolved, seen.hidden) == (False, "")
+
+
+@pytest.mark.parametrize(("before", "jumps"), [(0.3, True), (3.0, False)])
+def test_errors_that_saturate_by_a_jump_show_that_they_do_not_shrink(
+    before: float, jumps: bool
+) -> None:
+    rise = before * 0.5 / LARGEST_RISE / 0.8
+    sizes = {h: rise * (h / 0.01) ** 2 * SAMPLES + np.where(SAMPLES > 0.8, 1.0, 0.0) for h in STEPS}
+    seen = order_of(over_time(sizes))
+    assert seen is not None
+    assert seen.resolved
+    assert seen.value == pytest.approx(0.0 if jumps else 2.0, abs=0.05)
+
+
+def test_errors_that_are_hidden_say_by_what() -> None:
+    near = order_of(over_time(powers(1), np.full(65, 5e-3)))
+    assert near is not None
+    assert (near.resolved, near.hidden) == (False, NEAR_ROUNDING)
+    far = order_of(over_time({h: np.full(65, 0.6 + h) for h in STEPS}))
+    assert far is not None
+    assert (far.resolved, far.hidden) == (False, SATURATE)
+    two = order_of(over_time(powers(1, STEPS[:2])))  # nothing hides it: a step more would do
+    assert two is not None
+    assert (two.resolved, two.hidden) == (False, "")
+
+
+def test_errors_close_to_rounding_decide_no_order() -> None:
+    sizes = powers(2) | {0.005: np.full(65, 9 * BOUND)}  # the finest has sunk into rounding
+    seen = order_of(over_time(sizes))
+    assert seen is not None
+    assert (seen.value, seen.resolved) == (pytest.approx(2.0), True)
+
+
+def test_an_error_that_falls_into_rounding_has_vanished() -> None:
+    line = np.ones(65)
+    assert order_of(over_time({0.04: 1e-3 * line, 0.02: BOUND * line})) is VANISHED
+    # One that stays, or comes back at the finest step, has not; nor has one that was never there.
+    for sizes in ((1e-3, 1e-4), (BOUND, 1e-3), (BOUND, BOUND)):
+        pair = {0.04: sizes[0] * line, 0.02: sizes[1] * line}
+        assert order_of(over_time(pair)) is not VANISHED
+    late = np.where(SAMPLES == 0.5, 2 * BOUND, 0.0)  # one sample keeps an error alive
+    assert order_of(over_time({0.04: 1e-3 * line, 0.02: late})) is not VANISHED
+
+
+def excess(sizes: dict[float, Array], declared: int, bound: Array | None = None) -> list[float]:
+    errors = over_time(sizes, bound)
+    return [excess_of(one, errors, declared) for one in errors]
+
+
+@pytest.mark.parametrize(("true", "declared"), [(1, 1), (2, 1), (4, 4), (5, 4), (5, 2)])
+def test_errors_of_an_order_or_of_a_higher_one_have_no_excess(true: int, declared: int) -> None:
+    assert max(excess(powers(true, (0.08, *STEPS)), declared)) <= 1.0 + 1e-9
+
+
+def test_next_terms_are_no_excess() -> None:
+    sizes = {h: (h**4 * 1e3 + (8 * h) ** 7) * SAMPLES for h in (0.08, *STEPS, 0.005)}
+    assert max(excess(sizes, 4)) < 1.0
+
+
+def test_the_finest_step_has_no_excess() -> None:
+    assert excess({0.01: SAMPLES}, 1) == [0.0]
+
+
+def test_a_fault_at_coarse_steps_alone_is_an_excess() -> None:
+    steps = (0.04, 0.02, 0.01, 0.005)
+    sizes = powers(2, steps) | {0.04: 0.1 * SAMPLES}
+    found = excess(sizes, 2)
+    assert found[0] == pytest.approx(0.1 / (0.02**2 * 2**5))
+    assert max(found[1:]) < 1.0
+    # Where the finer errors are within rounding, these are only known to be no larger than that.
+    bare = {0.04: 1e-3 * SAMPLES, 0.02: np.zeros(65), 0.01: np.zeros(65)}
+    assert excess(bare, 1)[0] == pytest.approx(1e-3 / (10 * BOUND * 2**4))
+    assert excess(bare | {0.04: 70 * BOUND * SAMPLES}, 1)[0] < 1.0
+
+
+def test_an_excess_that_saturates_is_seen_where_it_begins() -> None:
+    steps = (0.04, 0.02, 0.01, 0.005)
+    sizes = powers(4, steps) | {0.04: np.where(SAMPLES > 0.1, 3.0, 0.04**4 * SAMPLES)}
+    assert excess(sizes, 4)[0] > 1e3
+    # Errors at all steps that saturate together are no excess of the coarsest.
+    late = {h: np.where(SAMPLES > 0.4, 2.0, h**2 * SAMPLES) for h in steps}
+    assert max(excess(late, 2)) < 1.0
+
+
+def test_other_sample_times_are_compared_up_to_the_same_time() -> None:
+    coarse = Errors(0.5, SAMPLES[::8], np.full(9, 0.1), np.full(9, BOUND), np.full(9, 0.1), True)
+    fine = Errors(0.25, SAMPLES, 0.1 * SAMPLES, np.full(65, BOUND), 0.1 * SAMPLES, True)
+    found = excess_of(coarse, [coarse, fine], 1)
+    assert found == pytest.approx(0.1 / (0.1 * 2**4))
+
+
+@pytest.mark.parametrize(
+    ("order", "whole"), [(1.0, True), (1.15, True), (1.16, False), (0.5, False), (0.84, False)]
+)
+def test_only_a_whole_number_is_an_order(order: float, whole: bool) -> None:
+    assert is_whole(order) is is_whole(-order) is whole
+
+
+def test_the_order_is_that_of_the_finest_steps() -> None:
+    assert ORDER_TOLERANCE == 0.15
+    seen = observed_order([0.01, 0.04, 0.02], [1.0, 32.0, 4.0])  # in any order of the steps
+    assert seen == ObservedOrder(pytest.approx(2.0), False, pytest.approx(-1.0))
+    assert observed_order([0.02, 0.01], [4.0, 1.0]) == ObservedOrder(pytest.approx(2.0), False, 0.0)
+    three = observed_order([0.01, 0.03], [1.0, 9.0])
+    assert three is not None
+    assert three.value == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(("last", "resolved"), [(2.14, True), (2.16, False), (1.86, True)])
+def test_neighbouring_slopes_agree_within_the_tolerance(last: float, resolved: bool) -> None:
+    seen = observed_order([0.04, 0.02, 0.01], [2.0 ** (2 + last), 2.0**last, 1.0])
+    assert seen is not None
+    assert (seen.value, seen.resolved) == (pytest.approx(last), resolved)
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, np.inf, np.nan])
+def test_what_is_no_size_is_left_out(bad: float) -> None:
+    seen = observed_order([0.08, 0.04, 0.02, 0.01], [bad, 16.0, 4.0, 1.0])
+    assert seen == ObservedOrder(pytest.approx(2.0), True, pytest.approx(0.0))
+    assert observed_order([0.02, 0.01], [bad, 1.0]) is None
+    assert observed_order([], []) is None
+
+
+def test_every_step_needs_its_error() -> None:
+    with pytest.raises(ValueError, match="zip"):
+        observed_order([0.02, 0.01], [1.0])
