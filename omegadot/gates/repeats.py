@@ -1,8 +1,10 @@
 """Gate 5 for runs that are requested again: the answer depends on the request alone.
 
-Neither earlier runs, nor the system that was loaded before, nor the sign of the start's quaternion
-(q and -q are one attitude) may change a run. Each of two lies within the round-off bound of one
-trajectory, so that they differ by twice that at most.
+Neither earlier runs nor the system that was loaded before may change a run. Where the scheme is
+known, neither may the sign of the start's quaternion: q and -q are one attitude. (An unknown scheme
+may step coordinates that have two points for it, such as modified Rodrigues parameters, and what a
+step leaves out then differs.) Each of two runs lies within the round-off bound of one trajectory,
+so that they differ by twice that at most.
 """
 
 from __future__ import annotations

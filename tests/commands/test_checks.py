@@ -137,7 +137,7 @@ def test_a_sound_engine_passes_every_check(tmp_path: Path) -> None:
 
 
 def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
-    arguments = (f"{WRONG}:NoGyroscopic", "--scenario", quick_scenario(tmp_path))
+    arguments = (f"{WRONG}:NoGyroscopic", "--no-shrink", "--scenario", quick_scenario(tmp_path))
     result = omegadot("check", *arguments, folder=tmp_path)
     assert result.code == 1, result.err
     assert "FAIL  nogyroscopic-quick-equation" in result.out
@@ -156,7 +156,7 @@ def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
     ],
 )
 def test_outcomes_stay_apart(name: str, code: int, text: str, tmp_path: Path) -> None:
-    arguments = (f"{FAULTY}:{name}", "--scenario", quick_scenario(tmp_path))
+    arguments = (f"{FAULTY}:{name}", "--no-shrink", "--scenario", quick_scenario(tmp_path))
     result = omegadot("check", *arguments, folder=tmp_path)
     assert result.code == code, result.err
     assert text in result.out

@@ -38,7 +38,7 @@ def checked(text: str, folder: Path, command: str = "check") -> Result:
     scenario, file = quick_scenario(folder), folder / "known.toml"
     file.write_text(text)
     if command == "check":
-        names = ("check", f"{WRONG}:NoGyroscopic", "--scenario", scenario)
+        names = ("check", f"{WRONG}:NoGyroscopic", "--no-shrink", "--scenario", scenario)
     else:
         names = ("run", scenario, "--engine", NAME, "--adapter", f"{WRONG}:NoGyroscopic")
     return omegadot(*names, "--exceptions", file, folder=folder)

@@ -29,7 +29,7 @@ from omegadot.commands.faults.features import features_of
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.diagnosis.diagnose import diagnose
 from omegadot.harness.random_cases import random_case
-from omegadot.scenarios.random_systems import BLOCK
+from omegadot.scenarios.random_traits import BLOCK
 
 SEED = 20
 # Until causes are sought for them.

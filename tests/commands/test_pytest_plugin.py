@@ -65,6 +65,20 @@ def test_a_failing_check_is_run_again_by_its_node_id(folder: Path) -> None:
     assert "3/11 tests collected (8 deselected)" in selected.out
 
 
+def test_random_systems_are_collected(folder: Path) -> None:
+    engine = ("--engine", "reference:lie-rk4", "--co", "-q")
+    some = run_pytest(
+        *quick(*engine, "--omegadot-random", "1", "--omegadot-seed", 5), folder=folder
+    )
+    assert "omegadot::random-5-0::reference-random-5-0-equation" in some.out
+    assert "omegadot::quick::reference-quick-equation" in some.out
+    whole = run_pytest(*engine, folder=folder).out
+    assert "omegadot::random-0-23::reference-random-0-23-equation" in whole
+    assert "omegadot::sphere::reference-sphere-equation" in whole
+    refused = run_pytest(*engine, "--omegadot-random", "-1", folder=folder)
+    assert "--random -1: give a whole number" in refused.out + refused.err
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [

@@ -13,7 +13,8 @@ from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.scenarios import ScenarioError, scenario, scenario_of
 from omegadot.scenarios.pairs import covering_rows
-from omegadot.scenarios.random_systems import BLOCK, TRAITS, drawn, random_names, random_scenario
+from omegadot.scenarios.random_systems import random_names, random_scenario
+from omegadot.scenarios.random_traits import BLOCK, TRAITS, drawn
 
 SEEDS = range(6)
 

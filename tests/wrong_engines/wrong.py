@@ -175,3 +175,117 @@ class FallsAsleep(Wrong):
         w = found.state.angular_velocity.copy()
         w[np.linalg.norm(w, axis=-1) < 0.05] = 0.0
         return Trajectory(found.time, replace(found.state, angular_velocity=w))
+
+
+class DampedForgetsTorque(Wrong):
+    """Where the body is damped, applied torques are forgotten."""
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        if system.load.damping:
+            none = {"torque_body": np.zeros(3), "torque_world": np.zeros(3)}
+            system = replace(system, load=replace(system.load, **none))
+        return acceleration_of(system)
+
+
+class OneStateAlone(NoGyroscopic):
+    """Wrong where a single state is requested, and right for many at once."""
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        alone = len(states.angular_velocity) == 1
+        return super().forward_dynamics(states) if alone else acceleration_of(self.system)(states)
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        how = (self.system, acceleration_of(self.system), SCHEMES[ONE_SCHEME], "com-world")
+        return Trajectory(*step_again(*how, initial, (timestep, steps, every)))
+
+
+class FirstRunAfterLoad(Wrong):
+    """The first run after a load begins with twice the omega."""
+
+    fresh = False
+
+    def load(self, system: System) -> None:
+        super().load(system)
+        self.fresh = True
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        factor, self.fresh = 2.0 if self.fresh else 1.0, False
+        start = replace(initial, angular_velocity=factor * initial.angular_velocity)
+        return super().run(start, integrator, timestep, steps, every)
+
+
+class EveryRunAddsDamping(Wrong):
+    """Each run leaves some damping for the next ones."""
+
+    runs = 0
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        self.runs += 1
+        return super().run(initial, integrator, timestep, steps, every)
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        size = float(np.trace(system.body.inertia)) * 1e-7 * self.runs
+        return acceleration_of(
+            replace(system, load=replace(system.load, damping=system.load.damping + size))
+        )
+
+
+class ScalarMadePositive(Wrong):
+    """A start with a negative scalar part is taken for another attitude: its vector is kept."""
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        scalar = np.abs(initial.orientation[:1])
+        start = replace(initial, orientation=np.append(scalar, initial.orientation[1:]))
+        return super().run(start, integrator, timestep, steps, every)
+
+
+class KeepsGravity(Wrong):
+    """Gravity that was loaded once is never taken off again."""
+
+    gravity = np.zeros(3)
+
+    def load(self, system: System) -> None:
+        if np.any(system.load.gravity):
+            self.gravity = system.load.gravity
+        super().load(replace(system, load=replace(system.load, gravity=self.gravity)))
+
+
+class LastIntervalWhole(Wrong):
+    """The last interval between samples is taken to be as long as the others."""
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        found = super().run(initial, integrator, timestep, steps, every)
+        whole = -(-steps // every) * every
+        last = super().run(initial, integrator, timestep, whole, every).state[-1:]
+
+        def ended(values: Array, end: Array) -> Array:
+            return np.concatenate([values[:-1], end])
+
+        pairs = zip(vars(found.state).values(), vars(last).values(), strict=True)
+        return Trajectory(found.time, State(*(ended(*pair) for pair in pairs)))
+
+
+class DampingClamped(Wrong):
+    """A damping of more than 1 N m s/rad is taken for 1."""
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        least = np.minimum(system.load.damping, 1.0)
+        return acceleration_of(replace(system, load=replace(system.load, damping=least)))
+
+
+class GravityAlwaysDown(Wrong):
+    """Gravity has the size requested, and points along -z."""
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        down = np.array([0.0, 0.0, -np.linalg.norm(system.load.gravity)])
+        return acceleration_of(replace(system, load=replace(system.load, gravity=down)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -15,7 +15,7 @@ from omegadot.commands.check.select import Arguments, Selection, select
 from omegadot.commands.check.shrink import Failing, kinds_of_failure
 from omegadot.commands.check.shrink import shrink as shrink_check
 from omegadot.commands.check.suite import SEED, Suite
-from omegadot.commands.progress import Count, Reporting, reporting
+from omegadot.commands.progress import Count, Reporter, Reporting, reporting
 from omegadot.harness.arguments import adapters_named, several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, nearest
@@ -111,6 +111,7 @@ def check(
                 count.advance()
         finally:
             suite.finish()
+        failing = _shrunk(engine, selection, results, report) if shrink else []
     tally = Tally()
     for one, result in results.items():
         tally.add(one.engine, result.verdict, result.message)
@@ -121,23 +122,27 @@ def check(
         selection.drawn,
         tuple(skipped),
         tuple(suite.store()),
-        tuple(_shrunk(engine, selection, results)) if shrink else (),
+        tuple(failing),
     )
 
 
 def _shrunk(
-    engine: EngineLike, selection: Selection, results: Mapping[Check, Result]
-) -> Iterator[Failing]:
+    engine: EngineLike, selection: Selection, results: Mapping[Check, Result], report: Reporter
+) -> list[Failing]:
     """The simplest system for each kind of failure of the one engine."""
     cases = {case.name: case for case in selection.cases}
     given = engine if isinstance(engine, str) else target_of(engine)
-    for one in kinds_of_failure(results, cases):
+    kinds, found = kinds_of_failure(results, cases), []
+    count = Count(report, "shrinking what fails", len(kinds)) if kinds else None
+    for one in kinds:
         words = ["omegadot", "check", given]
         words += ["--integrator", one.integrator] if one.integrator else []
         choice = next(choice for choice in selection.choices if choice.name == one.engine)
         how = (selection.arguments.timeout, SEED, shlex.join(words))
-        if found := shrink_check(one, cases[one.scenario], choice, *how):
-            yield found
+        found.append(shrink_check(one, cases[one.scenario], choice, *how))
+        if count:
+            count.advance()
+    return [one for one in found if one is not None]
 
 
 def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Arguments) -> Arguments:

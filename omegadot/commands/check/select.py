@@ -15,7 +15,8 @@ from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, check_count
 from omegadot.scenarios import Scenario, ScenarioLike, scenario
-from omegadot.scenarios.random_systems import BLOCK, random_names
+from omegadot.scenarios.random_systems import random_names
+from omegadot.scenarios.random_traits import BLOCK
 
 
 @dataclass(frozen=True)

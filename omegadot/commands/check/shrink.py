@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 
 from omegadot.commands.check.judge import failure
 from omegadot.commands.check.result import GATES_OF_A_RUN, GATES_OF_A_SCENARIO, Check, Result
-from omegadot.commands.check.simpler import SIMPLER, Tables, ingredients, tables_of
+from omegadot.commands.check.simpler import SIMPLER
+from omegadot.commands.check.tables import Tables, ingredients, tables_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.gates.verdicts import UNDECIDED
@@ -83,7 +84,7 @@ def shrink(
     choice: the engine.  seed: of the evaluation states.  command: the words before the scenario.
     """
     chosen = replace(choice, integrators=(check.integrator,) if check.integrator else ())
-    request = RunRequest([], [chosen], seed=seed, timeout=timeout)
+    request = RunRequest([], [chosen], seed=seed, timeout=min(timeout, SECONDS))
     runner = Runner(request)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
@@ -161,4 +162,5 @@ def _search(runner: Runner, check: Check, case: Case, command: str) -> Failing |
             break
     found = scenario_of(simplest, name)
     alone = f"{command} --scenario {name}.toml"
-    return Failing(check, found, failure(last), ingredients(found), trials, finished, alone)
+    left = ingredients(found, stepped=check.gate in GATES_OF_A_RUN)
+    return Failing(check, found, failure(last), left, trials, finished, alone)

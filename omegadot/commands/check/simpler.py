@@ -8,14 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.gates.case import Case
-from omegadot.scenarios import Scenario
+from omegadot.commands.check.tables import IDENTITY, UNUSUAL, ZERO, Tables, scaled
 
-Tables = dict[str, Any]
 Simpler = Callable[[Tables], Tables]
 
-ZERO = [0.0, 0.0, 0.0]
-IDENTITY = [1.0, 0.0, 0.0, 0.0]
 LOADS = ("torque", "gravity", "damping", "pivot", "center_of_mass")
 NO_TORQUE: Tables = {"frame": "body", "value": ZERO}
 VECTORS = (
@@ -26,62 +22,24 @@ VECTORS = (
 )
 
 
-def tables_of(case: Case, name: str) -> Tables:
-    """A case as tables with every number in them, and this name."""
-    body, data = case.system.body, case.scenario.to_dict()
-    data["body"] = {
-        "mass": float(body.mass),
-        "inertia": np.asarray(body.inertia, float).tolist(),
-        "center_of_mass": np.asarray(body.center_of_mass, float).tolist(),
-        "allow_impossible_inertia": case.scenario.body.allow_impossible_inertia,
-    }
-    data.pop("source", None)
-    data.pop("shows", None)
-    return {**data, "name": name, "title": f"Shrunk from {case.name}"}
-
-
 def _with(tables: Tables, table: str, **values: Any) -> Tables:
     """The tables with other values; None takes a key out."""
     changed = {**tables[table], **values}
     return {**tables, table: {k: v for k, v in changed.items() if v is not None}}
 
 
-def scaled(tables: Tables, mass: float, size: float, time: float) -> Tables:
-    """The same motion in other units: of so many kg, m and s."""
-    body, initial, load, run = (tables[key] for key in ("body", "initial", "load", "run"))
-    inertia = mass * size**2
-
-    def over(values: Any, unit: float) -> Any:
-        return (np.asarray(values) / unit).tolist()
-
-    units = {"gravity": size / time**2, "pivot": size, "damping": inertia / time}
-    loads = {key: over(load[key], unit) for key, unit in units.items() if key in load}
-    torque = over(load["torque"]["value"], inertia / time**2)
-    places = {"position": size, "linear_velocity": size / time, "angular_velocity": 1.0 / time}
-    return {
-        **tables,
-        "body": {
-            **body,
-            "mass": body["mass"] / mass,
-            "inertia": over(body["inertia"], inertia),
-            "center_of_mass": over(body["center_of_mass"], size),
-        },
-        "initial": {
-            **initial,
-            **{k: over(initial[k], u) for k, u in places.items() if k in initial},
-        },
-        "load": {**load, **loads, "torque": {**load["torque"], "value": torque}},
-        "run": {key: over(run[key], time) for key in ("duration", "timesteps", "sample")},
-    }
-
-
 def _in_its_own_units(tables: Tables, units: str) -> Tables:
-    """A mass, a size and a rate of one, or some of the three."""
+    """A mass of one, a size and a rate of about one, or some of the three.
+
+    A size of one is that of moments 1, 2, 3 at a mass of one.
+    """
     body, rate = tables["body"], float(np.linalg.norm(tables["initial"]["angular_velocity"]))
-    size = float(np.sqrt(np.trace(body["inertia"]) / body["mass"]))
+    size = float(np.sqrt(np.trace(body["inertia"]) / body["mass"] / 6.0))
     time = 1.0 / rate if rate else tables["run"]["duration"]
     own = {"mass": body["mass"], "size": size, "time": time}
-    return scaled(tables, **{k: own[k] if k in units else 1.0 for k in own})
+    near = {"mass": 0.0, "size": UNUSUAL, "time": UNUSUAL}
+    far = {k: k in units and abs(np.log10(own[k])) > near[k] for k in own}
+    return scaled(tables, **{k: own[k] if far[k] else 1.0 for k in own})
 
 
 def _without(tables: Tables, loads: Sequence[str] = LOADS) -> Tables:
@@ -194,27 +152,3 @@ SIMPLER: tuple[Simpler, ...] = (
     *(partial(_rounded, digits=digits) for digits in (1, 2, 3)),
 )
 """In the order in which they are tried: what leaves out the most, or makes runs cheap, first."""
-
-
-def ingredients(found: Scenario) -> tuple[str, ...]:
-    """What is left in a system, besides a free body of moments 1, 2, 3 and a mass of one."""
-    body, load, start = found.body, found.load, found.initial
-    tensor = np.array(body.inertia)
-    moments, pull = np.diag(tensor), np.array(load.gravity)
-    gravity = "gravity" if pull[2] == -np.linalg.norm(pull) else "gravity that is not along -z"
-    named = {
-        f"a mass of {body.mass:g} kg": body.mass != 1.0,
-        "products of inertia": np.any(tensor != np.diag(moments)),
-        f"moments of {', '.join(f'{m:g}' for m in moments)}": moments.tolist() != [1.0, 2.0, 3.0],
-        "an offset centre of mass": any(body.center_of_mass or ()),
-        "a pivot at the origin": load.pivot is not None and not any(load.pivot),
-        "a pivot off the origin": load.pivot is not None and any(load.pivot),
-        gravity: any(load.gravity),
-        f"a damping of {load.damping:g} N m s/rad": load.damping > 0.0,
-        f"a torque in {load.torque.frame} axes": any(load.torque.value),
-        "a turned start": list(start.orientation) != IDENTITY,
-        "a start at rest": not any(start.angular_velocity),
-        "a start of several components of omega": sum(map(bool, start.angular_velocity)) > 1,
-        "a moving centre of mass": any(start.linear_velocity),
-    }
-    return tuple(name for name, holds in named.items() if holds)

@@ -17,7 +17,7 @@ def run(
         Texts,
         typer.Argument(
             metavar="[SCENARIO]...",
-            help="Built-in names or paths. Default: all built-in scenarios.",
+            help="Built-in names, random-SEED-INDEX or paths. Default: all built-in scenarios.",
         ),
     ] = None,
     engines: Annotated[

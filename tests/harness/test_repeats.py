@@ -1,0 +1,149 @@
+"""What is requested again: the answers of an engine depend on the request alone.
+
+What these tests catch: requests that a fault of one state, of the order of requests, of the sign of
+a quaternion or of the system before does not reach; a sound engine that is accused.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from omegadot.adapters.protocol import Adapter
+from omegadot.adapters.reference.adapter import ReferenceAdapter
+from omegadot.commands.faults.detect import Judgement, Nameless, judge
+from omegadot.commands.faults.prepared import Pool, Prepared
+from omegadot.gates.case import Sweep
+from omegadot.harness.repeats import OTHERS, short_sweep
+from omegadot.scenarios.random_traits import BLOCK
+
+FILE = Path(__file__).parents[1] / "wrong_engines" / "wrong.py"
+spec = importlib.util.spec_from_file_location("wrong_for_repeats", FILE)
+assert spec is not None
+assert spec.loader is not None
+wrong = importlib.util.module_from_spec(spec)
+sys.modules[spec.name] = wrong
+spec.loader.exec_module(wrong)
+
+
+@pytest.fixture(scope="module")
+def pool() -> Pool:
+    return Pool(11)
+
+
+@pytest.fixture(scope="module")
+def prepared(pool: Pool) -> Prepared:
+    needs = {"asymmetric", "free", "scalar-negative", "coarse"}
+    return pool.prepare(pool.having(needs, 1)[0])
+
+
+def judged(pool: Pool, prepared: Prepared, adapter: Adapter) -> Judgement:
+    return judge(pool, prepared, "own", adapter, adapter.description.integrators)
+
+
+def failed(found: Judgement) -> set[str]:
+    return {row.metric for row in found.rows if row.verdict == "fail"}
+
+
+@pytest.mark.parametrize(
+    ("name", "metrics"),
+    [
+        ("OneStateAlone", {"residual_alone"}),
+        ("FirstRunAfterLoad", {"reloaded"}),
+        ("ScalarMadePositive", {"negated", "start"}),
+        ("EveryRunAddsDamping", {"repeated", "negated", "reloaded"}),
+    ],
+)
+def test_each_fault_is_seen_by_its_request(
+    name: str, metrics: set[str], pool: Pool, prepared: Prepared
+) -> None:
+    found = judged(pool, prepared, getattr(wrong, name)())
+    assert metrics <= failed(found)
+    if name in ("OneStateAlone", "FirstRunAfterLoad"):  # nothing else shows it
+        assert failed(found) == metrics
+
+
+@pytest.mark.parametrize(
+    ("name", "feature", "gate"),
+    [
+        ("LastIntervalWhole", "short-interval", "trajectory"),
+        ("DampingClamped", "damping-above-1", "equation"),
+        ("GravityAlwaysDown", "gravity-not-down", "equation"),
+        ("DampedForgetsTorque", "torque", "equation"),
+    ],
+)
+def test_what_random_systems_have_in_them_shows_the_fault(
+    name: str, feature: str, gate: str, pool: Pool
+) -> None:
+    number = pool.having({feature, "damping", "asymmetric"}, 1)[0]
+    assert number < BLOCK
+    assert gate in judged(pool, pool.prepare(number), getattr(wrong, name)()).failed
+
+
+def test_what_is_left_of_another_system_is_seen_without_one_before(pool: Pool) -> None:
+    prepared = pool.prepare(next(n for n in range(BLOCK) if "gravity" not in pool._draw(n)[1]))
+    found = judged(pool, prepared, wrong.KeepsGravity())
+    assert "residual_reloaded" in failed(found)
+    assert "residual" not in failed(found)
+
+
+def test_a_sound_engine_gives_the_same_to_the_bit(pool: Pool, prepared: Prepared) -> None:
+    found = judged(pool, prepared, ReferenceAdapter())
+    rows = [row for row in found.rows if row.metric in ("repeated", "negated", "reloaded")]
+    assert {row.verdict for row in rows} == {"pass"}
+    assert {row.value for row in rows if row.metric != "negated"} == {0.0}
+    schemes = len(ReferenceAdapter().description.integrators)
+    assert len(rows) == 3 * schemes
+
+
+def test_an_unknown_scheme_may_have_two_points_for_an_attitude(
+    pool: Pool, prepared: Prepared
+) -> None:
+    found = judged(pool, prepared, Nameless(wrong.Sound()))
+    rows = [row for row in found.rows if row.metric in ("repeated", "negated", "reloaded")]
+    assert {(row.metric, row.verdict) for row in rows} == {
+        ("repeated", "pass"),
+        ("reloaded", "pass"),
+    }
+
+
+def test_a_run_that_fails_the_second_time_is_reported(pool: Pool, prepared: Prepared) -> None:
+    class Once(wrong.Sound):  # type: ignore[misc, name-defined]
+        seen = 0
+
+        def run(self, *arguments: object) -> object:
+            self.seen += 1
+            if self.seen > 2 * len(prepared.case.sweeps):
+                raise ValueError("worn out")
+            return super().run(*arguments)
+
+    notes = {row.note for row in judged(pool, prepared, Once()).rows if row.metric == "repeated"}
+    assert notes == {"the same run, requested again, fails: ValueError: worn out"}
+
+
+def test_a_short_run_has_the_samples_of_the_long_one() -> None:
+    for sweep in (Sweep(0.1, 100, 3), Sweep(0.1, 5, 3), Sweep(0.1, 40, 20), Sweep(0.1, 8, 1)):
+        short = short_sweep(sweep)
+        count = len(short.times)
+        assert count > 1
+        assert np.array_equal(short.times, sweep.times[:count])
+    assert short_sweep(Sweep(0.1, 100, 3)).steps == 9
+
+
+def test_the_other_systems_have_every_load() -> None:
+    for other in OTHERS:
+        load = other.system.load
+        parts = (load.gravity, load.damping, load.torque_body + load.torque_world)
+        assert all(np.any(part) for part in parts)
+    assert [other.system.load.pivot is None for other in OTHERS] == [False, True]
+
+
+def test_states_that_are_the_same_attitude_are_the_same_start(prepared: Prepared) -> None:
+    start = prepared.case.initial
+    other = replace(start, orientation=-start.orientation)
+    assert prepared.truth.yardstick.distance("attitude", start[None], other[None]) == 0.0
