@@ -91,22 +91,35 @@ def stages(
     case, at = prepared.case, prepared.evaluation_states
     driver = driver_of(name, adapter, integrators or chosen_integrators(adapter))
     result = driver.evaluate_equations(case, at)
-    with np.errstate(all="ignore"):  # a wrong engine may give any numbers
-        yield _stage(shared_rows(case, at, result), result, ())
-        for integrator in result.integrators:
-            own = replace(result, integrators=(integrator,))
-            for sweep in case.sweeps:
-                answer = driver.run(case, integrator.name, sweep)
-                own.runs[integrator.name, sweep.timestep] = answer
-            pool.step_companions(prepared, own.integrators, case.sweeps)
-            runs = [] if whole else judge_case(prepared.truth, case, own, {})
-            if not _any_fails(runs):
-                probe_steps(driver, case, at, own)
-                request_again(driver, case, at, own)
-                runs = _judged(pool, prepared, driver, own)
-            rows = shared_rows(case, at, CaseResult(reloaded=own.reloaded))
-            rows += [row for run in runs for row in run.rows]
-            yield _stage(rows, own, tuple(runs))
+    yield _stage(_shared_rows(prepared, result), result, ())
+    for integrator in result.integrators:
+        own = replace(result, integrators=(integrator,))
+        runs = _runs(pool, prepared, driver, own, whole)
+        rows = _shared_rows(prepared, CaseResult(reloaded=own.reloaded))
+        yield _stage([*rows, *(row for run in runs for row in run.rows)], own, tuple(runs))
+
+
+@np.errstate(all="ignore")  # a wrong engine may give any numbers
+def _shared_rows(prepared: Prepared, result: CaseResult) -> list[Row]:
+    return shared_rows(prepared.case, prepared.evaluation_states, result)
+
+
+@np.errstate(all="ignore")
+def _runs(
+    pool: Pool, prepared: Prepared, driver: Driver, own: CaseResult, whole: bool
+) -> list[JudgedRun]:
+    """One integrator's runs, judged."""
+    case, at, (integrator,) = prepared.case, prepared.evaluation_states, own.integrators
+    for sweep in case.sweeps:
+        own.runs[integrator.name, sweep.timestep] = driver.run(case, integrator.name, sweep)
+    pool.step_companions(prepared, own.integrators, case.sweeps)
+    if not whole:
+        runs = judge_case(prepared.truth, case, own, {})
+        if _any_fails(runs):
+            return runs
+    probe_steps(driver, case, at, own)
+    request_again(driver, case, at, own)
+    return _judged(pool, prepared, driver, own)
 
 
 def _judged(pool: Pool, prepared: Prepared, driver: Driver, own: CaseResult) -> list[JudgedRun]:

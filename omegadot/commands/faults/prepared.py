@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import islice
 
+import numpy as np
+
 from omegadot.adapters.exact.adapter import ExactAdapter
 from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.reference.adapter import ReferenceAdapter
@@ -57,7 +59,8 @@ class Pool:
 
     def _solved(self, case: Case) -> Prepared:
         """Raises RuntimeError where it has no exact trajectory."""
-        truth = case_truth(self._exact, case)
+        with np.errstate(all="ignore"):  # growth may overflow, and is infinite then
+            truth = case_truth(self._exact, case)
         if isinstance(truth, str):
             raise RuntimeError(f"{case.name}: {truth}")
         return Prepared(case, truth, evaluation_states_of(case, truth, self.seed))

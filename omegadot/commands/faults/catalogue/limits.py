@@ -21,6 +21,7 @@ from omegadot.reference_impl.rotations import rotation_between, turn_in_body
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
 ARMATURE = 1e-3  # kg m^2
+MOST_TURN = 0.12  # rad
 LEAST_TORQUE = -0.25  # N m, of a component
 Enter = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -64,10 +65,9 @@ for speed in (100, 300):
     sentence = f"The speed is held below {speed} m/s."
     sized(held, f"SpeedHeldBelow{speed}", sentence, speed_below(speed))
 
-for most, named in ((0.12, "TurnHeld"), (np.pi / 4, "TurnHeldToAnEighth")):
-    turn = step_end("scheme", f"turn-above-{most:.2f}", named=("turn", "attitude"))
-    sentence = f"The attitude turns by {most:.2f} rad in a step at most."
-    sized(turn, named, sentence, turned_within(most))
+turn = step_end("scheme", f"turn-above-{MOST_TURN:.2f}", named=("turn", "attitude"))
+sentence = f"The attitude turns by {MOST_TURN:.2f} rad in a step at most."
+sized(turn, "TurnHeld", sentence, turned_within(MOST_TURN))
 
 
 @other_load("damping-above-1", named="damping")
