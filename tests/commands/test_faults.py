@@ -53,10 +53,10 @@ def pool() -> Pool:
 
 def systems_for(pool: Pool, fault: Fault, count: int) -> list[Prepared]:
     """Systems that have what the fault needs, those with few steps first."""
-    numbers = pool.having(fault.needs - {"order-4"}, 4 * count)
-    found = sorted(map(pool.prepare, numbers), key=lambda one: one.case.sweeps[-1].steps)
-    assert found, fault.needs
-    return found[:count]
+    numbers = pool.having(fault.needs - {"order-4"}, 2 * count)
+    assert numbers, fault.needs
+    numbers.sort(key=lambda number: pool.drawn(number).sweeps[-1].steps)
+    return [pool.prepare(number) for number in numbers[:count]]
 
 
 def faulty(pool: Pool, fault: Fault, engine: str) -> Adapter:

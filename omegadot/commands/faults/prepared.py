@@ -85,6 +85,10 @@ class Pool:
             self._built_in = [self._solved(case_of(one, ())) for one in scenarios_of(())]
         return self._built_in
 
+    def drawn(self, index: int) -> Case:
+        """The case of this number."""
+        return self._draw(index)[0]
+
     def having(self, needs: Iterable[str], count: int) -> list[int]:
         """The numbers of the first `count` cases with all of these features."""
         wanted, tried = frozenset(needs), range(MOST_DRAWN * count)
