@@ -9,7 +9,7 @@ import numpy as np
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.motion import AccelerationOf
-from omegadot.reference_impl.schemes import Scheme
+from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
@@ -37,9 +37,13 @@ def step_again(
     coordinates: Coordinates,
     initial: State,
     plan: tuple[float, int, int],
+    known: Motion | None = None,
 ) -> tuple[Array, State]:
-    """Times and states of a scheme over any acceleration. plan: the step in s, steps, every."""
-    over = motion_over(system, coordinates, acceleration)
+    """Times and states of a scheme over any acceleration. plan: the step in s, steps, every.
+
+    known: the motion of this acceleration, where there is one that is quicker.
+    """
+    over = known or motion_over(system, coordinates, acceleration)
 
     def at_unit(q: Array, v: Array) -> Array:  # a wrong step may leave q too long
         return over.acceleration(over.normalize(q), v)

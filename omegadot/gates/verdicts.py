@@ -121,5 +121,7 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
     if evidence.excess > 1.0:
         times = f"{evidence.excess:.1e} times what the errors at finer steps let it be"
         note = f"at this step the error is {times}"
-        return Finding("unexplained" if evidence.settled else "unsettled", note)
+        if evidence.settled:
+            return Finding("unexplained", note)
+        return Finding("unsettled", f"{UNSETTLED}: {note}")
     return Finding("consistent", f"consistent: {text}")

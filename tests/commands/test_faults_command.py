@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +12,14 @@ from command_line import omegadot
 
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.catalogue import FAULTS
-from omegadot.commands.faults.detect import GATES
+from omegadot.commands.faults.fault import Spoiled
 from omegadot.commands.faults.faults import FaultsResult
-from omegadot.commands.faults.matrix import EngineMatrix, detection
+from omegadot.commands.faults.matrix import SOUND, EngineMatrix, detection
 from omegadot.commands.faults.prepared import Pool
-from omegadot.commands.faults.print_faults import markdown, share
+from omegadot.commands.faults.print_faults import HEADS, markdown, share
 from omegadot.commands.faults.published import Published
 from omegadot.commands.faults.published_checks import PUBLISHED
+from omegadot.scenarios import builtin_names
 
 CHECKS = {check.name: check for check in PUBLISHED}
 
@@ -54,28 +56,62 @@ def test_published_checks_have_the_strengths_and_the_holes_of_their_bounds() -> 
 
 
 def test_a_row_of_the_matrix() -> None:
-    row = detection(FAULTS["GravityReversed"], "reference", Pool(3), 2)
-    assert (row.judged, row.broken, row.any, row.named) == (2, 0, 1.0, 1.0)
-    assert row.gates["equation"] == 1.0
+    pool = Pool(2)
+    row = detection(FAULTS["GravityReversed"], "reference", pool, 5)
+    under_gravity = [bool(np.any(one.case.system.load.gravity)) for one in pool.first(5)]
+    assert (row.judged, row.broken) == (5, 0)
+    assert 0 < sum(under_gravity) < 5
+    assert row.any == row.gates["equation"] == row.no_scheme == sum(under_gravity) / 5
+    assert row.at_default == 1.0 - (1.0 - row.any) ** 24
     assert row.gates["model"] == 0.0
-    assert row.no_scheme == 1.0
+    assert row.named == 1.0
+    assert row.built_in == "free-bar"
+    assert row.caught
     assert row.published["Drake"] == 1.0
     assert row.published["MuJoCo"] is None
 
 
+def test_a_fault_that_nothing_shows_is_missed() -> None:
+    fault = replace(FAULTS["MassSlightlyOff"], name="Sound", wrap=Spoiled)
+    row = detection(fault, "reference", Pool(2), 2, published=False)
+    assert (row.built_in, row.any, row.no_scheme, row.named) == ("", 0.0, 0.0, None)
+    assert not row.caught
+    missing = EngineMatrix("reference", "1", (), 2, (), (), (), (), (row,), 0.0)
+    assert FaultsResult(2, 3, (missing,)).unseen == ("reference: Sound",)
+    assert not FaultsResult(2, 3, (missing,)).passed
+
+
+def test_what_is_stepped_by_the_reference_is_tried_elsewhere_where_it_shows() -> None:
+    """A body that is damped in the steps alone: over another engine on the same systems."""
+    pool, fault = Pool(2), FAULTS["OmegaHeldBelow25"]
+    over = [detection(fault, engine, pool, 5, published=False) for engine in ("reference", "dart")]
+    assert over[0].any == over[1].any
+    assert 0.0 < over[0].any < 1.0
+    assert over[0].gates["scheme"] == over[1].gates["scheme"] == over[0].any
+
+
 def test_the_page_has_a_line_for_every_fault_and_states_how_it_was_made() -> None:
     row = detection(FAULTS["MassSlightlyOff"], "reference", Pool(3), 1)
-    matrix = EngineMatrix("reference", "1", ("rk4-quaternion",), 2, 0, 0, ("Left",), (), (row,))
-    page = markdown(FaultsResult(1, 3, (matrix,)))
-    command = "omegadot faults --engine reference --bodies 1 --seed 3 --format markdown"
+    matrix = EngineMatrix(
+        "reference", "1", ("rk4-quaternion",), 2, (), (), ("Left",), (), (row,), 2.6
+    )
+    result = FaultsResult(1, 3, (matrix,))
+    assert result.passed
+    page = markdown(result)
+    command = "omegadot faults --engine reference --random 1 --seed 3 --format markdown"
     assert command in page.splitlines()[2:6][0] + page.splitlines()[3]
-    line = next(text for text in page.splitlines() if text.startswith("| MassSlightlyOff | 100"))
-    assert line.count("|") == len(GATES) + len(PUBLISHED) + 5
-    assert "1 faults, of which 1 were caught on every body" in page
+    line = next(text for text in page.splitlines() if text.startswith("| MassSlightlyOff | yes"))
+    assert line.count("|") == len(HEADS) + len(PUBLISHED) + 1
+    assert "1 faults, of which 1 are caught (100 %)" in page
+    assert "This took 3 min of processor time" in page
     assert "Left" in page
     for check in PUBLISHED:
         assert check.source in page
-    assert share(None) == "–"
+
+
+def test_shares_are_never_rounded_to_all_or_nothing() -> None:
+    shares = (None, 0.0, 0.001, 0.5, 0.9951, 0.99999, 1.0)
+    assert list(map(share, shares)) == ["–", "0", "<1", "50", ">99", ">99.9", "100"]
 
 
 def test_the_kept_page_is_of_all_the_faults() -> None:
@@ -100,16 +136,22 @@ def test_the_command_prints_the_matrix(
 
     few = [FAULTS[name] for name in ("MassSlightlyOff", "GyroscopicDropped", "AttitudeOfOrderTwo")]
     monkeypatch.setattr(matrix, "ORDERED", few)
-    found = faults("dart", bodies=1)
+    found = faults("dart", random=2)
     assert found.passed
     print_faults(found, form)
     out = capfd.readouterr().out
     if form == "json":
-        engine = json.loads(out)["engines"][0]
+        data = json.loads(out)
+        (engine,) = data["engines"]
+        assert (data["random"], data["seed"]) == (2, 0)
+        assert data["minutes"] == engine["minutes"] > 0.0
         assert [row["name"] for row in engine["faults"]] == ["MassSlightlyOff", "GyroscopicDropped"]
         assert engine["skipped"] == ["AttitudeOfOrderTwo"]
-        assert (engine["sound"], engine["accused"], engine["accused_nameless"]) == (2, 0, 0)
-        assert engine["faults"][1]["gates"]["equation"] == 1.0
+        assert engine["accused"] == engine["accused_nameless"] == []
+        assert engine["sound"] == SOUND * 2 + len(builtin_names())
+        row = engine["faults"][1]
+        assert (row["caught"], row["built_in"]) == (True, "damped-tumble")
+        assert row["at_24"] == 1.0 - (1.0 - row["any"]) ** 24
     else:
-        assert "2 faults, of which 2 were caught on every body" in out
+        assert "2 faults, of which 2 are caught (100 %)" in out
         assert "AttitudeOfOrderTwo" in out

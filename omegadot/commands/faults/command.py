@@ -14,24 +14,24 @@ def faults(
         list[str] | None,
         typer.Option(metavar="NAME", help="A built-in engine; repeatable. Default: reference."),
     ] = None,
-    bodies: Annotated[
-        int, typer.Option(metavar="N", min=1, help="Number of random bodies for each fault.")
-    ] = 5,
+    random: Annotated[
+        int, typer.Option(metavar="N", min=1, help="Number of random systems for each fault.")
+    ] = 24,
     seed: Annotated[
-        int, typer.Option(metavar="INTEGER", min=0, help="Seed of the random bodies.")
+        int, typer.Option(metavar="INTEGER", min=0, help="Seed of the random systems.")
     ] = 0,
     output: Annotated[
         PageFormat, typer.Option("--format", help="Output format.")
     ] = PageFormat.text,
 ) -> None:
-    """Inject known faults into sound engines and show which gate catches each, and how often.
+    """Inject known faults into sound engines and show how likely a plain check catches each.
 
-    Exit codes: 0 every fault is caught on every body and no sound engine is accused, 1
-    otherwise, 2 wrong usage.
+    Exit codes: 0 every fault is caught and no sound engine is accused, 1 otherwise, 2 wrong
+    usage.
     """
     from omegadot.commands.faults.faults import faults as find_faults
     from omegadot.commands.faults.print_faults import print_faults
 
-    found = find_faults(engine or [], bodies=bodies, seed=seed, progress=on_a_terminal())
+    found = find_faults(engine or [], random=random, seed=seed, progress=on_a_terminal())
     print_faults(found, output.value)
     raise typer.Exit(0 if found.passed else 1)

@@ -88,6 +88,13 @@ class Spoiled:
         return self.logged(found)
 
 
+class OtherSystem(Spoiled):
+    """The engine is given another system than is requested, by `loaded`; all else is sound.
+
+    What it is given depends on the system requested alone.
+    """
+
+
 @dataclass(frozen=True)
 class Fault:
     """One fault.
@@ -155,6 +162,7 @@ def fault_by(
     def enter(function: Function) -> Function:
         bound = "self" in signature(function).parameters
         own = {method: function if bound else staticmethod(function), "__doc__": function.__doc__}
+        own["__module__"] = function.__module__
         fault(kind, gates, needs, named=named)(type(function.__name__, (base,), own))
         return function
 

@@ -13,10 +13,10 @@ from rich.table import Table
 
 from omegadot.commands.faults.detect import GATES
 from omegadot.commands.faults.faults import FaultsResult
-from omegadot.commands.faults.matrix import Detection, EngineMatrix
+from omegadot.commands.faults.matrix import POSES, SOUND, Detection, EngineMatrix, of_several
 from omegadot.commands.faults.published_checks import PUBLISHED
 
-HEADS = ("fault", *GATES, "any gate", "cause named", "no scheme", *(c.name for c in PUBLISHED))
+HEADS = ("fault", "built-in", *GATES, "one system", "24 systems", "no scheme", "cause named")
 WIDTH_WHEN_PIPED = 200
 
 
@@ -33,9 +33,9 @@ def print_faults(found: FaultsResult, form: str) -> None:
 def _print_text(matrices: Sequence[EngineMatrix]) -> None:
     console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
     for matrix in matrices:
-        title = f"Per cent of the bodies on which each fault over {matrix.engine} is caught"
+        title = f"Per cent of the random systems on which each fault over {matrix.engine} is caught"
         table = Table(title=title, title_justify="left", title_style="bold", box=None)
-        for number, head in enumerate(HEADS):
+        for number, head in enumerate(heads_of(matrix)):
             table.add_column(head, justify="right" if number else "left", overflow="fold")
         for row in matrix.rows:
             table.add_row(*line_of(row))
@@ -45,42 +45,61 @@ def _print_text(matrices: Sequence[EngineMatrix]) -> None:
         console.print()
 
 
+def heads_of(matrix: EngineMatrix) -> tuple[str, ...]:
+    """The heads of one engine's table."""
+    checks = matrix.rows[0].published if matrix.rows else ()
+    return (*HEADS, *checks)
+
+
 def share(value: float | None) -> str:
-    """A share in per cent; a dash where there is none to report."""
-    return "–" if value is None else f"{100 * value:.0f}"
+    """A share in per cent, never rounded to all or nothing; a dash where there is none."""
+    if value is None:
+        return "–"
+    text = f"{100 * value:.0f}"
+    if text == "100" and value < 1.0:
+        return ">99" if 100 * value < 99.95 else ">99.9"
+    return "<1" if text == "0" and value > 0.0 else text
 
 
 def line_of(row: Detection) -> tuple[str, ...]:
     """One fault's line."""
-    shares = (*row.gates.values(), row.any, row.named, row.no_scheme, *row.published.values())
-    return (row.fault.name, *map(share, shares))
+    found = (*row.gates.values(), row.any, row.at_default, of_several(row.no_scheme), row.named)
+    shares = (*found, *row.published.values())
+    return (row.fault.name, "yes" if row.built_in else "no", *map(share, shares))
 
 
 def summary_of(matrix: EngineMatrix) -> list[str]:
     """The table in sentences, one a line."""
     rows = matrix.rows
-    unseen = [row.fault.name for row in rows if row.judged and row.no_scheme < 1.0]
-    named = sum(row.judged > 0 and row.named == 1.0 for row in rows)
-    integrators = " and ".join(matrix.integrators)
+    built_in = sum(bool(row.built_in) for row in rows)
+    named = [row for row in rows if row.named is not None]
     lines = [
-        f"{matrix.engine} {matrix.version}, {integrators}: {len(rows)} faults, of which "
-        f"{_caught(matrix, matrix.missed)}",
-        f"The cause was named on every body for {named} of them.",
-        f"Without a declared scheme, {_caught(matrix, unseen)}",
-        f"Without a fault, {matrix.accused} of {matrix.sound} bodies were accused, and without a "
-        f"declared scheme {matrix.accused_nameless}.",
+        f"{matrix.engine} {matrix.version}, {' and '.join(matrix.integrators)}: {len(rows)} "
+        f"faults, of which {_caught(rows, [row for row in rows if row.caught])}",
+        f"On the built-in scenarios alone, {built_in} are caught.",
+        f"Without a declared scheme, "
+        f"{_caught(rows, [row for row in rows if row.caught_without_scheme])}",
+        f"The cause was named on every system diagnosed for "
+        f"{sum(row.named == 1.0 for row in named)} of {len(named)}.",
+        f"Without a fault, {len(matrix.accused)} of {matrix.sound} systems and scenarios were "
+        f"accused, and without a declared scheme {len(matrix.accused_nameless)}.",
+        f"This took {matrix.minutes:.0f} min of processor time.",
     ]
     more = {
+        "Accused without a fault": (*matrix.accused, *matrix.accused_nameless),
         "Not tried, since no integrator is suitable": matrix.skipped,
-        "On some bodies the engine gave no answer": [r.fault.name for r in rows if r.broken],
+        "On some systems the engine gave no answer": [r.fault.name for r in rows if r.broken],
         "Accused without a fault by": matrix.published_accuse,
     }
     return lines + [f"{what}: {', '.join(names)}." for what, names in more.items() if names]
 
 
-def _caught(matrix: EngineMatrix, missed: list[str]) -> str:
-    more = f"; not always: {', '.join(missed)}." if missed else "."
-    return f"{len(matrix.rows) - len(missed)} were caught on every body{more}"
+def _caught(rows: Sequence[Detection], caught: Sequence[Detection]) -> str:
+    """How many, and the names of the others."""
+    missed = [row.fault.name for row in rows if row not in caught]
+    share = 100 * len(caught) / max(1, len(rows))
+    more = f"; missed: {', '.join(missed)}." if missed else "."
+    return f"{len(caught)} are caught ({share:.3g} %){more}"
 
 
 def plain(found: FaultsResult) -> dict[str, Any]:
@@ -90,19 +109,25 @@ def plain(found: FaultsResult) -> dict[str, Any]:
     for matrix in found.matrices:
         kept = {k: v for k, v in vars(matrix).items() if k != "rows"}
         engines.append({**kept, "faults": [_plain_row(row) for row in matrix.rows]})
-    drawn = {"bodies": found.bodies, "seed": found.seed}
+    drawn = {"random": found.random, "seed": found.seed, "minutes": found.minutes}
     return {**drawn, "published": checks, "engines": engines}
 
 
 def _plain_row(row: Detection) -> dict[str, Any]:
     fault = row.fault
     columns = {k: v for k, v in vars(row).items() if k != "fault"}
+    found = {
+        "caught": row.caught,
+        "at_24": row.at_default,
+        "at_24_no_scheme": of_several(row.no_scheme),
+    }
     return {
         "name": fault.name,
         "sentence": fault.sentence,
         "kind": fault.kind,
         "needs": sorted(fault.needs),
         "expected": list(fault.gates),
+        **found,
         **columns,
     }
 
@@ -115,38 +140,55 @@ HEAD = """\
 
 This page is the output of `{command}`.
 
-**How to read it.** Each fault is injected into a sound engine, and the gates judge the engine on
-{bodies} random bodies on which the fault can show. Masses and rates range over two decades, sizes
-over one. The tensors are in any axes, the centres of mass at the origin or off it, the bodies free,
-driven, damped or pivoted. A number is the percentage of these bodies on which a gate fails. *Any
-gate* is the detection rate; runs that need a finer step to be decided do not count. *Cause named*
-is the percentage on which `omegadot` names the true cause. *No scheme* is *any gate* for the same
-engine with integrators that declare their orders only, so that no run of the reference is compared
-with them. A fault that gives another scheme of the same order is no fault then
-(`PositionByFirstVelocity` in an engine of order 1). Each engine runs with one integrator of order 1
-and, where it has one, one of order 4.
+**How to read it.** Each fault is injected into a sound engine, and the engine is put through
+what `omegadot check` puts an engine through: the built-in scenarios, and the first {random} of the
+random systems that `check` draws with `--seed {seed}`. A system need not have what a fault needs to
+show: most faults show on some systems only.
 
-**The published checks** in the last columns are tests that engines ship with. They are applied to
-the same faulty engines unchanged: the same body, rates, step, length and bounds, from {bodies}
-random attitudes. A dash means that the check's scenarios, or the engine's integrators, lack what
-the fault needs, or that the sound engine fails the check itself. The figures of Drake's check are
-from its repository (`free_body.h`, in the folder of the test, gives the moments). Its integrator is
-of order 3 with error control and starts from one attitude; here an integrator of order 4 takes its
-largest step.
+- *Built-in*: whether a built-in scenario catches the fault. Faults that are stepped by the
+  reference's schemes are tried on these over the reference alone: its dynamics are those of every
+  sound engine to rounding.
+- The five gates: the percentage of the random systems on which this gate is the first to fail,
+  alone or with others. An engine is examined in the order model and equation, then one integrator
+  after another, and no further than the first failure.
+- *One system*: the percentage of the random systems on which any gate fails. It estimates the
+  probability p that one random system catches the fault.
+- *24 systems*: ``1 - (1 - p)^24`` in per cent, the probability that the 24 random systems of a
+  plain `check` catch it. `check` draws its systems so that every pair of features occurs, so that
+  it is higher for a fault that needs two rare features.
+- *No scheme*: the same for the engine with integrators that declare their orders only, so that no
+  run of the reference is compared with them. A fault that gives another scheme of the same order
+  is no fault then.
+- *Cause named*: the percentage on which `omegadot` names the true cause, of up to two systems that
+  catch the fault.
+
+Each engine runs with one integrator of order 1 and, where it has one, one of order 4; `check` runs
+all. Without a fault, the gates judge each engine on {sound} random systems and on the built-in
+scenarios. A fault is caught if a built-in scenario or one of the {random} systems catches it.
+
+**The published checks** in the last columns of the first table are tests that engines ship with.
+They are applied to the same faulty engines unchanged: the same body, rates, step, length and
+bounds, from {poses} random attitudes. A dash means that the check's scenarios, or the engine's
+integrators, lack what the fault needs, or that the sound engine fails the check itself. The figures
+of Drake's check are from its repository (`free_body.h`, in the folder of the test, gives the
+moments). Its integrator is of order 3 with error control and starts from one attitude; here an
+integrator of order 4 takes its largest step.
 """
 
 
 def markdown(found: FaultsResult) -> str:
     """The page."""
     named = " ".join(f"--engine {matrix.engine}" for matrix in found.matrices)
-    drawn = f"--bodies {found.bodies} --seed {found.seed}"
+    drawn = f"--random {found.random} --seed {found.seed}"
     command = f"omegadot faults {named} {drawn} --format markdown"
-    parts = [HEAD.format(command=command, bodies=found.bodies)]
+    counts = {"random": found.random, "seed": found.seed, "sound": SOUND * found.random}
+    parts = [HEAD.format(command=command, poses=POSES, **counts)]
     parts.append("\n".join(f"- **{c.name}**: {c.bound} (`{c.source}`)." for c in PUBLISHED) + "\n")
     for matrix in found.matrices:
         parts.append(f"## Over {matrix.engine}\n")
         parts.append("\n".join(summary_of(matrix)) + "\n")
-        lines = [HEADS, ("---", *("---:",) * (len(HEADS) - 1)), *map(line_of, matrix.rows)]
+        heads = heads_of(matrix)
+        lines = [heads, ("---", *("---:",) * (len(heads) - 1)), *map(line_of, matrix.rows)]
         parts.append("\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n")
     parts.append("## The faults\n")
     faults = {row.fault.name: row.fault for matrix in found.matrices for row in matrix.rows}

@@ -6,9 +6,10 @@ from omegadot.adapters.protocol import Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.fault import Spoiled
 from omegadot.diagnosis.restep import on_rows, step_again
+from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.motion import AccelerationOf, acceleration_of
-from omegadot.reference_impl.schemes import SCHEMES, Scheme
+from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.system import Acceleration, State
 
 
@@ -45,11 +46,23 @@ class Restepped(Spoiled):
         scheme = self.scheme(SCHEMES[declared.scheme or "semi-implicit-euler"])
         how = (self.loaded(self.system), self.acceleration(), scheme, self.coordinates)
         plan = (timestep, steps, every)
-        return self.logged(Trajectory(*step_again(*how, self.into(initial), plan)))
+        return self.logged(Trajectory(*step_again(*how, self.into(initial), plan, self._motion())))
+
+    def _motion(self) -> Motion | None:
+        """The reference's own motion, which is quicker, where the dynamics are the reference's."""
+        own = type(self).acceleration is Restepped.acceleration
+        if not own or not isinstance(self.inner, ReferenceAdapter):
+            return None
+        return body_motion(self.inner.system, self.coordinates)
 
 
 class Accelerated(Restepped):
-    """A fault in the dynamics: both what is reported of the acceleration and what is stepped."""
+    """A fault in the dynamics: both what is reported of the acceleration and what is stepped.
+
+    is_in_dynamics: whether what is reported of the acceleration shows it.
+    """
+
+    is_in_dynamics = True
 
     def changed(self, state: State, sound: Acceleration) -> Acceleration:
         """The wrong acceleration in place of a sound one."""

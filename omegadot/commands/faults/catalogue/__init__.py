@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from omegadot.commands.faults.catalogue import (  # noqa: F401  (importing them enters their faults)
+    branches,
+    coarse,
     convention,
     equation,
     intermittent,
+    limits,
     load,
     logging,
     model,
+    occasional,
+    pivots,
+    precision,
     reporting,
+    solving,
+    start,
     stepping,
 )
 from omegadot.commands.faults.fault import FAULTS

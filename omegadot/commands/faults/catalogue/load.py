@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from omegadot.commands.faults.fault import Spoiled, fault_by
+from omegadot.commands.faults.fault import OtherSystem, fault_by
 from omegadot.commands.faults.restepped import Accelerated
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
@@ -19,7 +19,7 @@ from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 
 
-class OtherLoad(Spoiled):
+class OtherLoad(OtherSystem):
     """The engine is given the load that `other` makes of the one requested."""
 
     other: Callable[[Load], Load]

@@ -61,7 +61,7 @@ def LastStepMissing(run: Run, initial: State, h: float, steps: int, every: int) 
     return Trajectory(found.time, State(*(np.vstack([a[:-1], b[-1:]]) for a, b in old)))
 
 
-@other_run("logging", "scheme", named="logged one step late")
+@other_run("logging", "scheme", named=("logged one step late", "logged one sample late"))
 def LogsOneStepLate(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """Every sample after the first is the state one step before."""
     found = run(initial, h, steps, 1)

@@ -8,14 +8,14 @@ from functools import partial
 
 import numpy as np
 
-from omegadot.commands.faults.fault import Spoiled, fault_by
+from omegadot.commands.faults.fault import OtherSystem, fault_by
 from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Body, System
 
 NEXT_AXIS = np.array([1, 2, 0])
 
 
-class OtherBody(Spoiled):
+class OtherBody(OtherSystem):
     """The engine is given the body that `body` makes of the one requested."""
 
     body: Callable[[Body], Body]

@@ -13,7 +13,7 @@ from omegadot.commands.faults.fault import Spoiled, fault, logged
 from omegadot.diagnosis import step_ends
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.rotations import normalize, turn_in_body
-from omegadot.reference_impl.system import Acceleration, Array, State
+from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 JITTER = 1e-9  # of omega
 DRIFT = 1e-9  # of the clock
@@ -99,6 +99,11 @@ class OmegaDotOfTheSampleBefore(Spoiled):
     """The omega-dot reported along a run is that of the sample before; it is right when queried."""
 
     running = False
+
+    def load(self, system: System) -> None:
+        """No run of this system yet."""
+        self.running = False
+        super().load(system)
 
     def logged(self, trajectory: Trajectory) -> Trajectory:
         """What is queried next is of this run."""

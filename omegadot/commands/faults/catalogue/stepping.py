@@ -30,6 +30,8 @@ SECRET_DAMPING = 1e-4  # N m s/rad
 class SecretTorque(ExtraTorque):
     """A torque that acts in the steps alone."""
 
+    is_in_dynamics = False
+
     def forward_dynamics(self, states: State) -> Acceleration:
         """Sound when queried."""
         return self.inner.forward_dynamics(states)

@@ -1,0 +1,107 @@
+"""What a case has in it for a fault to show, beyond what `harness.random_cases` names."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.gates.case import Case
+from omegadot.gates.scales import norm
+from omegadot.harness.random_cases import features_of as common_features
+from omegadot.reference_impl.inertia import lever, moving_inertia
+from omegadot.reference_impl.symmetric import apply
+from omegadot.reference_impl.system import Array, System
+
+HEAVY, LIGHT = 100.0, 0.01  # kg
+SMALL_INERTIA = 1e-3  # kg m^2
+LONG_STEP = 0.015  # s
+DROWSY = 5e-5  # J/kg, PhysX's default, below which a body may be put to sleep
+RATES, SPEEDS = (7, 25, 47, 100), (100, 300)  # rad/s, m/s
+TURNS = (0.05, 0.1, 0.12)  # rad, of one step
+MICROSECOND = 1e-6
+NEAR = 0.01  # of two neighbouring moments, relative
+
+
+def features_of(case: Case) -> frozenset[str]:
+    """The features by which faults name what they need.
+
+    Those of the harness, and:
+    ``above-100-kg``, ``below-10-g``; ``odd-mass``, ``odd-load``: of more digits than single
+    precision has; ``small-inertia``: a moment below 1e-3 kg m^2; ``near-pair``: two moments within
+    1 %; ``unsorted-moments`` on a diagonal inertia;
+    ``lever-negative``: a pivoted body with a component of the lever below zero;
+    ``attitude-dependent`` torques; ``torque-below-clamp``: a component below -0.25 N m;
+    ``low-energy``; ``omega-above-R`` in rad/s at the start, ``speed-above-V`` in m/s at either end;
+    ``step-above-15-ms``, ``turn-above-A`` in rad a step, ``beyond-1000-steps``; ``fine-steps``,
+    ``fine-times``: steps, and times of samples, that microseconds do not hold.
+    """
+    groups = (_of_body(case.system), _of_load(case.system), _of_start(case), _of_steps(case))
+    own = {name for group in groups for name, holds in group.items() if holds}
+    return common_features(case) | own
+
+
+def _of_body(system: System) -> dict[str, bool]:
+    body = system.body
+    diagonal, moments = np.diag(body.inertia), np.linalg.eigvalsh(body.inertia)
+    gaps = np.diff(moments) / moments[1:]
+    plain = not np.any(body.inertia - np.diag(diagonal))
+    return {
+        "above-100-kg": bool(body.mass > HEAVY),
+        "below-10-g": bool(body.mass < LIGHT),
+        "odd-mass": not _is_single(body.mass),
+        "small-inertia": bool(moments[0] < SMALL_INERTIA),
+        "near-pair": bool(np.any((gaps > 1e-9) & (gaps <= NEAR))),
+        "unsorted-moments": plain and bool(np.any(np.diff(diagonal) < 0.0)),
+    }
+
+
+def _of_load(system: System) -> dict[str, bool]:
+    load, arm = system.load, lever(system)
+    hangs = bool(np.any(load.gravity)) and bool(np.any(arm))
+    torques = np.concatenate([load.torque_body, load.torque_world])
+    acting = (
+        load.gravity,
+        load.damping,
+        torques,
+        np.zeros(3) if load.pivot is None else load.pivot,
+    )
+    return {
+        "lever-negative": bool(np.any(arm < 0.0)),
+        "attitude-dependent": hangs or bool(np.any(load.torque_world)),
+        "odd-load": not all(map(_is_single, acting)),
+        "torque-below-clamp": bool(np.any(torques < -0.25)),
+    }
+
+
+def _is_single(values: Array) -> bool:
+    return bool(np.all(np.asarray(values, np.float32) == values))
+
+
+def _of_start(case: Case) -> dict[str, bool]:
+    system, start = case.system, case.initial
+    w, v = start.angular_velocity, start.linear_velocity
+    rate, end = float(norm(w)), v + system.load.gravity * case.scenario.run.duration
+    free = system.load.pivot is None
+    energy = 0.5 * (w @ apply(moving_inertia(system), w) / system.body.mass + free * v @ v)
+    speed = max(float(norm(v)), float(norm(end))) if free else 0.0
+    return {
+        "low-energy": 0.0 < float(energy) < DROWSY,
+        **{f"omega-above-{most}": rate > most for most in RATES},
+        **{f"speed-above-{most}": speed > most for most in SPEEDS},
+    }
+
+
+def _of_steps(case: Case) -> dict[str, bool]:
+    rate = float(norm(case.initial.angular_velocity))
+    coarsest = max(sweep.timestep for sweep in case.sweeps)
+    return {
+        "step-above-15-ms": coarsest > LONG_STEP,
+        **{f"turn-above-{most:.2f}": rate * coarsest > most for most in TURNS},
+        "beyond-1000-steps": max(sweep.steps for sweep in case.sweeps) > 1000,
+        "fine-steps": any(_is_finer(np.array(sweep.timestep)) for sweep in case.sweeps),
+        "fine-times": any(_is_finer(sweep.times) for sweep in case.sweeps),
+    }
+
+
+def _is_finer(times: Array) -> bool:
+    parts = times / MICROSECOND
+    return bool(np.any(np.abs(parts - np.round(parts)) > 1e-3))
