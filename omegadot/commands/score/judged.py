@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from omegadot.commands.score.clock import check_clock, check_duration
 from omegadot.commands.score.exact_trajectory import truth_at
 from omegadot.commands.score.measured import Measured, flips_of, measure_trace
-from omegadot.commands.score.plausible import check_duration, check_units
+from omegadot.commands.score.plausible import check_units
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.shift import Shift, shift_of
 from omegadot.commands.score.steps import Comparison, Declared, compare_schemes, declared_of
@@ -99,11 +100,12 @@ def judge_trace(
     Raises TraceError and UsageError.
     """
     trace = trace_of(reading, case.system)
-    check_duration(reading, trace, case.scenario.run.duration)
+    check_duration(reading, case.scenario.run.duration)
     declared = declared_of(trace, scheme, timestep)
     truth = truth_at(case.system, case.initial, trace.times)
     measured = measure_trace(case, trace, truth)
     check_units(measured, reading)
+    check_clock(measured, reading, case.scenario.run.duration)
     schemes = [] if declared is None else compare_schemes(measured, declared)
     return Judged(
         **vars(measured),
