@@ -83,8 +83,11 @@ def absent_channels(trace: Trace, truth: Truth) -> dict[str, str]:
     return found
 
 
-def _remarks(case: Case, trace: Trace, error: dict[str, Array]) -> dict[str, str]:
-    """How the channels were measured that only a part of the trace bears on."""
+def _remarks(case: Case, trace: Trace, error: dict[str, Array], moves: bool) -> dict[str, str]:
+    """How the channels were measured that only a part of the trace bears on.
+
+    moves: whether the body does more than turn.
+    """
     found = {}
     for field, channel in (("angular_velocity", "omega"), ("position", "position")):
         if partial(values := getattr(trace, field)):
@@ -92,7 +95,7 @@ def _remarks(case: Case, trace: Trace, error: dict[str, Array]) -> dict[str, str
             found[channel] = f"{' and '.join(axes)} alone, the rest is not given"
     if "angular_momentum" in error and trace.orientation is None:
         found["angular_momentum"] = "its length alone, the attitude is not given"
-    if "energy" in error and rotation_alone(case.system, trace):
+    if "energy" in error and moves and rotation_alone(case.system, trace):
         found["energy"] = "of the rotation alone, the velocity is not given"
     return found
 
@@ -128,7 +131,8 @@ def measure_trace(case: Case, trace: Trace, truth: Truth) -> Measured:
     absent, exact = absent_channels(trace, truth), truth.state
     state = filled(trace, exact)
     error = {c: distance(truth, trace, c, state, exact) for c in CHANNELS if c not in absent}
-    remarks = _remarks(case, trace, error)
+    moves = bool(np.any(exact.linear_velocity) or np.any(case.system.load.gravity))
+    remarks = _remarks(case, trace, error, moves)
     digits, bound = bounds_of(truth, trace, rotation_alone(case.system, trace))
     trajectory = exact_trajectory(case.system, case.initial)
     return Measured(case, trace, truth, trajectory, state, error, absent, remarks, digits, bound)

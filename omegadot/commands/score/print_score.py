@@ -15,8 +15,8 @@ from omegadot.commands.run.print_run import exit_code
 from omegadot.commands.score.detection.detect import Detected
 from omegadot.commands.score.detection.reading import Reading
 from omegadot.commands.score.judged import Judged
+from omegadot.commands.score.own_units import in_own_unit
 from omegadot.commands.score.score import ScoreResult
-from omegadot.commands.score.sentences import in_own_unit
 from omegadot.commands.score.shift import scatter
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json

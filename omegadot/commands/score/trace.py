@@ -34,6 +34,11 @@ class Trace:
     omega_dot: Array | None = None
     open: dict[str, Array] = field(default_factory=dict)
 
+    def part(self, rows: slice) -> Trace:
+        """Some of the samples."""
+        given = {k: v[rows] for k, v in vars(self).items() if k != "open" and v is not None}
+        return replace(self, **given, open={name: v[rows] for name, v in self.open.items()})
+
 
 def trace_of(reading: Reading, system: System) -> Trace:
     """The trace read as the convention states. Raises TraceError."""
