@@ -120,7 +120,10 @@ def score(
         from omegadot.commands.score.detection.detect import detect as detect_conventions
         from omegadot.commands.score.print_score import print_detected
 
-        fits = detect_conventions(trace, scenario, columns=column or [], map_file=map_file)
+        window = {key: given[key] for key in ("rate", "from_time", "to_time")}
+        fits = detect_conventions(
+            trace, scenario, columns=column or [], map_file=map_file, **window
+        )
         raise typer.Exit(print_detected(fits, trace, scenario, as_json=output is Format.json))
     from omegadot.commands.run.print_run import exit_code
     from omegadot.commands.run.result import RunInterrupted

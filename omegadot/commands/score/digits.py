@@ -22,7 +22,6 @@ MOST_LOOKED_AT = 4000
 # A double has this many digits, enough to identify it: it was printed whole.
 ALL_DIGITS = 16
 SINGLE_DIGITS = 9
-EPS_SINGLE = float(np.finfo(np.float32).eps)
 NUMBER = r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eEdD][+-]?[0-9]+)?$"
 NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity|1\.#\w+|na|null|none)$", re.IGNORECASE)
 DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eEdD][+-]?\d+)?$")
@@ -68,7 +67,7 @@ def open_of(cells: Sequence[str], values: Array, known: tuple[int, int] | None =
     own: Array = 0.5 * EPS * np.abs(values)
     decimals, significant = known or longest(cells)
     if is_single(cells, values):
-        return np.asarray(0.5 * EPS_SINGLE * np.abs(values))
+        return np.asarray(0.5 * np.abs(np.spacing(values.astype(np.float32))), dtype=float)
     if not np.any(values) or significant >= ALL_DIGITS:
         return own
     with np.errstate(divide="ignore"):

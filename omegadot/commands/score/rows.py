@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from omegadot.commands.score.judged import GATES, Judged
+from omegadot.commands.score.own_units import factor_of
 from omegadot.commands.score.require import Requirement, requirement_row
 from omegadot.commands.score.steps import KNOWN, Comparison
 from omegadot.gates.equation import forward_rows
@@ -133,8 +134,9 @@ def _equals(found: Judged, schemes: list[Comparison]) -> str:
             if all(one.own_start for one in alike):
                 clause += ", from its own start"
         elif near is not None:
-            left, error = (float(np.max(x[channel])) for x in (near.left, found.error))
-            clause = f"is nearest to {near.scheme}, which leaves {left / error:.1e} of its error"
+            factor, unit = factor_of(found, channel)
+            left, error = (factor * float(np.max(x[channel])) for x in (near.left, found.error))
+            clause = f"is nearest to {near.scheme}, which leaves {left:.1e} of {error:.3g} {unit}"
         else:
             clause = f"equals none of the {len(KNOWN)} that are known"
         clauses.setdefault(clause, []).append(channel)
