@@ -38,7 +38,7 @@ class Clock:
         """What to pass, of what is not declared already."""
         parts = [f"--time-unit {self.unit}"] * (self.unit != reading.how.time_unit)
         own = instant(reading.how.time_offset, "")
-        parts += [f"--time-offset {self.offset}"] * (Decimal(self.offset) != own)
+        parts += [f"--time-offset {self.offset}"] * (instant(self.offset, "") != own)
         return " ".join(parts)
 
 
@@ -65,7 +65,7 @@ def clocks(reading: Reading, duration: float) -> Iterator[Clock]:
         if start >= 0 and float(start) + spans[unit] <= LONGEST * duration:
             yield Clock(unit, "0")
         if start:
-            yield Clock(unit, plain(start))
+            yield Clock(unit, stamps.text(0) if stamps.dated else plain(start))
 
 
 def check_duration(reading: Reading, duration: float) -> None:
@@ -85,8 +85,9 @@ def check_duration(reading: Reading, duration: float) -> None:
     advice = f"give {best.options(reading)} if the motion begins there" if best else ""
     if best and best.offset == "0":
         advice = f"looks like {best.unit}; give {best.options(reading)}"
+    until = reading.stamps.text(-1) if reading.stamps.dated else f"{end:.15g} s"
     raise TraceError(
-        f"{table.file}: runs until {end:.15g} s, the scenario lasts {duration:g} s; "
+        f"{table.file}: runs until {until}, the scenario lasts {duration:g} s; "
         f"{advice or 'declare the unit with --time-unit, or score it by a longer scenario'}."
     )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from omegadot.commands.score.table import Table, TraceError, bare, find_column
+from omegadot.commands.score.table import Table, TraceError, bare, check_alone, find_column
 from omegadot.harness.usage import UsageError, nearest
 
 _TABLE = {
@@ -102,6 +102,9 @@ def columns_of(
 def _whole(table: Table, found: Columns, mapped: bool, timed: bool) -> Columns:
     """The columns, if there is a time and every attitude is whole. Raises TraceError."""
     if timed and "t" not in found:
+        for name in table.names:
+            if KNOWN.get(bare(name)) == "t":
+                check_alone(table, name)
         raise TraceError(
             f"{table.file}: no column is the time; name it with --column t=NAME, or give --rate "
             f"(the columns are {', '.join(map(repr, table.names[:20]))})."

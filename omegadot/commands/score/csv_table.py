@@ -187,6 +187,6 @@ def names_of(line: str, delimiter: str, widths: Sequence[int]) -> list[str]:
     a word such as ``columns:``.
     """
     line = _PREFIX.sub("", line)
-    rows = [cells_of(line, delimiter), [cell.strip() for cell in re.split(r"\s{2,}|\t", line)]]
-    rows += [cells_of(line, other) for other in ",;" if other in line]
+    rows = [cells_of(line, other) for other in ",;" if not delimiter and other in line]
+    rows += [cells_of(line, delimiter), [cell.strip() for cell in re.split(r"\s{2,}|\t", line)]]
     return next((row for row in rows if len(row) in widths), [])

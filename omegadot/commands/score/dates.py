@@ -6,7 +6,7 @@ A date without a zone is read as UTC. Only differences of stamps and of ``--time
 from __future__ import annotations
 
 import re
-from datetime import datetime
+from datetime import datetime, timedelta
 from decimal import Decimal
 
 import polars as pl
@@ -40,6 +40,15 @@ def seconds_of(text: str) -> str | None:
         away = 3600 * int(digits[:2]) + 60 * int(digits[2:])
         whole -= away if zone[0] == "+" else -away
     return _joined(whole, part or "")
+
+
+def as_date(seconds: Decimal) -> str:
+    """The date of s since 1970 in UTC, or the time of day of fewer than a day has."""
+    whole, part = divmod(seconds, 1)
+    date = ZERO + timedelta(seconds=int(whole))
+    text = date.strftime("%H:%M:%S" if 0 <= seconds < 86400 else "%Y-%m-%dT%H:%M:%S")
+    digits = format(part, "f").partition(".")[2].rstrip("0")
+    return f"{text}.{digits}" if digits else text
 
 
 def _joined(whole: int, part: str) -> str:

@@ -9,7 +9,7 @@ from decimal import Context, Decimal
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.commands.score.dates import is_date, seconds_of
+from omegadot.commands.score.dates import as_date, is_date, seconds_of
 from omegadot.commands.score.digits import is_single, open_time, printed_whole
 from omegadot.commands.score.table import Table, TraceError
 from omegadot.gates.scales import EPS
@@ -48,8 +48,8 @@ class Stamps:
         return EXACT.multiply(Decimal(self.texts[sample].lower().replace("d", "e")), self.unit)
 
     def text(self, sample: int) -> str:
-        """The same for people and for ``--time-offset``, with every digit."""
-        return plain(self.at(sample))
+        """The same for people and for ``--time-offset``, with every digit; dates as such."""
+        return as_date(self.at(sample)) if self.dated else plain(self.at(sample))
 
 
 def plain(number: Decimal) -> str:
@@ -70,7 +70,7 @@ def stamps_of(table: Table, name: str, unit: float) -> Stamps:
         apart = [EXACT.subtract(number, numbers[0]) for number in numbers]
         base, away = EXACT.multiply(numbers[0], exact), np.array([float(d) for d in apart])
         seconds, opened = unit * away, unit * open_time([format(d, "f") for d in apart], away)
-        if printed_whole(texts):
+        if printed_whole(texts) and not dated:
             opened = np.maximum(opened, 0.5 * EPS * unit * np.abs(values))
     single = texts is not None and is_single(texts, column.values)
     return Stamps(base, seconds, opened, texts, exact, dated, single)
@@ -143,12 +143,12 @@ def _more(count: int) -> str:
 def gaps_of(table: Table, stamps: Stamps) -> str:
     """A sentence about missing samples; empty where none are, or the spacing is irregular.
 
-    A gap is half a spacing longer than the median, where nine in ten are that within a tenth.
+    A gap is half a spacing longer than the median, where most are that within a tenth.
     """
     spans = np.diff(stamps.seconds)
     usual = float(np.median(spans))
     gaps = np.flatnonzero(spans > 1.5 * usual)
-    if not len(gaps) or np.mean(np.abs(spans - usual) <= 0.1 * usual) < 0.9:
+    if not len(gaps) or np.mean(np.abs(spans - usual) <= 0.1 * usual) < 0.6:
         return ""
     longest = gaps[np.argsort(-spans[gaps], kind="stable")]
     missing = int(np.sum(np.round(spans[gaps] / usual) - 1))
