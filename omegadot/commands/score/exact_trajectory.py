@@ -6,6 +6,7 @@ That is its printed digits, rounding, and the resolvable floor.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -120,17 +121,21 @@ def _digits_open(truth: Truth, trace: Trace, rotation_alone: bool) -> Rounding:
     return found
 
 
-def bounds_of(truth: Truth, trace: Trace, rotation_alone: bool) -> tuple[Rounding, Rounding]:
+def bounds_of(
+    truth: Truth, trace: Trace, rotation_alone: bool
+) -> tuple[Rounding, Rounding, Rounding]:
     """(n,) by channel: the resolution by the digits, and the whole of what is left open.
 
-    That is the digits, the rounding of a change of units and frames, and the resolvable floor. The
-    chain of roundings is that of an evaluation, not of a step.
+    The third is the resolution by the digits of the values alone, of stamps that are known exactly.
+    The whole is the digits, the rounding of a change of units and frames, and the resolvable floor.
+    The chain of roundings is that of an evaluation, not of a step.
     """
     digits, count = _digits_open(truth, trace, rotation_alone), len(truth.times)
     once = truth.yardstick.round_off(0.0, np.zeros(count), np.ones(count))
     chain = ROUNDINGS_PER_EVALUATION / ROUNDINGS_PER_STEP
     read = {c: chain * bound + truth.floor.get(c, 0.0) for c, bound in once.items()}
-    return digits, joined(digits, read)
+    still = replace(trace, open={**trace.open, "times": np.zeros(count)})
+    return digits, joined(digits, read), _digits_open(truth, still, rotation_alone)
 
 
 def joined(*bounds: Rounding) -> Rounding:

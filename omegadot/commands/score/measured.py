@@ -46,7 +46,7 @@ class Measured:
 
     error: (n,) by channel, of those given.  absent: why the others are not.  remarks: how a channel
     that only a part of the trace bears on was measured.  digits: (n,) by channel, the resolution.
-    bound: digits, rounding and floor together.
+    bound: digits, rounding and floor together.  values_open: digits, but those of the stamps.
     """
 
     case: Case
@@ -59,6 +59,7 @@ class Measured:
     remarks: dict[str, str]
     digits: Rounding
     bound: Rounding
+    values_open: Rounding
 
     @property
     def rate(self) -> float:
@@ -133,9 +134,9 @@ def measure_trace(case: Case, trace: Trace, truth: Truth) -> Measured:
     error = {c: distance(truth, trace, c, state, exact) for c in CHANNELS if c not in absent}
     moves = bool(np.any(exact.linear_velocity) or np.any(case.system.load.gravity))
     remarks = _remarks(case, trace, error, moves)
-    digits, bound = bounds_of(truth, trace, rotation_alone(case.system, trace))
+    opened = bounds_of(truth, trace, rotation_alone(case.system, trace))
     trajectory = exact_trajectory(case.system, case.initial)
-    return Measured(case, trace, truth, trajectory, state, error, absent, remarks, digits, bound)
+    return Measured(case, trace, truth, trajectory, state, error, absent, remarks, *opened)
 
 
 def distance(truth: Truth, trace: Trace, channel: str, one: State, other: State) -> Array:

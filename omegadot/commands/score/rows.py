@@ -123,16 +123,15 @@ def _scheme(found: Judged) -> list[Row]:
 
 def _equals(found: Judged, schemes: list[Comparison]) -> str:
     """Which schemes each channel equals, or is near, one clause for channels that do alike."""
+    channels = [c for c in SPINS if c in found.error]
+    whole = [one for one in schemes if all(one.agrees(c) for c in channels)]
+    if whole:
+        return f"it {_named(whole)}"
     clauses: dict[str, list[str]] = {}
-    for channel in (c for c in SPINS if c in found.error):
-        alike = [one for one in schemes if one.agrees(channel)]
-        names = list(dict.fromkeys(one.scheme for one in alike))
-        near = found.nearest(channel)
-        if names:
-            more = f" and {len(names) - MOST_NAMED} more" if names[MOST_NAMED:] else ""
-            clause = f"equals {' and '.join(names[:MOST_NAMED])}{more}"
-            if all(one.own_start for one in alike):
-                clause += ", from its own start"
+    for channel in channels:
+        alike, near = [one for one in schemes if one.agrees(channel)], found.nearest(channel)
+        if alike:
+            clause = _named(alike)
         elif near is not None:
             factor, unit = factor_of(found, channel)
             left, error = (factor * float(np.max(x[channel])) for x in (near.left, found.error))
@@ -140,9 +139,15 @@ def _equals(found: Judged, schemes: list[Comparison]) -> str:
         else:
             clause = f"equals none of the {len(KNOWN)} that are known"
         clauses.setdefault(clause, []).append(channel)
-    if len(clauses) == 1 and len(found.error) > 1:
-        return f"it {next(iter(clauses))}"
     return ", ".join(f"{' and '.join(names)} {clause}" for clause, names in clauses.items())
+
+
+def _named(schemes: list[Comparison]) -> str:
+    """``equals rk4-quaternion and lie-rk4 and 2 more``."""
+    names = list(dict.fromkeys(one.scheme for one in schemes))
+    more = f" and {len(names) - MOST_NAMED} more" if names[MOST_NAMED:] else ""
+    own = ", from its own start" if all(one.own_start for one in schemes) else ""
+    return f"equals {' and '.join(names[:MOST_NAMED])}{more}{own}"
 
 
 def _equation(found: Judged) -> list[Row]:

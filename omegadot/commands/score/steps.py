@@ -220,7 +220,7 @@ def _stepped(
     count: int | None,
 ) -> Comparison:
     rows, yardstick, start = slice(count), held.truth.yardstick, held.case.initial
-    digits = {channel: values[rows] for channel, values in held.digits.items()}
+    digits = {channel: values[rows] for channel, values in held.values_open.items()}
     if own_start:
         start = part_of(held.state, 0)
         start = replace(start, orientation=normalize(start.orientation))

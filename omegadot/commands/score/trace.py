@@ -60,6 +60,8 @@ def trace_of(reading: Reading, system: System) -> Trace:
         if parts := reading.group(group):
             opened[name] = how.scale_of("length") * norm(parts[1])
             moved[name] = _in_world(reading, name, how.scale_of("length") * parts[0])
+            if name == "linear_velocity" and np.any(how.world_rate):  # a part of it is the place's
+                opened[name] = opened[name] + norm(how.world_rate) * opened["position"]
     trace = Trace(times, orientation, **moved, open=opened)
     return _at_center(reading, system, trace) if how.point == "origin" else trace
 
