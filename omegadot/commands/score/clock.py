@@ -116,8 +116,11 @@ def check_clock(found: Measured, reading: Reading, duration: float) -> None:
         changed = replace(reading.how, time_unit=clock.unit, time_offset=clock.offset)
         other = replace(reading, how=changed)
         misfit = _misfit(found, found.trace, other.times)
-        longer = span < 1e-3 * duration and _lasts(reading, clock) > 0.01 * duration
-        if longer or (misfit < GROSS and misfit * NEARER < own):
+        lasts = _lasts(reading, clock) > 0.01 * duration
+        longer = span < 1e-3 * duration and lasts
+        fits = misfit < GROSS and misfit * NEARER < own
+        # A trace that stands still fits any instant, which shows nothing of its clock.
+        if longer or (fits and lasts and _moves(found, other.times)):
             why = "it does not fit the scenario"
             if longer:
                 why = f"it lasts {span:.3g} s of the scenario's {duration:g} s"
@@ -125,6 +128,15 @@ def check_clock(found: Measured, reading: Reading, duration: float) -> None:
                 f"{reading.table.file}: by its time stamps {why}; give {clock.options(reading)} "
                 "if the motion begins there."
             )
+
+
+def _moves(found: Measured, times: Array) -> bool:
+    """Whether the exact motion changes, as far as the trace gives it, over these times."""
+    exact = found.trajectory(np.maximum(times, 0.0))
+    if found.trace.angular_velocity is not None:
+        change = norm(exact.angular_velocity - exact.angular_velocity[0])
+        return bool(np.max(change) > GROSS * found.rate)
+    return bool(np.max(attitude_angle(exact.orientation[:1], exact.orientation)) > GROSS)
 
 
 def _misfit(found: Measured, trace: Trace, times: Array) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from omegadot.commands.score.attitude import wxyz
+from omegadot.commands.score.causes import causes_of_trace
 from omegadot.commands.score.clock import check_clock, check_duration
 from omegadot.commands.score.exact_trajectory import truth_at
 from omegadot.commands.score.held import Held, held_channels
@@ -80,6 +81,7 @@ class Judged(Measured):
     turned: Turned | None
     shifted: Shifted | None
     held: list[Held]
+    causes: list[str]
 
     @property
     def scheme(self) -> str | None:
@@ -132,6 +134,9 @@ def judge_trace(
     check_clock(measured, reading, case.scenario.run.duration)
     compared = Compared([]) if declared is None else compare_schemes(measured, declared)
     shift = shift_of(measured)
+    turned, shifted = turned_world(measured, shift), shifted_world(measured)
+    explained = bool(shift and shift.explains) or turned is not None or shifted is not None
+    explained = explained or any(one.agrees("omega") for one in compared.schemes)
     return Judged(
         **vars(measured),
         reading=reading,
@@ -140,9 +145,10 @@ def judge_trace(
         judgement=_judgements(measured, declared, compared.schemes),
         shift=shift,
         flips=flips_of(measured),
-        turned=turned_world(measured, shift),
-        shifted=shifted_world(measured),
+        turned=turned,
+        shifted=shifted,
         held=held_channels(measured, reading),
+        causes=[] if explained else causes_of_trace(measured),
     )
 
 

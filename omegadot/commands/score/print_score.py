@@ -97,6 +97,11 @@ def print_json(result: ScoreResult) -> None:
         "channels": {channel: vars(score) for channel, score in result.channels.items()},
         "not_given": result.not_given,
         "shift": late,
+        "turned": found.turned and {**vars(found.turned), "vector": found.turned.vector.tolist()},
+        "shifted": found.shifted
+        and {**vars(found.shifted), "offset": found.shifted.offset.tolist()},
+        "causes": found.causes,
+        "held": [vars(held) for held in found.held],
         "requirements": [vars(row) for row in result.requirements],
         "sentences": result.sentences,
         "tasks": result.record.run["tasks"],

@@ -18,6 +18,10 @@ def sentences(found: Judged, rows: list[Row]) -> list[str]:
         *_samples(found),
         *_late(found),
         *axes_sentences(found),
+        *(
+            f"Likeliest cause: {cause}. The motion with that equals the trace's."
+            for cause in found.causes
+        ),
         *_start(found),
         *_notes(rows),
         *_digits(found),

@@ -231,7 +231,7 @@ def _stepped(
         bound = joined(rounding, digits)
         if own_start:
             bound = joined(bound, _start_open(digits, growth))
-        own = filled(held.trace.part(rows), state)
+        own = filled(held.trace.at(rows), state)
         left = {c: distance(held.truth, held.trace, c, own, state) for c in held.error}
         spins = {c: left[c] for c in left if c in ("omega", "attitude")} or left
         still = dict.fromkeys(("omega", "attitude"), np.zeros(len(growth)))

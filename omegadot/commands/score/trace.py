@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.commands.score.attitude import attitude_of, world_turn
 from omegadot.commands.score.settings import Reading
@@ -34,7 +35,7 @@ class Trace:
     omega_dot: Array | None = None
     open: dict[str, Array] = field(default_factory=dict)
 
-    def part(self, rows: slice) -> Trace:
+    def at(self, rows: slice | NDArray[np.intp]) -> Trace:
         """Some of the samples."""
         given = {k: v[rows] for k, v in vars(self).items() if k != "open" and v is not None}
         return replace(self, **given, open={name: v[rows] for name, v in self.open.items()})
