@@ -63,6 +63,9 @@ def test_a_rate_that_changes_is_said_to(score):
     assert "about x, a rate that changes a little" in line
     assert options[0].startswith("--world-rate=7.3")
     assert options[0].endswith(",0,0")
+    # What the option leaves is no rate, and the advice ends.
+    again = score(attitude(exact, seen), *options)
+    assert not any("give --" in s for s in again.json["sentences"])
 
 
 @pytest.mark.parametrize("side", ["world", "body"])

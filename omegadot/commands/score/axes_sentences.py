@@ -43,9 +43,10 @@ def _short(values: Array) -> str:
 
 def _turned(found: Judged, turned: Turned) -> str:
     factor, unit = factor_of(found, "attitude")
+    late = found.shift is not None and found.shift.of == "omega" and found.shift.explains
     left = (
         f"the attitude is off by {factor * turned.before:.4g} {unit} without that and by "
-        f"{factor * turned.after:.3g} {unit} with it"
+        f"{factor * turned.after:.3g} {unit} with it{' and the shift in time' if late else ''}"
     )
     how = found.reading.how
     if turned.kind in ("rate", "drift"):

@@ -23,6 +23,8 @@ from omegadot.reference_impl.system import Array
 # turning world, which therefore must leave less. A simpler cause is preferred up to a factor more.
 EXPLAINS = {"world": 0.1, "body": 0.1, "rate": 1e-3, "drift": 1e-3}
 SIMPLER = 3.0
+HALF = 0.5
+FIXED = ("world", "body")
 NEARLY = 1e-3  # rad, between a rate and an axis
 MOST_ITERATIONS = 20
 
@@ -54,7 +56,8 @@ class Shifted:
 def turned_world(found: Measured, shift: Shift | None) -> Turned | None:
     """How the trace's axes are turned, where that is the error of its attitude.
 
-    shift: in time, which is undone first where it explains the error of omega.
+    shift: in time, which is undone first where it explains the error of omega; what then is turned
+    for good may be the time's doing, and only a rate is sought.
     """
     trace = found.trace
     if "attitude" not in found.error or trace.orientation is None or len(trace.times) < 4:
@@ -72,10 +75,13 @@ def turned_world(found: Measured, shift: Shift | None) -> Turned | None:
         for q in (found.trajectory(moved).orientation, trace.orientation[rows][rows_inside])
     )
     times, before = trace.times[rows][rows_inside], float(np.max(error))
-    tried = list(_tried(exact, own, times, before))
+    tried = [one for one in _tried(exact, own, times, before) if not (late and one.kind in FIXED)]
     limit, least = float(np.max(bound)), min(one.after for one in tried)
     for one in tried:
         enough = one.after <= max(EXPLAINS[one.kind] * before, limit)
+        # A rate that is declared already leaves its changes, and no option undoes these.
+        turns = one.kind in FIXED or norm(one.vector) * times[-1] >= HALF * before
+        enough = enough and bool(turns)
         if enough and one.after <= max(SIMPLER * least, limit):
             return one
     return None
