@@ -13,25 +13,20 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import cos, sin, sqrt
+from math import sqrt
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from omegadot.reference_impl.body_motion import body_motion
-from omegadot.reference_impl.components import Numbers, cross3, formulas_of
+from omegadot.reference_impl.components import formulas_of
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
-from omegadot.reference_impl.rotations import (
-    conjugate,
-    normalize,
-    quaternion_product,
-)
+from omegadot.reference_impl.euler_angles import Angles, angle_rates, angles_of, quaternion_of
+from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Array, State, System
 
 Rate = Callable[[list[float]], list[float]]
 Advance = Callable[[Rate, list[float], float, "deque[list[float]]"], list[float]]
-NO_TURN = np.array([1.0, 0.0, 0.0, 0.0])
 WEIGHTS = {
     1: (1.0,),
     2: (1.5, -0.5),
@@ -52,17 +47,6 @@ class FlightScheme:
     title: str
     advance: Advance
     angles: bool = False
-
-
-@dataclass(frozen=True)
-class Angles:
-    """Which Euler angles. sequence: three intrinsic axes.  world, body: quaternions from the axes
-    that they are relative to, to the scenario's; None where these are the same.
-    """
-
-    sequence: str = "ZYX"
-    world: Array | None = None
-    body: Array | None = None
 
 
 def _adams_bashforth(order: int) -> Advance:
@@ -134,7 +118,7 @@ def step_flight(
     chart = angles or Angles()
     q, v = to_coordinates(system, initial, "com-world")
     place = q[:-4]
-    attitude = _angles_of(normalize(q[-4:]), chart) if scheme.angles else q[-4:]
+    attitude = angles_of(normalize(q[-4:]), chart) if scheme.angles else q[-4:]
     y = [*place.tolist(), *attitude.tolist(), *v.tolist()]
     rate = _rate(system, len(place), chart if scheme.angles else None)
     past: deque[list[float]] = deque(maxlen=4)
@@ -174,82 +158,14 @@ def _rate(system: System, at: int, chart: Angles | None) -> Rate:
             return [*coordinate_rate(q, v), *acceleration(unit(q), v)]
 
         return of_quaternion
-    turning = _angle_rates(chart)
+    turning = angle_rates(chart)
 
     def of_angles(y: list[float]) -> list[float]:
         e, v = y[at:split], y[split:]
-        q = _quaternion(e, chart)
+        q = quaternion_of(e, chart)
         return [*v[:-3], *turning(e, v[-3:]), *acceleration([*y[:at], *q], v)]
 
     return of_angles
-
-
-def _turn(axis: int, angle: float) -> list[float]:
-    found = [cos(0.5 * angle), 0.0, 0.0, 0.0]
-    found[1 + axis] = sin(0.5 * angle)
-    return found
-
-
-def _product(a: Numbers, b: Numbers) -> list[float]:
-    w, x, y, z = a
-    p, q, r, s = b
-    return [
-        w * p - x * q - y * r - z * s,
-        w * q + x * p + y * s - z * r,
-        w * r - x * s + y * p + z * q,
-        w * s + x * r - y * q + z * p,
-    ]
-
-
-def _axes(chart: Angles) -> list[int]:
-    return ["XYZ".index(axis) for axis in chart.sequence]
-
-
-def _quaternion(e: Numbers, chart: Angles) -> list[float]:
-    """world_R_body between the scenario's axes."""
-    first, second, third = (_turn(k, a) for k, a in zip(_axes(chart), e, strict=True))
-    own = _product(_product(first, second), third)
-    if chart.world is not None:
-        own = _product(chart.world.tolist(), own)
-    return own if chart.body is None else _product(own, conjugate(chart.body).tolist())
-
-
-def _angle_rates(chart: Angles) -> Callable[[Numbers, Numbers], list[float]]:
-    """``ė`` of ω in the scenario's body axes: ``ω = ė₃ k + ė₂ R₃ᵀ j + ė₁ R₃ᵀ R₂ᵀ i``."""
-    i, j, k = _axes(chart)
-    body = None if chart.body is None else Rotation.from_quat(np.roll(chart.body, -1))
-    matrix = None if body is None else body.inv().as_matrix().tolist()
-    last = [0.0, 0.0, 0.0]
-    last[k] = 1.0
-
-    def back(axis: int, angle: float, vector: Numbers) -> list[float]:
-        """The transposed rotation about a coordinate axis."""
-        m, n = (axis + 1) % 3, (axis + 2) % 3
-        c, s = cos(angle), sin(angle)
-        found = list(vector)
-        found[m] = c * vector[m] + s * vector[n]
-        found[n] = c * vector[n] - s * vector[m]
-        return found
-
-    def rates(e: Numbers, w: Numbers) -> list[float]:
-        if matrix is not None:
-            w = [sum(row[n] * w[n] for n in range(3)) for row in matrix]
-        first, second = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
-        first[i], second[j] = 1.0, 1.0
-        second = back(k, e[2], second)
-        first = back(k, e[2], back(j, e[1], first))
-        normals = cross3(second, last), cross3(last, first), cross3(first, second)
-        volume = sum(a * b for a, b in zip(first, normals[0], strict=True))
-        return [sum(a * b for a, b in zip(w, n, strict=True)) / volume for n in normals]
-
-    return rates
-
-
-def _angles_of(q: Array, chart: Angles) -> Array:
-    world, body = (NO_TURN if turn is None else turn for turn in (chart.world, chart.body))
-    own = quaternion_product(quaternion_product(conjugate(world), q), body)
-    found: Array = Rotation.from_quat(np.roll(own, -1)).as_euler(chart.sequence)
-    return found
 
 
 def _states(system: System, y: Array, at: int, chart: Angles | None) -> State:
@@ -258,7 +174,7 @@ def _states(system: System, y: Array, at: int, chart: Angles | None) -> State:
     if chart is not None:
         finite = np.all(np.isfinite(y), axis=-1)
         whole = np.full((len(y), 4), np.nan)
-        whole[finite] = [_quaternion(e, chart) for e in attitude[finite].tolist()]
+        whole[finite] = [quaternion_of(e, chart) for e in attitude[finite].tolist()]
         attitude = whole
     q = np.concatenate((y[:, :at], attitude), axis=-1)
     return from_coordinates(system, q, y[:, split:], "com-world")

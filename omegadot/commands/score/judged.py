@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from omegadot.commands.score.attitude import wxyz
 from omegadot.commands.score.causes import causes_of_trace
 from omegadot.commands.score.clock import check_clock, check_duration
+from omegadot.commands.score.declared import Declared, declared_of
 from omegadot.commands.score.exact_trajectory import truth_at
 from omegadot.commands.score.held import Held, held_channels
 from omegadot.commands.score.measured import Measured, flips_of, measure_trace
@@ -21,9 +22,7 @@ from omegadot.commands.score.shift import Shift, shift_of
 from omegadot.commands.score.steps import (
     Compared,
     Comparison,
-    Declared,
     compare_schemes,
-    declared_of,
 )
 from omegadot.commands.score.trace import trace_of
 from omegadot.commands.score.world import Shifted, Turned, shifted_world, turned_world
@@ -32,7 +31,7 @@ from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.measures import INVARIANT_CHANNELS
 from omegadot.gates.rows import Row
 from omegadot.gates.verdicts import Finding
-from omegadot.reference_impl.flight_schemes import Angles
+from omegadot.reference_impl.euler_angles import Angles
 from omegadot.reference_impl.system import Array
 
 GATES = {c: "invariants" if c in INVARIANT_CHANNELS else "trajectory" for c in CHANNELS}

@@ -7,10 +7,11 @@ from functools import partial
 
 import numpy as np
 
+from omegadot.commands.score.declared import KNOWN
 from omegadot.commands.score.judged import GATES, Judged
 from omegadot.commands.score.own_units import factor_of
 from omegadot.commands.score.require import Requirement, requirement_row
-from omegadot.commands.score.steps import KNOWN, Comparison
+from omegadot.commands.score.steps import Comparison
 from omegadot.gates.equation import forward_rows
 from omegadot.gates.invariants import HORIZONS
 from omegadot.gates.likeness import Likeness

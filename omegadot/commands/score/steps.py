@@ -9,46 +9,24 @@ from math import gcd
 
 import numpy as np
 
+from omegadot.commands.score.declared import KNOWN, Declared
 from omegadot.commands.score.exact_trajectory import Rounding, joined, part_of
 from omegadot.commands.score.measured import Measured, distance, filled
-from omegadot.commands.score.trace import Trace
 from omegadot.gates.likeness import Likeness, likeness, share_of
-from omegadot.gates.scales import EPS
-from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.coordinates import Coordinates, distinct
-from omegadot.reference_impl.flight_schemes import FLIGHT_SCHEMES, Angles, step_flight
+from omegadot.reference_impl.flight_schemes import FLIGHT_SCHEMES, step_flight
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State
 
-MOST_STEPS = 1_000_000
 # All schemes are stepped to the first samples, and only those that fit there to the end: so many
 # steps take seconds, not minutes.
 MOST_STEPS_OF_ALL = 300_000
 FIRST_SAMPLES = 4
-# A stamp this part of a step off a whole number of them is of an accumulated, or rounded, time.
-NEARLY_WHOLE = 1e-3
 # A scheme that leaves this part of an error is the nearest, though something is left.
 NEAR = 0.01
-ON_ANGLES = tuple(name for name, scheme in FLIGHT_SCHEMES.items() if scheme.angles)
-KNOWN = (*(name for name in FLIGHT_SCHEMES if name not in ON_ANGLES), *SCHEMES, *ON_ANGLES)
-"""The schemes by name, the plainest first."""
-
-
-@dataclass(frozen=True)
-class Declared:
-    """How a trace was made, as declared. numbers: (n,), the steps that its samples stand at.
-
-    off: s, how far the stamps lie off these at most.  angles: those that a scheme may step.
-    """
-
-    scheme: str | None
-    timestep: float
-    numbers: Array
-    off: float = 0.0
-    angles: Angles | None = None
 
 
 @dataclass(frozen=True)
@@ -84,45 +62,6 @@ class Compared:
 
     schemes: list[Comparison]
     not_sought: str = ""
-
-
-def declared_of(
-    trace: Trace, scheme: str | None, timestep: float | None, angles: Angles
-) -> tuple[Trace, Declared | None]:
-    """The declaration, if there is one and it can be, and the trace with what it leaves open.
-
-    Stamps that are nearly whole numbers of steps are accepted, and how far they are off is open of
-    them. Raises UsageError.
-    """
-    if scheme is not None and scheme not in KNOWN:
-        raise UsageError(
-            f"--integrator-scheme {scheme}: there is no such scheme; {nearest(scheme, KNOWN)}."
-        )
-    if timestep is None:
-        if scheme is not None:
-            raise UsageError(f"--integrator-scheme {scheme}: its step is missing; give --timestep.")
-        return trace, None
-    if not (np.isfinite(timestep) and timestep > 0.0):
-        raise UsageError(f"--timestep {timestep:g}: not a positive number of seconds; give one.")
-    ratio = trace.times / timestep
-    numbers = np.round(ratio)
-    # A stamp is off by its digits at most, and by the rounding of a sum of so many steps.
-    known = trace.open["times"] / timestep + 4 * EPS * np.maximum(ratio, 1) ** 2
-    off = np.abs(ratio - numbers)
-    worst = int(np.argmax(off - known))
-    if off[worst] > max(known[worst], NEARLY_WHOLE) or numbers[0] < 0.0:
-        raise UsageError(
-            f"--timestep {timestep:g}: the sample at {trace.times[worst]:.9g} s stands at no whole "
-            "number of steps; give the step that the simulator took."
-        )
-    if numbers[-1] > MOST_STEPS:
-        raise UsageError(
-            f"--timestep {timestep:g}: makes {numbers[-1]:.0f} steps; give at most {MOST_STEPS:,}."
-        )
-    more = np.where(off > 4 * EPS * ratio, timestep * off, 0.0)
-    opened = {**trace.open, "times": np.maximum(trace.open["times"], more)}
-    declared = Declared(scheme, timestep, numbers, float(np.max(more)), angles)
-    return replace(trace, open=opened), declared
 
 
 def compare_schemes(held: Measured, declared: Declared) -> Compared:
