@@ -78,8 +78,15 @@ def attitude_of(reading: Reading) -> Angles | None:
         return None
     if how.attitude_is == "body-from-world":
         q = conjugate(q)
+    if np.any(how.world_rate):
+        q = quaternion_product(wxyz(world_turn(reading)), q)
     axes = (how.world_axes, how.body_axes)
     if not all(np.array_equal(turned, np.eye(3)) for turned in axes):
         world, body = (wxyz(Rotation.from_matrix(turned)) for turned in axes)
         q = quaternion_product(quaternion_product(world, q), conjugate(body))
     return q, opened
+
+
+def world_turn(reading: Reading) -> Rotation:
+    """How far the trace's world has turned at each sample since the start: ``exp(rate t)``."""
+    return Rotation.from_rotvec(reading.times[:, None] * reading.how.world_rate)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from omegadot.commands.score.table import Table, TraceError, find_column
+from omegadot.commands.score.table import Table, TraceError, bare, check_alone, find_column
 from omegadot.harness.usage import UsageError, nearest
 
 _TABLE = {
@@ -19,6 +19,7 @@ _TABLE = {
 }
 GROUPS = {group: tuple(roles.split()) for group, (roles, _) in _TABLE.items()}
 MEANING = {group: meaning for group, (_, meaning) in _TABLE.items()}
+WHOLE = ("q", "e", "r")
 TURNS = {"yaw": "z", "pitch": "y", "roll": "x"}
 QUATERNIONS = ("wxyz", "xyzw")
 # Found without being named. Not ax, ay, az: in most logs these are a linear acceleration.
@@ -43,6 +44,8 @@ def _roles_of(argument: str, count: int, order: str, euler: str) -> tuple[str, .
     key = "t" if key == "time" else key
     if key in TURNS:
         key = _turn_role(key, euler)
+    if count == 0 and key in (*GROUPS, *ROLES):
+        return GROUPS.get(key, (key,))
     if key in GROUPS and count == len(GROUPS[key]):
         return tuple("q" + part for part in order) if key == "q" else GROUPS[key]
     roles = [role for group in GROUPS.values() for role in group]
@@ -57,72 +60,88 @@ def _roles_of(argument: str, count: int, order: str, euler: str) -> tuple[str, .
 
 
 def columns_of(
-    table: Table, assigned: Sequence[tuple[str, Sequence[str]]], order: str, euler: str
+    table: Table,
+    assigned: Sequence[tuple[str, Sequence[str]]],
+    order: str,
+    euler: str,
+    timed: bool = True,
 ) -> Columns:
     """Every role that is mapped, or named so in the file, with its column.
 
-    assigned: pairs of a role, or a group of roles, and the names of its columns.
-    order: wxyz or xyzw, of a quaternion's four columns.
+    assigned: pairs of a role, or a group of roles, and the names of its columns; with no names the
+    role is left out, though a column has its name.
+    order: wxyz or xyzw, of a quaternion's four columns.  timed: whether there are times.
     Raises UsageError for unknown roles, TraceError for missing columns and half groups.
     """
     if order not in QUATERNIONS:
         raise UsageError(f"--quaternion {order}: no such order; {nearest(order, QUATERNIONS)}.")
     found: Columns = {}
+    left_out: set[str] = set()
     for argument, names in assigned:
         roles = _roles_of(argument, len(names), order, euler)
-        for role, name in zip(roles, names, strict=True):
+        left_out |= set(roles) if not names else set()
+        for role, name in zip(roles, names, strict=bool(names)):
             if role in found:
                 raise UsageError(f"--column {argument}: {role} is given twice; give it once.")
             found[role] = find_column(table, name, role)
-    named = {role[0] for role in found}
+    if not timed and "t" in found:
+        raise UsageError("--rate: a column is named as the time too; leave out one of them.")
+    named = {role[0] for role in found} | (set() if timed else {"t"})
     named |= set("qer") if named & set("qer") else set()
     turns = len(set(euler.lower())) == 3
-    for name in (name for name in table.names if table.names.count(name) == 1):
-        role = KNOWN.get(name.casefold(), "")
+    alone = [bare(name) for name in table.names]
+    for name in (n for n, short in zip(table.names, alone, strict=True) if alone.count(short) == 1):
+        role = KNOWN.get(bare(name), "")
         if role in TURNS:
             role = _turn_role(role, euler) if turns else ""
-        if role and role[0] not in named and role not in found:
+        if role and role[0] not in named and role not in {*found, *left_out}:
             found[role] = name
-    return _whole(table, found, bool(assigned))
+    return _whole(table, found, bool(assigned), timed)
 
 
-def _whole(table: Table, found: Columns, mapped: bool) -> Columns:
-    """The columns, if there is a time and every group is whole. Raises TraceError."""
-    if "t" not in found:
+def _whole(table: Table, found: Columns, mapped: bool, timed: bool) -> Columns:
+    """The columns, if there is a time and every attitude is whole. Raises TraceError."""
+    if timed and "t" not in found:
+        for name in table.names:
+            if KNOWN.get(bare(name)) == "t":
+                check_alone(table, name)
         raise TraceError(
-            f"{table.file}: no column is the time; name it with --column t=NAME "
+            f"{table.file}: no column is the time; name it with --column t=NAME, or give --rate "
             f"(the columns are {', '.join(map(repr, table.names[:20]))})."
         )
-    for group, roles in GROUPS.items():
+    for group in WHOLE:
+        roles = GROUPS[group]
         missing = [role for role in roles if role not in found]
         if missing and len(missing) < len(roles):
             raise TraceError(
                 f"{table.file}: no column is {missing[0]} ({MEANING[group]}); name it with "
-                f"--column {missing[0]}=NAME."
+                f"--column {missing[0]}=NAME, or leave the group out with --column {group}=."
             )
-    attitudes = [group for group in "qer" if GROUPS[group][0] in found]
+    attitudes = [group for group in WHOLE if GROUPS[group][0] in found]
     if len(attitudes) > 1:
         raise UsageError(
             f"{table.file}: the attitude is given as {MEANING[attitudes[0]]} and as "
-            f"{MEANING[attitudes[1]]}; map only one of them."
+            f"{MEANING[attitudes[1]]}; leave one of them out, like --column {attitudes[0]}=."
         )
-    if not any(GROUPS[group][0] in found for group in "wqerp"):
+    if not any(role in found for group in "wqerp" for role in GROUPS[group]):
         advice = "" if mapped else ", or --detect to have it guessed"
         raise TraceError(
             f"{table.file}: no column is an angular velocity, an attitude or a position; map them, "
-            f"like --column wx=NAME{advice}."
+            f"like --column wx=NAME{advice} (the columns are "
+            f"{', '.join(map(repr, table.names[:20]))})."
         )
     return found
 
 
 def assignments_of(options: Sequence[str]) -> list[tuple[str, list[str]]]:
-    """``ROLE=NAME`` and ``GROUP=NAME,NAME,...`` taken apart. Raises UsageError."""
+    """``ROLE=NAME``, ``GROUP=NAME,NAME,...`` and ``ROLE=`` taken apart. Raises UsageError."""
     found = []
     for option in options:
         role, equals, names = option.partition("=")
-        if not equals or not role.strip() or not names.strip():
+        if not equals or not role.strip():
             raise UsageError(f"--column {option}: write ROLE=NAME, like wx=omega_x.")
         group = GROUPS.get(role.strip().lower(), ())
         parts = [name.strip() for name in names.split(",")] if len(group) > 1 else [names.strip()]
+        parts = parts if names.strip() else []
         found.append((role.strip(), parts))
     return found

@@ -30,7 +30,8 @@ def score(
         _option(
             "ROLE=NAME",
             "The column that holds a quantity, such as wx=gyro_x, or a group: w=A,B,C. A name "
-            "may be a number: #3. Quantities: t; wx wy wz (omega); ax ay az (omega-dot); qw qx qy "
+            "may be a number: #3; with no name, v=, the group is left out. Quantities: t; wx wy wz "
+            "(omega); ax ay az (omega-dot); qw qx qy "
             "qz; e1 e2 e3 or yaw pitch roll; r11 to r33; px py pz; vx vy vz. Repeatable.",
         ),
     ] = None,
@@ -61,7 +62,23 @@ def score(
         Text, _option("x,-y,-z", "The scenario's body axes x, y, z, each as an axis of the trace.")
     ] = None,
     time_offset: Annotated[
-        float | None, _option("S", "Time in the trace at which the scenario starts.")
+        Text, _option("S", "Time in the trace, s or a date, at which the scenario starts.")
+    ] = None,
+    rate: Annotated[
+        float | None, _option("HZ", "Sample rate of a trace without times, the first at zero.")
+    ] = None,
+    from_time: Annotated[
+        Text, _option("S", "First time in the trace, s or a date, that is used.", "--from")
+    ] = None,
+    to_time: Annotated[
+        Text, _option("S", "Last time in the trace, s or a date, that is used.", "--to")
+    ] = None,
+    world_rate: Annotated[
+        Text,
+        _option("X,Y,Z", "How fast the trace's world turns, in the unit of omega and its axes."),
+    ] = None,
+    world_origin: Annotated[
+        Text, _option("X,Y,Z", "The scenario's world origin, as a position of the trace.")
     ] = None,
     integrator_scheme: Annotated[
         Text, _option("NAME", "Integration scheme that produced the trace.")
@@ -103,7 +120,10 @@ def score(
         from omegadot.commands.score.detection.detect import detect as detect_conventions
         from omegadot.commands.score.print_score import print_detected
 
-        fits = detect_conventions(trace, scenario, columns=column or [], map_file=map_file)
+        window = {key: given[key] for key in ("rate", "from_time", "to_time")}
+        fits = detect_conventions(
+            trace, scenario, columns=column or [], map_file=map_file, **window
+        )
         raise typer.Exit(print_detected(fits, trace, scenario, as_json=output is Format.json))
     from omegadot.commands.run.print_run import exit_code
     from omegadot.commands.run.result import RunInterrupted

@@ -33,7 +33,11 @@ class Convention:
     point: whose position and velocity are given.
     world_axes and body_axes: (3, 3), a vector's components in the scenario's axes are
     ``world_axes @ theirs`` and ``body_axes @ theirs``.
-    time_offset: s, the trace's time at the scenario's start.
+    time_offset: s, the trace's time at the scenario's start, or a date.
+    rate: Hz, of samples without times.  from_time and to_time: s or dates, as the trace has them,
+    the window that is used.
+    world_rate: (3,) rad/s, the angular velocity of the trace's world in the scenario's, in the
+    trace's axes.  world_origin: (3,) m, the origin of the scenario's world as the trace has it.
     """
 
     time_unit: str = "s"
@@ -47,20 +51,28 @@ class Convention:
     point: str = "center-of-mass"
     world_axes: Array = field(default_factory=lambda: np.eye(3))
     body_axes: Array = field(default_factory=lambda: np.eye(3))
-    time_offset: float = 0.0
+    time_offset: float | str = 0.0
+    rate: float | None = None
+    from_time: float | str | None = None
+    to_time: float | str | None = None
+    world_rate: Array = field(default_factory=lambda: np.zeros(3))
+    world_origin: Array = field(default_factory=lambda: np.zeros(3))
 
     def scale_of(self, kind: str) -> float:
         """The SI value of the unit of ``time``, ``angle``, ``rate`` or ``length``."""
         return UNITS[kind][getattr(self, f"{kind}_unit")]
 
 
-SETTINGS = tuple(f.name.replace("_", "-") for f in fields(Convention))
-"""The options that declare a convention, without their dashes in front."""
+_OPTIONS = {"from_time": "from", "to_time": "to"}
+SETTINGS = {_OPTIONS.get(f.name, f.name.replace("_", "-")): f.name for f in fields(Convention)}
+"""The options that declare a convention, without their dashes in front, and the fields."""
+NUMBERS = ("time-offset", "rate", "from", "to")
+"""Options that a number may be given for."""
 
 
 def option_of(name: str) -> str:
     """The option that declares a field of the convention."""
-    return "--" + name.replace("_", "-")
+    return "--" + _OPTIONS.get(name, name.replace("_", "-"))
 
 
 def convention_of(settings: Mapping[str, Any]) -> Convention:
@@ -68,9 +80,14 @@ def convention_of(settings: Mapping[str, Any]) -> Convention:
 
     Raises UsageError.
     """
-    given = {key.replace("-", "_"): value for key, value in settings.items()}
+    given = {SETTINGS[key]: value for key, value in settings.items()}
     for name in {"world_axes", "body_axes"} & set(given):
         given[name] = axes_of(given[name], option_of(name))
+    for name in {"world_rate", "world_origin"} & set(given):
+        given[name] = vector_of(given[name], option_of(name))
+    rate = given.get("rate")
+    if rate is not None and not (np.isfinite(rate) and rate > 0.0):
+        raise UsageError(f"--rate {rate:g}: not a positive number of samples a second; give one.")
     found = Convention(**given)
     units: dict[str, Any] = {
         f"{kind}_unit": unit_named(getattr(found, f"{kind}_unit"), kind, f"--{kind}-unit")
@@ -81,13 +98,30 @@ def convention_of(settings: Mapping[str, Any]) -> Convention:
         if argument not in allowed:
             advice = nearest(argument, allowed)
             raise UsageError(f"{option_of(name)} {argument}: no such choice; {advice}.")
+    found = replace(
+        found,
+        **units,
+        world_rate=UNITS["rate"][units["rate_unit"]] * found.world_rate,
+        world_origin=UNITS["length"][units["length_unit"]] * found.world_origin,
+    )
     axes = found.euler
     if not (_SEQUENCE.match(axes) and axes[0] != axes[1] != axes[2]):
         raise UsageError(
             f"--euler {axes}: not a sequence of three axes; write ZYX for intrinsic "
             "yaw-pitch-roll, small letters for extrinsic turns."
         )
-    return replace(found, **units)
+    return found
+
+
+def vector_of(text: str, option: str) -> Array:
+    """(3,) from ``1.5,0,-2``. Raises UsageError."""
+    try:
+        parts = np.array([float(part) for part in text.split(",")])
+    except ValueError:
+        parts = np.full(3, np.nan)
+    if parts.shape != (3,) or not np.all(np.isfinite(parts)):
+        raise UsageError(f"{option} {text}: write three numbers, like 0.1,0,-2.")
+    return parts
 
 
 def axes_of(text: str, option: str) -> Array:

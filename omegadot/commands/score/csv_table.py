@@ -9,11 +9,13 @@ from itertools import chain, takewhile
 
 import polars as pl
 
+from omegadot.commands.score.dates import DATE
 from omegadot.commands.score.digits import DECIMAL_COMMA, NOT_FINITE, NUMBER
 from omegadot.commands.score.table import MOST_SAMPLES, Table, TraceError
 
 DELIMITERS = ",;\t|"
 COMMENT = r"^\s*(#|%|//|!)"
+_PREFIX = re.compile(r"\s*(columns|fields|names|header)\s*[:=]\s*", re.IGNORECASE)
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+$")
 # So many lines show the delimiter and the decimal sign.
 LOOKED_AT = 50
@@ -36,45 +38,69 @@ def csv_table(file: str, content: bytes) -> Table:
     if samples.is_empty():
         raise TraceError(f"{file}: no line of numbers; it has a header at most, give samples too.")
     above = whole.filter(is_comment, pl.col("line") < samples["line"][0])["text"].to_list()
-    names = _names(heads, above, samples["text"][0], delimiter)
-    rows = _rows(file, samples, delimiter, len(names))
+    rows = _rows(file, samples, delimiter)
+    names = _names(heads, above, _widths(rows), delimiter)
+    _check_widths(file, samples["line"], rows, len(names), delimiter)
     cells = [rows.list.get(place, null_on_oob=True) for place in range(len(names))]
     return Table(file, names, cells, samples["line"], decimal)
 
 
-def _names(heads: list[str], comments: list[str], sample: str, delimiter: str) -> tuple[str, ...]:
+def _names(
+    heads: list[str], comments: list[str], widths: list[int], delimiter: str
+) -> tuple[str, ...]:
     """A name for every column: of the first line that has them, else of a comment, else numbers.
 
     Of the comments it is the last one that has some, as NumPy writes them.
     """
-    width = len(cells_of(sample, delimiter))
-    # The delimiter that ends a line is that of a last, empty cell where the header has one more.
-    widths = [width, len(raw_cells_of(sample, delimiter))]
     rows = [names_of(text, delimiter, widths) for text in heads]
     for text in reversed(comments):
-        row = names_of(re.sub(COMMENT, "", text).strip(), delimiter, [width])
-        rows += [row] if len(set(row)) == width and not is_sample(row) else []
-    found = next(filter(None, rows), [""] * width)
+        row = names_of(re.sub(COMMENT, "", text).strip(), delimiter, widths)
+        rows += [row] if len(set(row)) == len(row) and not is_sample(row) else []
+    found = next(filter(None, rows), [""] * widths[-1])
     return tuple(name or f"#{k}" for k, name in enumerate(found, 1))
 
 
-def _rows(file: str, samples: pl.DataFrame, delimiter: str, width: int) -> pl.Series:
-    """The samples' cells, as they stand. Raises TraceError where a row has not so many."""
+def _rows(file: str, samples: pl.DataFrame, delimiter: str) -> pl.Series:
+    """The samples' cells, as they stand. Raises TraceError where there are too many samples."""
     if len(samples) > MOST_SAMPLES:
         raise TraceError(
             f"{file}: {len(samples):,} samples; give at most {MOST_SAMPLES:,}, every tenth of them "
             "for example."
         )
-    rows = split_lines(samples["text"], delimiter)
+    return split_lines(samples["text"], delimiter)
+
+
+def _counts(rows: pl.Series) -> tuple[pl.Series, pl.Series]:
+    """How many cells each row has, and how many without an empty one at its end."""
     ends_empty = rows.list.last().str.strip_chars() == ""
-    counts = rows.list.len().cast(pl.Int64) - ends_empty.cast(pl.Int64)
-    bad = ((counts != width) & (counts != width - 1)).arg_true()
+    counts = rows.list.len().cast(pl.Int64)
+    return counts, counts - ends_empty.cast(pl.Int64)
+
+
+def _widths(rows: pl.Series) -> list[int]:
+    """How many columns there may be, the likeliest last.
+
+    The delimiter that ends a line is that of a last, empty cell where a header, or any row, has one
+    more.
+    """
+    raw, counts = _counts(rows)
+    most = int(counts.max())  # type: ignore[arg-type]
+    return [int(counts[0]), int(raw[0]), most]
+
+
+def _check_widths(file: str, lines: pl.Series, rows: pl.Series, width: int, delimiter: str) -> None:
+    """Raise TraceError where a row has not so many cells; the last may be empty.
+
+    Between blanks an empty cell cannot be seen, so that a row may end early there.
+    """
+    raw, counts = _counts(rows)
+    bad = (raw != width) & (counts != width) & (counts != width - 1)
+    bad = (bad if delimiter else counts > width).arg_true()
     if len(bad):
-        line, count = samples["line"][int(bad[0])], counts[int(bad[0])]
+        line, count = lines[int(bad[0])], counts[int(bad[0])]
         raise TraceError(
             f"{file}: line {line} has {count} columns, {width} were expected; correct or remove it."
         )
-    return rows
 
 
 def text_of(file: str, content: bytes) -> str:
@@ -144,16 +170,23 @@ def decimal_of(file: str, rows: Iterable[Sequence[str]]) -> str:
 
 
 def is_sample(row: Sequence[str]) -> bool:
-    """A row that is of numbers: more than half of it, so that one bad cell does not hide it."""
-    numbers = [c for c in row if any(re.match(p, c) for p in (NUMBER, DECIMAL_COMMA, NOT_FINITE))]
-    return 2 * len(numbers) > len(row)
+    """A row that is of numbers: more than half of it, so that one bad cell does not hide it.
+
+    Empty cells are neither; dates and times of day are numbers.
+    """
+    filled = [cell for cell in row if cell]
+    known = (NUMBER, DECIMAL_COMMA, NOT_FINITE, DATE)
+    return 2 * sum(any(re.match(p, c) for p in known) for c in filled) > len(filled)
 
 
 def names_of(line: str, delimiter: str, widths: Sequence[int]) -> list[str]:
     """The names that a line gives to so many columns, one of the numbers given; else none.
 
-    Between blanks, a name may have a unit behind a single one: ``wx (deg/s)   wy (deg/s)``.
+    Between blanks, a name may have a unit behind a single one: ``wx (deg/s)   wy (deg/s)``. A
+    comment may name its columns so, or between commas, whatever separates the samples, and behind
+    a word such as ``columns:``.
     """
-    rows = [cells_of(line, delimiter)]
-    rows += [] if delimiter else [re.split(r"\s{2,}|\t", line.strip())]
+    line = _PREFIX.sub("", line)
+    rows = [cells_of(line, other) for other in ",;" if not delimiter and other in line]
+    rows += [cells_of(line, delimiter), [cell.strip() for cell in re.split(r"\s{2,}|\t", line)]]
     return next((row for row in rows if len(row) in widths), [])

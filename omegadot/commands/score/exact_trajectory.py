@@ -6,6 +6,7 @@ That is its printed digits, rounding, and the resolvable floor.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -87,11 +88,11 @@ def _slope(times: Array, values: Array) -> Array:
     return np.asarray(np.abs(rate) if rate.ndim == 1 else norm(rate))
 
 
-def _digits_open(truth: Truth, trace: Trace) -> Rounding:
+def _digits_open(truth: Truth, trace: Trace, rotation_alone: bool) -> Rounding:
     """(n,) by channel, in its units: the resolution by the digits of values and of time stamps.
 
     To first order, each in its worst direction; a stamp's part is the exact rate of change times
-    what is open of the time.
+    what is open of the time. rotation_alone: whether the energy is that of the rotation.
     """
     yardstick, exact, when = truth.yardstick, truth.state, trace.open["times"]
     nothing = np.zeros(len(trace.times))
@@ -100,8 +101,10 @@ def _digits_open(truth: Truth, trace: Trace) -> Rounding:
     mass, scale = yardstick.scale.mass, yardstick.scale.largest
     rate, velocity = norm(exact.angular_velocity), norm(exact.linear_velocity)
     lever = yardstick.scale.lever if yardstick.system.load.pivot is not None else 0.0
-    energy = moment * spin + mass * velocity * speed
-    energy = energy + mass * yardstick.gravity * (place + lever * turn)
+    energy = moment * spin
+    if not rotation_alone:
+        energy = energy + mass * velocity * speed
+        energy = energy + mass * yardstick.gravity * (place + lever * turn)
     found = {
         "omega": (spin + norm(truth.omega_dot) * when) / yardstick.rate,
         "attitude": turn + rate * when,
@@ -118,17 +121,21 @@ def _digits_open(truth: Truth, trace: Trace) -> Rounding:
     return found
 
 
-def bounds_of(truth: Truth, trace: Trace) -> tuple[Rounding, Rounding]:
+def bounds_of(
+    truth: Truth, trace: Trace, rotation_alone: bool
+) -> tuple[Rounding, Rounding, Rounding]:
     """(n,) by channel: the resolution by the digits, and the whole of what is left open.
 
-    That is the digits, the rounding of a change of units and frames, and the resolvable floor. The
-    chain of roundings is that of an evaluation, not of a step.
+    The third is the resolution by the digits of the values alone, of stamps that are known exactly.
+    The whole is the digits, the rounding of a change of units and frames, and the resolvable floor.
+    The chain of roundings is that of an evaluation, not of a step.
     """
-    digits, count = _digits_open(truth, trace), len(truth.times)
+    digits, count = _digits_open(truth, trace, rotation_alone), len(truth.times)
     once = truth.yardstick.round_off(0.0, np.zeros(count), np.ones(count))
     chain = ROUNDINGS_PER_EVALUATION / ROUNDINGS_PER_STEP
     read = {c: chain * bound + truth.floor.get(c, 0.0) for c, bound in once.items()}
-    return digits, joined(digits, read)
+    still = replace(trace, open={**trace.open, "times": np.zeros(count)})
+    return digits, joined(digits, read), _digits_open(truth, still, rotation_alone)
 
 
 def joined(*bounds: Rounding) -> Rounding:

@@ -7,19 +7,31 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from omegadot.commands.score.attitude import wxyz
+from omegadot.commands.score.causes import causes_of_trace
+from omegadot.commands.score.clock import check_clock, check_duration
+from omegadot.commands.score.declared import Declared, declared_of
 from omegadot.commands.score.exact_trajectory import truth_at
+from omegadot.commands.score.held import Held, held_channels
 from omegadot.commands.score.measured import Measured, flips_of, measure_trace
-from omegadot.commands.score.plausible import check_duration, check_units
+from omegadot.commands.score.plausible import check_units
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.shift import Shift, shift_of
-from omegadot.commands.score.steps import Comparison, Declared, compare_schemes, declared_of
+from omegadot.commands.score.steps import (
+    Compared,
+    Comparison,
+    compare_schemes,
+)
 from omegadot.commands.score.trace import trace_of
+from omegadot.commands.score.world import Shifted, Turned, shifted_world, turned_world
 from omegadot.gates.case import Case
 from omegadot.gates.measured_run import CHANNELS
 from omegadot.gates.measures import INVARIANT_CHANNELS
 from omegadot.gates.rows import Row
 from omegadot.gates.verdicts import Finding
+from omegadot.reference_impl.euler_angles import Angles
 from omegadot.reference_impl.system import Array
 
 GATES = {c: "invariants" if c in INVARIANT_CHANNELS else "trajectory" for c in CHANNELS}
@@ -61,15 +73,29 @@ class Judged(Measured):
 
     reading: Reading
     declared: Declared | None
-    schemes: list[Comparison]
+    compared: Compared
     judgement: Mapping[str, Judgement]
     shift: Shift | None
     flips: list[Row]
+    turned: Turned | None
+    shifted: Shifted | None
+    held: list[Held]
+    causes: list[str]
 
     @property
     def scheme(self) -> str | None:
         """The scheme that is declared."""
         return self.declared.scheme if self.declared else None
+
+    @property
+    def own(self) -> Comparison | None:
+        """The comparison with the scheme that is declared."""
+        return self.compared.schemes[0] if self.scheme is not None else None
+
+    def nearest(self, channel: str) -> Comparison | None:
+        """The scheme that leaves the least of a channel's error, where that is next to nothing."""
+        near = [one for one in self.compared.schemes if one.near(channel, self.error[channel])]
+        return min(near, key=lambda one: float(np.max(one.left[channel])), default=None)
 
     def in_si(self, channel: str) -> ChannelScore:
         """One channel, in SI units."""
@@ -99,31 +125,54 @@ def judge_trace(
     Raises TraceError and UsageError.
     """
     trace = trace_of(reading, case.system)
-    check_duration(reading, trace, case.scenario.run.duration)
-    declared = declared_of(trace, scheme, timestep)
+    check_duration(reading, case.scenario.run.duration)
+    trace, declared = declared_of(trace, scheme, timestep, _angles(reading))
     truth = truth_at(case.system, case.initial, trace.times)
     measured = measure_trace(case, trace, truth)
     check_units(measured, reading)
-    schemes = [] if declared is None else compare_schemes(measured, declared)
+    check_clock(measured, reading, case.scenario.run.duration)
+    compared = Compared([]) if declared is None else compare_schemes(measured, declared)
+    shift = shift_of(measured)
+    turned, shifted = turned_world(measured, shift), shifted_world(measured)
+    explained = bool(shift and shift.explains) or turned is not None or shifted is not None
+    explained = explained or any(one.agrees("omega") for one in compared.schemes)
     return Judged(
         **vars(measured),
         reading=reading,
         declared=declared,
-        schemes=schemes,
-        judgement=_judgements(measured, declared, schemes),
-        shift=shift_of(measured),
+        compared=compared,
+        judgement=_judgements(measured, declared, compared.schemes),
+        shift=shift,
         flips=flips_of(measured),
+        turned=turned,
+        shifted=shifted,
+        held=held_channels(measured, reading),
+        causes=[] if explained else causes_of_trace(measured),
     )
+
+
+def _angles(reading: Reading) -> Angles:
+    """The Euler angles that the trace's simulator may have stepped: those of the trace, or ZYX."""
+    how = reading.how
+    world, body = (
+        None if np.array_equal(axes, np.eye(3)) else wxyz(Rotation.from_matrix(axes))
+        for axes in (how.world_axes, how.body_axes)
+    )
+    stepped = "e1" in reading.columns and how.attitude_is == "world-from-body"
+    if not stepped:
+        return Angles("ZYX", world, body)
+    intrinsic = how.euler if how.euler.isupper() else how.euler.upper()[::-1]
+    return Angles(intrinsic, world, body)
 
 
 def _finding(error: Array, bound: Array, own: Comparison | None, channel: str) -> Finding:
     if np.all(error <= bound):
         return Finding("round-off", "within digits and rounding")
     if own is not None:
-        left, allowed = own.left[channel], own.bound[channel]
-        if np.all(left <= allowed):
-            return Finding("explained", f"explained by {own.scheme}, to {np.max(left):.1e}")
-        return Finding("unexplained", f"not explained by {own.scheme}: {np.max(left):.1e} is left")
+        left = float(np.max(own.left[channel]))
+        if own.agrees(channel):
+            return Finding("explained", f"explained by {own.scheme}, to {left:.1e}")
+        return Finding("unexplained", f"not explained by {own.scheme}: {left:.1e} is left")
     return Finding("beyond", "measured, not judged: no scheme is declared")
 
 
@@ -136,11 +185,10 @@ def _judgements(
     channels are within what digits and rounding leave open.
     """
     own = schemes[0] if declared and declared.scheme is not None else None
-    agreeing = next((one for one in schemes if one.found.agree), None)
-    findings = {
-        channel: _finding(error, measured.bound[channel], own or agreeing, channel)
-        for channel, error in measured.error.items()
-    }
+    findings = {}
+    for channel, error in measured.error.items():
+        agreeing = next((one for one in schemes if one.agrees(channel)), None)
+        findings[channel] = _finding(error, measured.bound[channel], own or agreeing, channel)
     found = {}
     for channel, finding in findings.items():
         verdict, note = finding.verdict, finding.note
@@ -150,8 +198,7 @@ def _judgements(
             alike = [f for c, f in findings.items() if GATES[c] == GATES[channel]]
             whole = all(f.kind == "round-off" for f in alike)
             verdict = "pass" if whole else "info"
-            if agreeing is not None and finding.kind == "explained":
-                note += " (not declared)"
+            note += " (not declared)" if finding.kind == "explained" else ""
         remark = measured.remarks.get(channel)
         found[channel] = Judgement(finding.kind, verdict, f"{note}; {remark}" if remark else note)
     return found

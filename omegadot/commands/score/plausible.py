@@ -7,52 +7,26 @@ from typing import Any
 
 import numpy as np
 
+from omegadot.commands.score.clock import GROSS, NEARER
 from omegadot.commands.score.columns import GROUPS
 from omegadot.commands.score.convention import option_of
 from omegadot.commands.score.measured import Measured, measure_trace
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import TraceError
-from omegadot.commands.score.trace import Trace, trace_of
+from omegadot.commands.score.trace import trace_of
 from omegadot.commands.units import UNITS
 from omegadot.gates.scales import norm
 
-# Wrong beyond doubt: a twentieth of the motion's size off, and twenty times nearer otherwise.
-GROSS = 0.05
-NEARER = 20.0
-LONGEST = 20.0  # times the scenario's duration
 # The motion has moved by then, and an error of the simulator's has not grown large.
 FIRST = 0.25
-
-
-def check_duration(reading: Reading, trace: Trace, duration: float) -> None:
-    """Raise TraceError where the time stamps run far from the scenario's."""
-    table, how = reading.table, reading.how
-    first, end = float(trace.times[0]), float(trace.times[-1])
-    if first < 0.0:
-        raise TraceError(
-            f"{table.file}: {table.place(0)}: starts {-first:g} s before the scenario does; give "
-            f"--time-offset {first + how.time_offset:g} if the motion begins there."
-        )
-    if end <= LONGEST * duration:
-        return
-    unit = how.scale_of("time")
-    spans = {name: end * size / unit for name, size in UNITS["time"].items()}
-    spans = {name: span for name, span in spans.items() if span <= 1.5 * duration}
-    # The longest that does not outlast the scenario; far shorter, and it is any unit's guess.
-    best = max(spans, key=lambda u: spans[u], default=None)
-    fits = best is not None and spans[best] > 0.01 * duration
-    advice = f"looks like {best}; give --time-unit {best}" if fits else ""
-    raise TraceError(
-        f"{table.file}: runs until {end:g} s, the scenario lasts {duration:g} s; "
-        f"{advice or 'declare the unit with --time-unit, or score it by a longer scenario'}."
-    )
 
 
 def check_units(found: Measured, reading: Reading) -> None:
     """Raise TraceError where another unit than the declared one fits, and that one does not."""
     for kind, (group, channel, what) in _SIGNS.items():
         units, field = UNITS[kind], f"{kind}_unit"
-        if GROUPS[group][0] not in reading.columns or _misfit(found, channel) <= GROSS:
+        given_roles = set(GROUPS[group]) & set(reading.columns)
+        if not given_roles or channel not in found.error or _misfit(found, channel) <= GROSS:
             continue
         given = getattr(reading.how, field)
         for unit in units:

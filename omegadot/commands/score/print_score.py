@@ -15,8 +15,8 @@ from omegadot.commands.run.print_run import exit_code
 from omegadot.commands.score.detection.detect import Detected
 from omegadot.commands.score.detection.reading import Reading
 from omegadot.commands.score.judged import Judged
+from omegadot.commands.score.own_units import in_own_unit
 from omegadot.commands.score.score import ScoreResult
-from omegadot.commands.score.sentences import in_own_unit
 from omegadot.commands.score.shift import scatter
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
@@ -97,6 +97,11 @@ def print_json(result: ScoreResult) -> None:
         "channels": {channel: vars(score) for channel, score in result.channels.items()},
         "not_given": result.not_given,
         "shift": late,
+        "turned": found.turned and {**vars(found.turned), "vector": found.turned.vector.tolist()},
+        "shifted": found.shifted
+        and {**vars(found.shifted), "offset": found.shifted.offset.tolist()},
+        "causes": found.causes,
+        "held": [vars(held) for held in found.held],
         "requirements": [vars(row) for row in result.requirements],
         "sentences": result.sentences,
         "tasks": result.record.run["tasks"],

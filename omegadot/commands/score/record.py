@@ -16,7 +16,7 @@ from omegadot.commands.run.record import record_of
 from omegadot.commands.run.run import execute
 from omegadot.commands.score.convention import Convention, axes_text
 from omegadot.commands.score.judged import Judged
-from omegadot.commands.score.sentences import in_own_unit
+from omegadot.commands.score.own_units import in_own_unit
 from omegadot.gates.rows import Row, worst
 from omegadot.harness.collect import COLUMNS
 from omegadot.harness.outcome import JudgedCase, Outcome, RunRequest

@@ -7,15 +7,22 @@ from functools import partial
 
 import numpy as np
 
+from omegadot.commands.score.declared import KNOWN
 from omegadot.commands.score.judged import GATES, Judged
+from omegadot.commands.score.own_units import factor_of
 from omegadot.commands.score.require import Requirement, requirement_row
+from omegadot.commands.score.steps import Comparison
 from omegadot.gates.equation import forward_rows
 from omegadot.gates.invariants import HORIZONS
+from omegadot.gates.likeness import Likeness
 from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
 from omegadot.gates.rows import Row
 from omegadot.gates.scales import norm, torque_size
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.system import Acceleration
+
+SPINS = ("omega", "attitude")
+MOST_NAMED = 3
 
 
 def rows_of(found: Judged, requirements: list[Requirement]) -> list[Row]:
@@ -46,8 +53,7 @@ def _trajectory(found: Judged, channel: str) -> list[Row]:
     ]
     if channel in found.truth.floor:
         rows.append(row("resolvable_floor", float(np.max(found.truth.floor[channel]))))
-    if found.scheme is not None:
-        own = found.schemes[0]
+    if own := found.own:
         left, bound = float(np.max(own.left[channel])), float(np.max(own.bound[channel]))
         rows.append(row("unexplained_max", left, bound=bound))
     return rows
@@ -93,24 +99,56 @@ def _shift(found: Judged) -> list[Row]:
 
 def _scheme(found: Judged) -> list[Row]:
     """As the scheme gate has it: the distance from the scheme in parts of its bound."""
-    if not found.schemes:
+    own, schemes, missing = found.own, found.compared.schemes, found.compared.not_sought
+    if found.declared is None:
         return []
-    names = " and ".join(one.scheme for one in found.schemes if one.found.agree)
-    wanted, own, verdict = found.scheme, found.schemes[0].found, "info"
-    if wanted is None:
-        own = min((one.found for one in found.schemes), key=lambda f: (np.isnan(f.share), f.share))
-        note = f"declares no scheme, and equals {names or 'none known'}"
-    elif np.isnan(own.share):
+    if own is None:
+        note = f"declares no scheme; {missing or _equals(found, schemes)}"
+        least = [one.found for one in schemes if not np.isnan(one.found.share)]
+        best = min(least, key=lambda f: f.share, default=Likeness(float("nan"), "omega", 0.0))
+        return [Row("scheme", best.channel, "match", best.share, "1", 1.0, "info", note)]
+    share, verdict = own.found.share, "info"
+    if np.isnan(share):
         note = "not judged: the scheme itself blows up at so large a step"
-    elif own.agree:
-        verdict, note = "pass", f"equals {wanted}, to {own.distance:.1e}"
+    elif own.found.agree:
+        verdict, note = "pass", f"equals {found.scheme}, to {own.found.distance:.1e}"
     else:
-        instead = f"equals {names}" if names else "steps otherwise"
-        verdict = "fail"
-        note = f"declares {wanted}, but {instead}: {own.channel} diverges from it"
-    if found.schemes[0].own_start:
+        verdict, others = "fail", [one for one in schemes[1:] if one.scheme != own.scheme]
+        apart = ", ".join(c for c in SPINS if c in found.error and not own.agrees(c))
+        instead = missing or _equals(found, others)
+        note = f"declares {found.scheme}, but {apart} diverges from it; {instead}"
+    if own.own_start:
         verdict, note = "info", f"{note}, from its own start, which is not the scenario's"
-    return [Row("scheme", own.channel, "match", own.share, "1", 1.0, verdict, note)]
+    return [Row("scheme", own.found.channel, "match", share, "1", 1.0, verdict, note)]
+
+
+def _equals(found: Judged, schemes: list[Comparison]) -> str:
+    """Which schemes each channel equals, or is near, one clause for channels that do alike."""
+    channels = [c for c in SPINS if c in found.error]
+    whole = [one for one in schemes if all(one.agrees(c) for c in channels)]
+    if whole:
+        return f"it {_named(whole)}"
+    clauses: dict[str, list[str]] = {}
+    for channel in channels:
+        alike, near = [one for one in schemes if one.agrees(channel)], found.nearest(channel)
+        if alike:
+            clause = _named(alike)
+        elif near is not None:
+            factor, unit = factor_of(found, channel)
+            left, error = (factor * float(np.max(x[channel])) for x in (near.left, found.error))
+            clause = f"is nearest to {near.scheme}, which leaves {left:.1e} of {error:.3g} {unit}"
+        else:
+            clause = f"equals none of the {len(KNOWN)} that are known"
+        clauses.setdefault(clause, []).append(channel)
+    return ", ".join(f"{' and '.join(names)} {clause}" for clause, names in clauses.items())
+
+
+def _named(schemes: list[Comparison]) -> str:
+    """``equals rk4-quaternion and lie-rk4 and 2 more``."""
+    names = list(dict.fromkeys(one.scheme for one in schemes))
+    more = f" and {len(names) - MOST_NAMED} more" if names[MOST_NAMED:] else ""
+    own = ", from its own start" if all(one.own_start for one in schemes) else ""
+    return f"equals {' and '.join(names[:MOST_NAMED])}{more}{own}"
 
 
 def _equation(found: Judged) -> list[Row]:

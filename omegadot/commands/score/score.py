@@ -86,7 +86,12 @@ def score(
     point: str | None = None,
     world_axes: str | None = None,
     body_axes: str | None = None,
-    time_offset: float | None = None,
+    time_offset: float | str | None = None,
+    rate: float | None = None,
+    from_time: float | str | None = None,
+    to_time: float | str | None = None,
+    world_rate: str | None = None,
+    world_origin: str | None = None,
     integrator_scheme: str | None = None,
     timestep: float | None = None,
     attitude: str | None = None,
@@ -104,7 +109,7 @@ def score(
     """Score a trajectory of any simulator, or a log, against a scenario's exact solution.
 
     trace: a CSV or Parquet file.  scenario: what it is a motion of.
-    columns, map_file, and the twelve settings from time_unit to time_offset: how it is to be read,
+    columns, map_file, and the settings from time_unit to world_origin: how it is to be read,
     as of the command.  integrator_scheme, timestep (s): how it was stepped, where that is known.
     attitude to flip_time: the largest errors allowed, each a text with its unit (``"0.1deg"``).
     name: what the trace is called in the record.  engines: to be run in addition, by name.
@@ -113,7 +118,7 @@ def score(
     RunInterrupted on Ctrl-C.
     """
     given = locals()
-    settings = {key: given[key.replace("-", "_")] for key in SETTINGS}
+    settings = {key: given[field] for key, field in SETTINGS.items()}
     required = {key: given[key.replace("-", "_")] for key in KINDS}
     case, choices = case_given(scenario), _choices(name, several(engines))
     if out is not None:

@@ -2,32 +2,62 @@
 
 from __future__ import annotations
 
-from omegadot.commands.score.judged import ChannelScore, Judged
+import numpy as np
+
+from omegadot.commands.score.axes_sentences import axes_sentences
+from omegadot.commands.score.judged import Judged
+from omegadot.commands.score.own_units import factor_of, in_own_unit
 from omegadot.commands.score.shift import scatter
+from omegadot.commands.score.stamps import gaps_of
 from omegadot.gates.rows import Row
-
-
-def factor_of(found: Judged, channel: str) -> tuple[float, str]:
-    """From the yardstick's unit to the one that people read here, the trace's own, and its name."""
-    how = found.reading.how
-    if channel == "omega":
-        return found.rate / how.scale_of("rate"), how.rate_unit
-    if channel == "attitude":
-        by_angles = "e1" in found.reading.columns
-        return (1.0 / how.scale_of("angle"), how.angle_unit) if by_angles else (1.0, "rad")
-    if channel == "position":
-        return 1.0 / how.scale_of("length"), how.length_unit
-    return 1.0, "relative"
-
-
-def in_own_unit(found: Judged, channel: str) -> ChannelScore:
-    """One channel, in the trace's own unit."""
-    return found.score(channel, *factor_of(found, channel))
 
 
 def sentences(found: Judged, rows: list[Row]) -> list[str]:
     """What the table of channels does not show, one sentence each."""
-    return [*_late(found), *_start(found), *_notes(rows), *_digits(found), *_absent(found)]
+    return [
+        *_samples(found),
+        *_late(found),
+        *axes_sentences(found),
+        *(
+            f"Likeliest cause: {cause}. The motion with that equals the trace's."
+            for cause in found.causes
+        ),
+        *_start(found),
+        *_notes(rows),
+        *_digits(found),
+        *_absent(found),
+    ]
+
+
+def _samples(found: Judged) -> list[str]:
+    """Missing and held samples, and stamps that are not quite what they stand for."""
+    table, stamps, lines = found.reading.table, found.reading.stamps, list[str]()
+    if gaps := gaps_of(table, stamps):
+        lines.append(gaps)
+    for held in found.held:
+        where = f"from {table.place(held.first)} to {table.place(held.last)}"
+        what = f"at its {held.kind} value, {held.value:.10g}, {where}"
+        if held.kind == "throughout":
+            what = f"{held.value:.10g} throughout"
+        elif held.kind == "between":
+            what = f"{held.value:.10g} {where}"
+        cause = "stale" if held.kind == "between" else "saturated"
+        lines.append(
+            f"{held.column} is {what} ({held.count} samples), while the exact one changes: it "
+            f"looks {cause}."
+        )
+    opened = float(np.max(found.trace.open["times"]))
+    if stamps.single:
+        lines.append(
+            f"The time stamps are in single precision, which leaves up to {opened:.1e} s of each "
+            "open."
+        )
+    elif found.declared and found.declared.off:
+        lines.append(
+            f"The time stamps lie up to {found.declared.off:.1e} s off whole steps, and so much of "
+            "each is taken as open."
+        )
+    return lines
 
 
 def _late(found: Judged) -> list[str]:

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import datetime, time
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.commands.score.columns import GROUPS, Columns, assignments_of, columns_of
-from omegadot.commands.score.convention import SETTINGS, Convention, convention_of
-from omegadot.commands.score.table import Table
+from omegadot.commands.score.convention import NUMBERS, SETTINGS, Convention, convention_of
+from omegadot.commands.score.digits import longest, open_of, shared_digits
+from omegadot.commands.score.stamps import Stamps, counted, in_window, instant, stamps_of
+from omegadot.commands.score.table import Column, Table, TraceError
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
 
@@ -30,25 +35,76 @@ class Reading:
     columns: Columns
     how: Convention
 
+    @cached_property
+    def stamps(self) -> Stamps:
+        """The samples' times in the trace's own time. Raises TraceError."""
+        if self.how.rate is not None:
+            return counted(self.table, self.how.rate)
+        return stamps_of(self.table, self.columns["t"], self.how.scale_of("time"))
+
+    @property
+    def times(self) -> Array:
+        """(n,) s since the scenario's start."""
+        return self.stamps.since(instant(self.how.time_offset, "--time-offset"))
+
+    def part(self, inside: NDArray[np.bool_]) -> Reading:
+        """The samples for which `inside`, (n,), is true."""
+        return replace(self, table=self.table.part(inside))
+
+    @cached_property
+    def _writer(self) -> tuple[int, int]:
+        """The digits that the columns other than the time share."""
+        names = dict.fromkeys(name for role, name in self.columns.items() if role != "t")
+        parts = [self.table.column(name) for name in names]
+        texts = [part.texts for part in parts if part.texts is not None]
+        return shared_digits(texts, [part.values for part in parts if part.texts is not None])
+
+    def _open(self, column: Column) -> Array:
+        values, texts = column.values, column.texts
+        if texts is None or np.any(values != values[0]):
+            return column.open
+        own = longest(texts)
+        return open_of(texts, values, (max(own[0], self._writer[0]), max(own[1], self._writer[1])))
+
     def group(self, name: str) -> tuple[Array, Array] | None:
         """(n, k): the columns of a group in the order of its roles, and their resolution.
 
-        None where the group is not given.
+        None where the group is not given; a column of it that is not is NaN, with nothing open.
         """
-        if GROUPS[name][0] not in self.columns:
+        roles = GROUPS[name]
+        if not any(role in self.columns for role in roles):
             return None
-        parts = [self.table.column(self.columns[role]) for role in GROUPS[name]]
-        opened = np.stack([part.open for part in parts], axis=-1)
-        return np.stack([part.values for part in parts], axis=-1), opened
+        values = np.full((len(roles), len(self.table)), np.nan)
+        opened = np.zeros_like(values)
+        for place, role in enumerate(roles):
+            if role in self.columns:
+                column = self.table.column(self.columns[role])
+                values[place], opened[place] = column.values, self._open(column)
+        return values.T, opened.T
 
 
 def reading_of(
     table: Table, columns: GivenColumns, map_file: Path | None, settings: Mapping[str, Any]
 ) -> Reading:
-    """The trace's columns and convention. Raises UsageError and TraceError."""
+    """The trace's columns and convention, in its window. Raises UsageError and TraceError."""
     assigned, declared = settings_of(columns, map_file, settings)
     how = convention_of(declared)
-    return Reading(table, columns_of(table, assigned, how.quaternion, how.euler), how)
+    timed = how.rate is None
+    found = Reading(table, columns_of(table, assigned, how.quaternion, how.euler, timed), how)
+    first, last = (
+        None if text is None else instant(text, option)
+        for text, option in ((how.from_time, "--from"), (how.to_time, "--to"))
+    )
+    if first is None and last is None:
+        return found
+    inside = in_window(found.stamps, first, last)
+    if np.sum(inside) < 2:
+        own = found.stamps
+        raise TraceError(
+            f"{table.file}: --from and --to leave {np.sum(inside)} of the samples, which run from "
+            f"{own.text(0)} to {own.text(-1)} s; give a window with at least two."
+        )
+    return found.part(inside)
 
 
 def settings_of(
@@ -84,18 +140,21 @@ def _read_map(path: Path) -> tuple[Assigned, dict[str, Any]]:
         reason = str(error).splitlines()[0].rstrip(".")
         raise UsageError(f"--map {path}: not valid TOML ({reason}).") from error
     columns = data.pop("columns", {})
+    instants = {k: v for k, v in data.items() if isinstance(v, datetime | time)}
+    data |= {key: value.isoformat() for key, value in instants.items()}
     if not isinstance(columns, dict):
         raise UsageError(f"--map {path}: columns must be a table, like [columns] with t = 'time'.")
     for key, value in data.items():
         if key not in SETTINGS:
             raise UsageError(f"--map {path}: there is no key {key!r}; {nearest(key, SETTINGS)}.")
         number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not (number if key == "time-offset" else isinstance(value, str)):
-            expected = "a number" if key == "time-offset" else "a text"
+        fits = isinstance(value, str) and key != "rate"
+        if not (fits or (number and key in NUMBERS)):
+            expected = "a number" if key in NUMBERS else "a text"
             raise UsageError(f"--map {path}: {key} is {value!r}; give {expected}.")
     for role, value in columns.items():
         names = value if isinstance(value, list) else [value]
-        if not names or not all(isinstance(name, str) and name for name in names):
+        if not all(isinstance(name, str) and name for name in names):
             raise UsageError(
                 f"--map {path}: columns.{role} is {value!r}; give a column's name or a list of "
                 "them."

@@ -31,6 +31,7 @@ class Shift:
     left: (m, 3), the remaining error at the samples.
     attitude_after: rad, the largest attitude error that is left; None where it is not given.
     bound: what digits and rounding account for of `after`.  of: "omega" or "attitude".
+    first: the sample from which on the trace is shifted; those before are on time.
     """
 
     of: str
@@ -41,6 +42,7 @@ class Shift:
     bound: float
     left: Array
     attitude_after: float | None
+    first: int = 0
 
     @property
     def seen(self) -> bool:
@@ -55,7 +57,12 @@ class Shift:
     @property
     def as_text(self) -> str:
         """``late by 3.20e-04 s``."""
-        return f"{'late' if self.seconds < 0.0 else 'early'} by {abs(self.seconds):.3e} s"
+        text = f"{'late' if self.seconds < 0.0 else 'early'} by {abs(self.seconds):.3e} s"
+        if not self.first:
+            return text
+        number = f"{self.first + 1}th" if self.first > 2 else ("second", "third")[self.first - 1]
+        alone = "the first alone is" if self.first == 1 else "those before are"
+        return f"{text} from the {number} sample on; {alone} on time"
 
     @property
     def note(self) -> str:
@@ -65,42 +72,65 @@ class Shift:
 
 def shift_of(found: Measured) -> Shift | None:
     """By omega; by the attitude where no omega is given, or where it is constant."""
-    by_omega = _best(found, "omega") if "omega" in found.error else None
-    if by_omega is None and "attitude" in found.error:
-        return _best(found, "attitude")
-    return by_omega
+    for of in ("omega", "attitude"):
+        if of in found.error and (shift := _of_samples(found, of)) is not None:
+            return shift
+    return None
 
 
-def _residual(found: Measured, of: str, shift: float) -> tuple[Array, Array]:
+def _of_samples(found: Measured, of: str) -> Shift | None:
+    """The shift of all samples, or of those behind the first ones that are on time.
+
+    A simulator may log its initial state apart: its first sample is then on time, and all others
+    are not.
+    """
+    whole = _best(found, of, 0)
+    if whole is None or whole.explains or found.trace.times[0] > found.trace.open["times"][0]:
+        return whole
+    late = np.flatnonzero(found.error[of] > found.bound[of])
+    first = max(1, int(late[0])) if len(late) else 0
+    if not first or len(found.trace.times) - first < 3:
+        return whole
+    rest = _best(found, of, first)
+    return rest if rest is not None and rest.explains else whole
+
+
+def _residual(found: Measured, of: str, shift: float, first: int) -> tuple[Array, Array]:
     """(m, 3): trace minus exact at the samples that a shift leaves inside, and the rate of change.
 
-    Of omega, or of the attitude as a rotation vector in body axes.
+    Of omega, or of the attitude as a rotation vector in body axes. Zero, both, in components that
+    the trace does not give.
     """
-    inside = found.trace.times + shift >= 0.0
-    exact = found.trajectory(found.trace.times[inside] + shift)
-    if of == "omega":
+    times = found.trace.times[first:] + shift
+    inside = times >= 0.0
+    exact = found.trajectory(times[inside])
+    if of == "omega" and found.trace.angular_velocity is not None:
         slope = forward_dynamics(found.case.system, exact).angular
-        return found.state.angular_velocity[inside] - exact.angular_velocity, slope
-    own = normalize(found.state.orientation[inside])
+        own = found.trace.angular_velocity[first:][inside]
+        known = ~np.isnan(own)
+        gap = np.where(known, own - exact.angular_velocity, 0.0)
+        return gap, np.where(known, slope, 0.0)
+    own = normalize(found.state.orientation[first:][inside])
     return rotation_between(exact.orientation, own), exact.angular_velocity
 
 
-def _start(found: Measured, open_gap: float) -> float:
+def _start(found: Measured, omega: Array, first: int, open_gap: float) -> float:
     """A shift to begin with: the smallest that fits as well as any, half a gap allowed for."""
-    trace, omega = found.trace, found.state.angular_velocity
-    rows = np.unique(np.linspace(0, len(trace.times) - 1, MOST_COMPARED).round().astype(int))
+    trace = found.trace
+    known = ~np.isnan(omega[0])
+    rows = np.unique(np.linspace(first, len(trace.times) - 1, MOST_COMPARED).round().astype(int))
     times, duration = trace.times[rows], float(trace.times[-1])
     gap = max(FARTHEST * duration / MOST_COMPARED, open_gap)
     shifts = gap * np.arange(-MOST_COMPARED, MOST_COMPARED + 1)
     grid = gap * np.arange(int(np.ceil(1.25 * duration / gap)) + 2)
-    exact = found.trajectory(grid).angular_velocity
+    exact = found.trajectory(grid).angular_velocity[:, known]
     wanted = times[None, :] + shifts[:, None]
     inside = wanted >= 0.0
     place = np.clip(wanted / gap, 0.0, len(grid) - 2.0)
     left = place.astype(int)
     share = (place - left)[..., None]
     value = (1.0 - share) * exact[left] + share * exact[left + 1]
-    gaps = np.sum((omega[rows] - value) ** 2, axis=-1)
+    gaps = np.sum((omega[rows][:, known] - value) ** 2, axis=-1)
     counts = np.maximum(np.sum(inside, axis=1), 1)
     squares = np.sum(np.where(inside, gaps, 0.0), axis=1) / counts
     rates = np.diff(exact, axis=0) / gap
@@ -109,35 +139,43 @@ def _start(found: Measured, open_gap: float) -> float:
     return float(fitting[np.argmin(np.abs(fitting))])
 
 
-def _best(found: Measured, of: str) -> Shift | None:
+def _best(found: Measured, of: str, first: int) -> Shift | None:
     """The shift that minimises the squares, by Gauss-Newton; None where nothing changes in time."""
     trace, unit = found.trace, found.rate if of == "omega" else 1.0
-    limit = unit * float(np.max(found.bound[of]))
-    before, slope = _residual(found, of, 0.0)
+    limit = unit * float(np.max(found.bound[of][first:]))
+    before, slope = _residual(found, of, 0.0, first)
     change = float(np.sqrt(np.mean(np.sum(slope * slope, axis=-1))))
     duration = float(trace.times[-1])
     if not change * duration > limit or len(trace.times) < 3:
         return None
-    farthest = FARTHEST * duration
-    shift = _start(found, EPS * duration) if of == "omega" else 0.0
+    farthest, omega = FARTHEST * duration, trace.angular_velocity
+    by_omega = of == "omega" and omega is not None
+    shift = _start(found, omega, first, EPS * duration) if by_omega else 0.0  # type: ignore[arg-type]
     step = farthest / MOST_COMPARED
     for _ in range(2 * MOST_ITERATIONS):
-        residual, slope = _residual(found, of, shift)
+        residual, slope = _residual(found, of, shift, first)
         more = float(np.sum(residual * slope) / np.sum(slope * slope))
         more = float(np.clip(more, -step, step))
         if not abs(shift + more) <= farthest or abs(more) <= EPS * duration:
             break
         shift += more
-    left, slope = _residual(found, of, shift)
+    left, slope = _residual(found, of, shift, first)
     # What is left moves the fit as well: four standard errors of it.
     spread = 4.0 * float(np.sqrt(np.mean(left * left) / np.sum(slope * slope)))
-    attitude = None
-    if trace.orientation is not None:
-        inside = trace.times + shift >= 0.0
-        exact = found.trajectory(trace.times[inside] + shift).orientation
-        attitude = float(np.max(attitude_angle(exact, normalize(trace.orientation[inside]))))
+    attitude = _attitude_left(found, shift, first)
     largest, after = float(np.max(norm(before))), float(np.max(norm(left)))
-    return Shift(of, shift, limit / change + spread, largest, after, limit, left, attitude)
+    open_shift = limit / change + spread
+    return Shift(of, shift, open_shift, largest, after, limit, left, attitude, first)
+
+
+def _attitude_left(found: Measured, shift: float, first: int) -> float | None:
+    """Rad, the largest attitude error that a shift leaves."""
+    orientation, times = found.trace.orientation, found.trace.times[first:] + shift
+    if orientation is None:
+        return None
+    inside = times >= 0.0
+    exact = found.trajectory(times[inside]).orientation
+    return float(np.max(attitude_angle(exact, normalize(orientation[first:][inside]))))
 
 
 def scatter(shift: Shift) -> float | None:

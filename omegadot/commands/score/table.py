@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
+from omegadot.commands.score.dates import decimal_seconds
 from omegadot.commands.score.digits import DECIMAL_COMMA, NOT_FINITE, NUMBER, open_of, open_time
 from omegadot.gates.scales import EPS
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
 
+_UNIT = re.compile(r"\s*(\([^()]*\)|\[[^\[\]]*\])\s*$")
 MOST_SAMPLES = 200_000
 LARGEST_NUMBER = 1e100  # its square is a number too; no motion holds more
 
@@ -49,6 +51,7 @@ class Table:
     """A trace's file. cells: by column, the texts of a CSV file, or the values of a Parquet file.
 
     lines: those that a CSV file's samples stand in, None of a Parquet file.  decimal: its sign.
+    rows: which of the file's samples these are; None of all.
     """
 
     file: str
@@ -56,19 +59,53 @@ class Table:
     cells: list[pl.Series]
     lines: pl.Series | None = None
     decimal: str = "."
+    rows: NDArray[np.intp] | None = None
 
     def __len__(self) -> int:
         """How many samples there are."""
         return len(self.cells[0])
 
+    @property
+    def numbers(self) -> NDArray[np.intp]:
+        """(n,): the samples' numbers in the file, from zero."""
+        return np.arange(len(self)) if self.rows is None else self.rows
+
+    def part(self, inside: NDArray[np.bool_]) -> Table:
+        """The samples for which `inside`, (n,), is true."""
+        rows = np.flatnonzero(inside)
+        lines = None if self.lines is None else self.lines.gather(rows)
+        cells = [cell.gather(rows) for cell in self.cells]
+        return replace(self, cells=cells, lines=lines, rows=self.numbers[rows])
+
     def place(self, sample: int) -> str:
         """Where a sample stands in the file: "line 7" or "row 7"."""
-        return f"row {sample + 1}" if self.lines is None else f"line {self.lines[sample]}"
+        if self.lines is None:
+            return f"row {self.numbers[sample] + 1}"
+        return f"line {self.lines[sample]}"
+
+    def _cells(self, name: str) -> pl.Series:
+        check_alone(self, name)
+        return self.cells[self.names.index(name) if name in self.names else int(name[1:]) - 1]
+
+    def times(self, name: str) -> tuple[Column, bool]:
+        """A column of time stamps, and whether they are dates. Raises TraceError.
+
+        Dates are read as s since 1970, times of day as s since midnight.
+        """
+        cells = self._cells(name)
+        texts = decimal_seconds(cells)
+        if texts is None:
+            column = self.column(name)
+            if cells.dtype.is_integer():  # an epoch in ns has more digits than a double
+                column = replace(column, texts=[str(cell) for cell in cells])
+            return column, False
+        well = np.array([bool(text) for text in texts])
+        self._check(name, cells, well)
+        return Column(np.array([float(text) for text in texts]), texts), True
 
     def column(self, name: str) -> Column:
         """One column's numbers. Raises TraceError where it holds anything else."""
-        check_alone(self, name)
-        cells = self.cells[self.names.index(name) if name in self.names else int(name[1:]) - 1]
+        cells = self._cells(name)
         if self.lines is None:
             if not cells.dtype.is_numeric():
                 raise TraceError(f"{self.file}: {name!r} holds {cells.dtype}, not numbers.")
@@ -107,6 +144,11 @@ class Table:
         return f"is {text[:20]!r}, a number was expected"
 
 
+def bare(name: str) -> str:
+    """A column's name in small letters and without its unit: "wx" of ``wX (deg/s)``."""
+    return _UNIT.sub("", name).strip().casefold()
+
+
 def find_column(table: Table, wanted: str, role: str) -> str:
     """The column of this name, or of this number (from one, as ``#3``). Raises TraceError."""
     if wanted in table.names:
@@ -120,9 +162,11 @@ def find_column(table: Table, wanted: str, role: str) -> str:
         raise TraceError(
             f"{table.file}: there is no column {wanted} for {role}; it has {len(table.names)}."
         )
-    folded = {name.casefold(): name for name in table.names}
-    if wanted.casefold() in folded:
-        return folded[wanted.casefold()]
+    for known in (str.casefold, bare):
+        alike = [name for name in table.names if known(name) == wanted.casefold()]
+        if len(alike) == 1 or len(set(alike)) == 1:
+            check_alone(table, alike[0])
+            return alike[0]
     advice, shown = nearest(wanted, table.names), ", ".join(map(repr, table.names[:20]))
     advice = advice if advice.startswith("write ") else "give an existing one"
     more = f" and {len(table.names) - 20} more" if len(table.names) > 20 else ""

@@ -15,21 +15,21 @@ from pathlib import Path
 import numpy as np
 
 from omegadot.commands.score.detection.candidates import Attitude, attitudes, omegas
-from omegadot.commands.score.detection.numbers import AXES, SAME, Numbers, rotations
+from omegadot.commands.score.detection.clocks import Timed, clocks_of
+from omegadot.commands.score.detection.numbers import AXES, SAME, Numbers, Rotated, rotations
 from omegadot.commands.score.detection.reading import Clock, Reading, unlike
 from omegadot.commands.score.exact_trajectory import exact_trajectory
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.score import case_given
 from omegadot.commands.score.settings import GivenColumns, settings_of
-from omegadot.commands.score.table import Table, TraceError, find_column
-from omegadot.commands.units import UNITS
+from omegadot.commands.score.table import Table, TraceError, bare, find_column
 from omegadot.gates.case import Case
 from omegadot.reference_impl.system import Array
 from omegadot.scenarios import ScenarioLike
 
 MOST_SAMPLES = 60
 BETTER = 10.0
-LONGEST = 20.0  # times the scenario's duration
+KINDS = {"q": "quaternion", "e": "Euler angles", "r": "matrix", "w": "omega"}
 # Below this a misfit is rounding, of a median over a chain of them.
 ROUNDING = 1024 * float(np.finfo(float).eps)
 
@@ -53,23 +53,33 @@ def detect(
     *,
     columns: GivenColumns = (),
     map_file: str | os.PathLike[str] | None = None,
+    rate: float | None = None,
+    from_time: float | str | None = None,
+    to_time: float | str | None = None,
 ) -> Detected:
     """Which conventions a trace can be read in so that it is the scenario's motion.
 
     ``fitting`` holds one reading where the conventions are found; its ``arguments()`` are those to
     score with, ``score(trace, scenario, **reading.arguments())``.
-    columns, map_file: as of `score`; of columns that are named, these alone are tried.
+    columns, map_file, rate, from_time, to_time: as of `score`; of columns that are named, these
+    alone are tried, and as the group that they are named for.
     Raises UsageError, TraceError (a UsageError) and ScenarioError.
     """
     case, table = case_given(scenario), read_table(Path(trace))
-    assigned, _ = settings_of(columns, Path(map_file) if map_file else None, {})
-    column, names = _looked_at(table, assigned)
-    by_clock = _next_to(case, table, column, names)
+    own = {"rate": rate, "from": from_time, "to": to_time}
+    assigned, settings = settings_of(columns, Path(map_file) if map_file else None, own)
+    declared = {key: settings[key] for key in own if key in settings}
+    column, names = _looked_at(table, assigned, "rate" in declared)
+    clocks = clocks_of(table, column, declared, case.scenario.run.duration)
+    by_clock = _next_to(case, table, clocks, [name for name in names if name != column])
+    groups = _groups(table, assigned)
     found: list[Reading] = []
-    # Turned axes are tried only where the trace cannot be read whole without.
+    # Turned axes are tried only where the trace can be read more wholly with them.
     for axes in (SAME + 1, len(AXES)):
         if not any(len(reading.parts) == 2 for reading in found):
-            found = [reading for pair in by_clock for reading in _readings(*pair, axes)]
+            more = [r for pair in by_clock for r in _readings(*pair, axes) if _as_named(r, groups)]
+            most = max((len(reading.parts) for reading in found), default=0)
+            found = found + [reading for reading in more if len(reading.parts) > most]
     turn = by_clock[0][1].turn if by_clock else 0.0
     if not found:
         return Detected([], [], turn)
@@ -83,55 +93,83 @@ def detect(
 
 
 def _looked_at(
-    table: Table, mapped: Sequence[tuple[str, Sequence[str]]]
-) -> tuple[str, Sequence[str]]:
+    table: Table, mapped: Sequence[tuple[str, Sequence[str]]], counted: bool
+) -> tuple[str | None, Sequence[str]]:
     """The time's column, and the others to try: those that are named, if any are; else all.
 
     The time is in the column named so, one called so, or the first that rises. Raises TraceError.
+    counted: whether there is none, the samples come at a rate.
     """
     named = {role.lower(): [find_column(table, n, role) for n in names] for role, names in mapped}
     times = named.pop("t", []) + named.pop("time", [])
     others = {name for names in named.values() for name in names}
     tried = [name for name in table.names if name in others] if others else table.names
+    if counted:
+        return None, tried
     for name in table.names:
-        folded = name.casefold().strip()
+        folded = bare(name)
         if folded in ("t", "sec") or folded.startswith(("time", "t ")):
             times.append(name)
-    times = times or [n for n in table.names if np.all(np.diff(table.column(n).values) > 0.0)]
+    times = times or [name for name in table.names if _rises(table, name)]
     if not times:
-        raise TraceError(f"{table.file}: no column rises from sample to sample like a time.")
+        raise TraceError(
+            f"{table.file}: no column rises from sample to sample like a time; name it with "
+            "--column t=NAME, or give --rate."
+        )
     return times[0], tried
 
 
-def _clocks(raw: Array, column: str, duration: float) -> list[Clock]:
-    found = []
-    for unit, scale in UNITS["time"].items():
-        span, first = scale * float(raw[-1] - raw[0]), scale * float(raw[0])
-        if not 0.0 < span <= LONGEST * duration:
-            continue
-        offsets = [0.0] if 0.0 <= first <= LONGEST * duration else []
-        offsets += [first] if first != 0.0 else []
-        found += [Clock(column, unit, offset) for offset in offsets]
-    return found
+def _rises(table: Table, name: str) -> bool:
+    with suppress(TraceError):
+        return bool(np.all(np.diff(table.times(name)[0].values) > 0.0))
+    return False
+
+
+def _groups(table: Table, mapped: Sequence[tuple[str, Sequence[str]]]) -> dict[str, set[str]]:
+    """The columns of each group that is named whole."""
+    groups = {role.lower(): names for role, names in mapped}
+    return {
+        group: {find_column(table, name, group) for name in names}
+        for group, names in groups.items()
+        if group in KINDS
+    }
+
+
+def _as_named(reading: Reading, groups: dict[str, set[str]]) -> bool:
+    """Whether columns that are named as a group are read as that."""
+    attitude, omega = reading.attitude, reading.omega
+    kinds = {group: KINDS[group] for group in groups if group != "w"}
+    if attitude is not None and kinds:
+        plain = {"quaternion wxyz": "q", "quaternion xyzw": "q", "matrix": "r"}
+        group = plain.get(attitude.kind, "e")
+        if group not in kinds or set(attitude.columns) != groups[group]:
+            return False
+    return omega is None or "w" not in groups or set(omega.columns) == groups["w"]
 
 
 def _next_to(
-    case: Case, table: Table, column: str, names: Sequence[str]
+    case: Case,
+    table: Table,
+    clocks: Sequence[Timed],
+    names: Sequence[str],
 ) -> list[tuple[Clock, Numbers]]:
     """The trace's numbers next to the exact trajectory, once for every clock."""
-    raw = table.column(column).values
-    if len(raw) < 3 or np.any(np.diff(raw) <= 0.0):
-        raise TraceError(f"{table.file}: fewer than three samples, or their time does not rise.")
-    rows = np.unique(np.linspace(0, len(raw) - 1, MOST_SAMPLES).round().astype(int))
-    columns: dict[str, Array] = {}
-    for name in (name for name in names if name != column):
-        with suppress(TraceError):  # one of texts or with gaps is passed over
-            columns[name] = table.column(name).values[rows]
     trajectory = exact_trajectory(case.system, case.initial)
-    turned = [(rotated, rotated.read(columns)) for rotated in rotations(columns)]
-    found = []
-    for clock in _clocks(raw, column, case.scenario.run.duration):
-        exact = trajectory(np.maximum(UNITS["time"][clock.unit] * raw[rows] - clock.offset, 0.0))
+    found, read = [], dict[bytes, tuple[dict[str, Array], list[tuple[Rotated, Array]]]]()
+    for clock, inside, times in clocks:
+        rows = np.unique(np.linspace(0, len(times) - 1, MOST_SAMPLES).round().astype(int))
+        key = inside.tobytes()
+        if key not in read:
+            part, columns = table.part(inside), dict[str, Array]()
+            for name in names:
+                with suppress(TraceError):  # one of texts or with gaps is passed over
+                    columns[name] = part.column(name).values[rows]
+            read[key] = (
+                columns,
+                [(rotated, rotated.read(columns)) for rotated in rotations(columns)],
+            )
+        columns, turned = read[key]
+        exact = trajectory(np.maximum(times[rows], 0.0))
         found.append((clock, Numbers(columns, exact.orientation, exact.angular_velocity, turned)))
     return found
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.commands.score.convention import axes_text
+from omegadot.commands.score.convention import SETTINGS, axes_text
 from omegadot.commands.score.detection.candidates import Attitude, Omega
 from omegadot.commands.score.detection.numbers import AXES, SAME
 from omegadot.reference_impl.rotations import rotation_matrix
@@ -20,11 +20,16 @@ Option = tuple[str, str | float]
 
 @dataclass(frozen=True)
 class Clock:
-    """How the time stamps are read. offset: s, the trace's time at the scenario's start."""
+    """How the time stamps are read.
 
-    column: str
+    column: None where there are none.  offset: s, the trace's time at the scenario's start, a text
+    where a float has not all of its digits.  declared: what of `score`'s options is declared.
+    """
+
+    column: str | None
     unit: str
-    offset: float
+    offset: float | str
+    declared: tuple[Option, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -58,11 +63,13 @@ class Reading:
     def arguments(self) -> dict[str, Any]:
         """The same as keyword arguments of `omegadot.score`."""
         options = self._options()
-        settings = {k.replace("-", "_"): value for k, value in options if k != "column"}
+        settings = {SETTINGS[k]: value for k, value in options if k != "column"}
         return {"columns": [value for k, value in options if k == "column"], **settings}
 
     def _options(self) -> list[Option]:
-        found: list[Option] = [("column", f"t={self.clock.column}")]
+        clock = self.clock
+        found: list[Option] = [("column", f"t={clock.column}")] * (clock.column is not None)
+        found += clock.declared
         found += [("time-unit", self.clock.unit)] * (self.clock.unit != "s")
         found += [("time-offset", self.clock.offset)] * (self.clock.offset != 0.0)
         world = body = SAME
