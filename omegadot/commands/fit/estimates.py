@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from omegadot.commands.fit.scale import Scale
@@ -14,6 +15,7 @@ from omegadot.reference_impl.system import Array
 # A standard error above this says that the data determine nothing.
 MOST_MOMENT = 0.25  # of the largest moment: all that bodies have is within 0 and 1
 MOST_TURN = 0.35  # rad, of an axis: a quarter of a right angle
+MOST_SIZE = 0.5  # relative, of the inertia where a torque is given
 TINY = 1e-300
 MOST_BIAS = 0.5  # of the size of omega
 MOST_DAMPING = 0.5  # of the largest moment times the size of omega
@@ -28,6 +30,7 @@ class Estimates:
     axis_errors: (3,) rad, of the direction of each.
     omega: (3,) rad/s at the first sample, of the body.  bias: (3,) rad/s.  damping: N m s/rad, or
     in the inertia's unit over s.  orientation: (4,), and its errors (3,) rad about the body's axes.
+    size_known: whether a torque that is given shows in omega.
     """
 
     inertia: Array
@@ -44,16 +47,17 @@ class Estimates:
     damping_error: float
     orientation: Array | None
     orientation_errors: Array | None
+    size_known: bool
 
     @property
-    def moments_known(self) -> Array:
+    def moments_known(self) -> NDArray[np.bool_]:
         """(3,): whether the data determine each moment."""
-        return np.asarray(self.moment_errors < MOST_MOMENT * np.max(self.moments))
+        return self.size_known & np.less(self.moment_errors, MOST_MOMENT * np.max(self.moments))
 
     @property
-    def axes_known(self) -> Array:
+    def axes_known(self) -> NDArray[np.bool_]:
         """(3,): whether the data determine each principal axis."""
-        return np.asarray(self.axis_errors < MOST_TURN)
+        return np.less(self.axis_errors, MOST_TURN)
 
 
 def estimates_of(spread: Spread, scale: Scale, size: float) -> Estimates:
@@ -72,6 +76,8 @@ def estimates_of(spread: Spread, scale: Scale, size: float) -> Estimates:
         slopes = scale.factor * spread.slopes_of("damping")[0] + float(one.damping) * scale.slopes
         damping_error = size * float(spread.error(slopes))
     still = np.zeros(3)
+    size_slopes = sum(spread.slope_of_entry(axis, axis) for axis in np.eye(3))
+    size_error = float(spread.error(np.asarray(size_slopes))) / float(np.trace(one.inertia))
     return Estimates(
         inertia=tensor,
         inertia_errors=spread.error(tensor_slopes),
@@ -89,6 +95,7 @@ def estimates_of(spread: Spread, scale: Scale, size: float) -> Estimates:
         orientation_errors=(
             spread.error(spread.slopes_of("orientation")) if free.orientation else None
         ),
+        size_known=not free.scale or size_error < MOST_SIZE,
     )
 
 
@@ -133,4 +140,4 @@ def open_directions(spread: Spread) -> list[Array]:
     """Of the bias: unit vectors along which the data do not determine it."""
     block = spread.places("bias")
     values, axes = np.linalg.eigh(spread.covariance[block, block])
-    return [axes[:, k] for k in range(len(values)) if np.sqrt(values[k]) > MOST_BIAS]
+    return [axes[:, k] for k in range(len(values)) if values[k] > MOST_BIAS**2]

@@ -70,7 +70,7 @@ def fit(
     digits = (samples.digits[0] / samples.size, samples.digits[1])
     compared = compare_models(samples.data(load), digits, terms)
     spread = spread_of(compared.data, compared.best, compared.noise)
-    scale = scale_of(spread, known)
+    scale = scale_of(spread, known, samples.inertia_unit(load, compared.data.torque))
     own = estimates_of(spread, scale, samples.size)
     found_out = sentences(samples, compared, spread, own, scale, terms)
     found = scenario_of_fit(samples, own, load, mass or 1.0, name)

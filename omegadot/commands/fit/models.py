@@ -14,12 +14,15 @@ from scipy.stats import f as fisher
 
 from omegadot.commands.fit.noise import FINEST, Noise, noise_of
 from omegadot.commands.fit.parameters import Free
-from omegadot.commands.fit.solve import Data, Fitted, follow, solve
-from omegadot.commands.fit.start import starts
+from omegadot.commands.fit.solve import MOST_TRIALS, TRIALS, Data, Fitted, finish, follow, solve
+from omegadot.commands.fit.start import sized, starts
 
-SIGNIFICANT = 1e-3  # the probability that noise alone gains so much
+# The probability that noise alone gains so much. A term that is wrongly left out distorts the rest,
+# one that is wrongly taken widens the errors: bias and damping enter easily, shape does not.
+SIGNIFICANT = {"shape": 1e-3, "bias": 0.05, "damping": 0.05}
 ROUNDS = 3  # of the weights of omega and attitude: they settle in two
 FINE = 1e-5  # rms of residuals below which the motion is followed to the last digits
+HOPELESS = 100.0  # a sum of squares so many times that of the richest is worth few trials
 ALONG = 0.1  # rad: a torque nearer to the axis than this does not turn it
 Digits = tuple[float, float]
 NONE = (0.0, 0.0)
@@ -64,6 +67,7 @@ class Terms:
 
 def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
     """Fit every model that the terms allow, and choose. digits: in the units of the fit."""
+    data = sized(data)
     scale, turning = bool(np.any(data.torque)), data.orientation is not None
     rich = Free(True, scale, terms.bias is not False, terms.damping is not False, turning)
     plain = replace(rich, bias=bool(terms.bias), damping=bool(terms.damping))
@@ -71,11 +75,12 @@ def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
     first = follow(data, [*starts(data, plain), found.one], plain) if plain != rich else found
     found = min(found, solve(data, first.one, rich), key=lambda fit: fit.cost)
     data = _weighted(data, found, digits)
-    fits = {rich: solve(data, found.one, rich, last=True)}
-    for free in _smaller(rich, terms):
+    fits = {rich: finish(data, found)}
+    for free in _smaller(rich, terms, _keeps_direction(data)):
         near = [solve(data, one, free) for one in (fits[rich].one, first.one)]
         best = min(near, key=lambda fit: fit.cost)
-        fits[free] = solve(data, best.one, free, last=True)
+        hopeless = best.cost > HOPELESS * fits[rich].cost
+        fits[free] = finish(data, best, TRIALS if hopeless else MOST_TRIALS)
     return _chosen(data, fits, rich, terms, digits)
 
 
@@ -86,16 +91,16 @@ def _weighted(data: Data, fit: Fitted, digits: Digits) -> Data:
         fine = min(noise.omega, noise.turn if data.orientation is not None else 1.0) < FINE
         weight = noise.omega / noise.turn
         data = replace(data, turn_weight=weight, tolerance=FINEST if fine else data.tolerance)
-        fit = solve(data, fit.one, fit.free, last=True)
+        fit = finish(data, fit) if fine else solve(data, fit.one, fit.free)
     return data
 
 
-def _smaller(rich: Free, terms: Terms) -> list[Free]:
+def _smaller(rich: Free, terms: Terms, shapeless: bool) -> list[Free]:
     """The models within the richest: with fewer terms, and of a body that shows no shape."""
     found = [rich]
     for name in terms.open:
         found += [replace(free, **{name: False}) for free in found]
-    return found[1:] + [replace(free, shape=False) for free in found]
+    return found[1:] + [replace(free, shape=False) for free in found if shapeless]
 
 
 def _chosen(
@@ -106,7 +111,9 @@ def _chosen(
     chosen, noise = rich, noise_of(data, fits[rich], digits)
     if _keeps_direction(data):
         chances["shape"] = _chance(data, fits[replace(rich, shape=False)], fits[rich], noise)
-        if chances["shape"] > SIGNIFICANT / len(data.times):  # its frequency was sought as well
+        if chances["shape"] > SIGNIFICANT["shape"] / len(
+            data.times
+        ):  # its frequency was sought as well
             chosen = replace(rich, shape=False)
     left = list(terms.open)
     while left:
@@ -118,7 +125,7 @@ def _chosen(
             tried["damping"] = 1.0  # no friction drives a body
         name = max(tried, key=lambda key: tried[key])
         chances |= tried
-        if tried[name] <= SIGNIFICANT:
+        if tried[name] <= SIGNIFICANT[name]:
             break
         chosen = replace(chosen, **{name: False})
         noise = noise_of(data, fits[chosen], digits)

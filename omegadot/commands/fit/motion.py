@@ -29,6 +29,8 @@ def motion(
     leaves the range of numbers or needs more.
     """
     count = len(lanes.omega)
+    if not all(np.all(np.isfinite(values)) for values in vars(lanes).values()):
+        raise ArithmeticError("a number is not finite")
     moments = np.linalg.eigvalsh(lanes.inertia)
     if not np.all(moments[:, 0] > LEAST_MOMENT * moments[:, 2]):
         raise ArithmeticError("a moment of inertia vanishes")

@@ -13,6 +13,7 @@ import numpy as np
 from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product
 from omegadot.reference_impl.system import Array
 
+ROUNDING = 1e-12  # relative: scenario files take an excess of 5e-12
 LOWER = np.tril_indices(3)
 
 
@@ -64,7 +65,7 @@ class Free:
         """(k, 3, 3): along which the inertia is fitted."""
         if self.shape:
             return SYMMETRIC if self.scale else SYMMETRIC[1:]
-        return inertia[None] if self.scale else inertia[:0]
+        return inertia[None][: int(self.scale)]
 
     @property
     def tail(self) -> int:
@@ -96,40 +97,48 @@ def inside(inertia: Array, least: float) -> Array:
     return inertia_of(axes @ np.diag(np.maximum(values, least * whole)) @ axes.T)
 
 
-def vector_of(one: Parameters, free: Free) -> Array:
-    """The vector of one lane: of the inertia a factor of G or the size, then `_tail`'s."""
-    head: Array = np.zeros(int(free.scale))
-    if free.shape:
-        head = np.linalg.cholesky(second_moments(inside(one.inertia, 1e-12)))[LOWER]
-    parts = [head, one.omega]
+def is_body(inertia: Array) -> bool:
+    """Whether a body can have it, but for the rounding of what was computed."""
+    return bool(np.linalg.eigvalsh(second_moments(inertia))[0] >= -ROUNDING * np.trace(inertia))
+
+
+def tail_of(one: Parameters, free: Free) -> Array:
+    """The vector of what comes after the inertia: omega, then what is free; a turn of zero."""
+    parts = [one.omega]
     parts += [one.bias] if free.bias else []
     parts += [np.atleast_1d(one.damping)] if free.damping else []
     parts += [np.zeros(3)] if free.orientation else []
     return np.concatenate(parts)
 
 
-def parameters_of(vectors: Array, free: Free, base: Parameters) -> Parameters:
-    """(..., m) to parameters. What is not free is `base`'s; turns and sizes count from it.
-
-    Any factor gives a body that can exist: ``G = L L^T``.
-    """
-    inertia, head = np.broadcast_to(base.inertia, (*vectors.shape[:-1], 3, 3)), int(free.scale)
-    if free.shape:
-        factor, head = np.zeros((*vectors.shape[:-1], 3, 3)), 6
-        factor[..., LOWER[0], LOWER[1]] = vectors[..., :6]
-        inertia = inertia_of(factor @ np.swapaxes(factor, -1, -2))
-    elif free.scale:
-        inertia = inertia * np.exp(vectors[..., :1, None])
-    return _tail(replace(base, inertia=inertia), vectors[..., head:], free)
-
-
 def moved(one: Parameters, steps: Array, free: Free) -> Parameters:
-    """(k, m) lanes: `one` moved along the directions of the inertia and the other parameters."""
+    """(k, m) lanes: `one` moved along the directions of the inertia and the other parameters.
+
+    Linear in the inertia, so that least squares go straight; but it may leave what bodies can be.
+    """
     directions = free.directions(one.inertia)
     head = len(directions)
     inertia = one.inertia + np.tensordot(steps[..., :head], directions, 1)
-    others = steps[..., head:] + vector_of(one, replace(free, shape=False, scale=False))
-    return _tail(replace(one, inertia=inertia), others, free)
+    return _tail(replace(one, inertia=inertia), steps[..., head:] + tail_of(one, free), free)
+
+
+def factor_of(one: Parameters, free: Free) -> Array:
+    """The vector of a body's factor, ``G = L L^T``, and of what comes after."""
+    factor = np.linalg.cholesky(second_moments(one.inertia))
+    return np.concatenate([factor[LOWER], tail_of(one, free)])
+
+
+def factored(one: Parameters, vectors: Array, free: Free) -> Parameters:
+    """(k, m) lanes from such vectors. Any factor gives a body that can exist.
+
+    Without a scale, factors of any size give one inertia, of trace 2.
+    """
+    factor = np.zeros((*vectors.shape[:-1], 3, 3))
+    factor[..., LOWER[0], LOWER[1]] = vectors[..., :6]
+    second = factor @ np.swapaxes(factor, -1, -2)
+    if not free.scale:
+        second = second / np.trace(second, axis1=-2, axis2=-1)[..., None, None]
+    return _tail(replace(one, inertia=inertia_of(second)), vectors[..., 6:], free)
 
 
 def _tail(base: Parameters, others: Array, free: Free) -> Parameters:

@@ -40,7 +40,8 @@ def print_text(result: FitResult, out: Path | None) -> None:
     )
     if result.shape_determined:
         console.print(_moments(result))
-        console.print(_tensor(result))
+        if np.all(result.estimates.moments_known):
+            console.print(_tensor(result))
     console.print(_others(result))
     console.print(_models(result))
     for sentence in result.sentences:

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.commands.fit.estimates import Estimates, principal
 from omegadot.commands.fit.models import Compared
@@ -89,6 +90,7 @@ class FitResult:
         """Plain tables, lists and numbers; None for what the data do not determine."""
         own, samples = self.estimates, self.samples
         shape = self.shape_determined
+        whole = shape and bool(np.all(own.moments_known))
         return {
             "trace": samples.file,
             "samples": len(samples.times),
@@ -102,8 +104,8 @@ class FitResult:
             "moment_errors": _plain(own.moment_errors, own.moments_known) if shape else None,
             "axes": _plain(own.axes.T) if shape else None,
             "axis_errors": _plain(own.axis_errors, own.axes_known) if shape else None,
-            "inertia": _plain(own.inertia) if shape else None,
-            "inertia_errors": _plain(own.inertia_errors) if shape else None,
+            "inertia": _plain(own.inertia) if whole else None,
+            "inertia_errors": _plain(own.inertia_errors) if whole else None,
             "omega": _plain(own.omega),
             "omega_errors": _plain(own.omega_errors),
             "orientation": None if own.orientation is None else _plain(own.orientation),
@@ -128,7 +130,7 @@ def _terms(free: Free) -> tuple[str, ...]:
     return tuple(name for name in ("bias", "damping") if getattr(free, name))
 
 
-def _plain(values: Array, known: Array | None = None) -> list[Any]:
+def _plain(values: Array, known: NDArray[np.bool_] | None = None) -> list[Any]:
     """A list; None where a number is not known."""
     if known is None:
         return list(np.asarray(values).tolist())

@@ -39,9 +39,15 @@ class Samples:
         return float(np.sqrt(np.mean(np.sum(self.omega**2, axis=1))))
 
     def data(self, torque: Array) -> Data:
-        """In the units of the fit. torque: N m; the unit of inertia is then kg m^2."""
+        """In the units of the fit. torque: N m, of any length there."""
         times = (self.times - self.times[0]) * self.size
-        return Data(times, self.omega / self.size, self.orientation, torque / self.size**2)
+        unit = float(np.linalg.norm(torque)) or 1.0
+        return Data(times, self.omega / self.size, self.orientation, torque / unit)
+
+    def inertia_unit(self, torque: Array, fitted: Array) -> float:
+        """The unit of inertia, kg m^2, in which a torque (N m) is `fitted`; 1 where there is none."""
+        length = float(np.linalg.norm(fitted))
+        return float(np.linalg.norm(torque)) / (length * self.size**2) if length else 1.0
 
 
 def samples_of(reading: Reading, start: float | None, end: float | None) -> Samples:

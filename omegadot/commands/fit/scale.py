@@ -76,11 +76,11 @@ def torque_of(given: str | Sequence[float] | None) -> Array:
     return torque
 
 
-def scale_of(spread: Spread, known: Known | None) -> Scale:
-    """The scale of a fit."""
+def scale_of(spread: Spread, known: Known | None, unit: float) -> Scale:
+    """The scale of a fit. unit: kg m^2, that of the fit where a torque is given."""
     still = np.zeros(len(spread.covariance))
     if spread.free.scale:
-        return Scale(1.0, still, "kg m^2", "the torque that is given")
+        return Scale(unit, still, "kg m^2", "the torque that is given")
     _, axes = np.linalg.eigh(spread.one.inertia)
     name, value = ("largest", 1.0) if known is None else (known.name, known.value)
     axis = np.eye(3)[AXES[name]] if name in AXES else axes[:, PLACES[name]]

@@ -27,6 +27,7 @@ def sentences(
     """All that hold."""
     shape = _shape(own) if compared.chosen.shape else _no_shape(compared, spread, own, scale)
     return [
+        *([] if own.size_known else ["The torque is not seen in omega: no scale is determined."]),
         *shape,
         *_scale(compared, scale),
         *_bias(compared, spread, terms),
@@ -47,8 +48,8 @@ def _no_shape(compared: Compared, spread: Spread, own: Estimates, scale: Scale) 
         "moments: every body that has a principal axis along it turns like this, and a sphere "
         "about any axis."
     ]
-    if spread.free.scale:
-        error = float(spread.error(spread.slope_of_entry(axis, axis)))
+    if spread.free.scale and own.size_known:
+        error = scale.factor * float(spread.error(spread.slope_of_entry(axis, axis)))
         found.append(
             f"The moment about that axis is {axis @ own.inertia @ axis:.6g} +- {error:.2g} kg m^2; "
             "the others are not determined."
@@ -97,6 +98,8 @@ def _bias(compared: Compared, spread: Spread, terms: Terms) -> list[str]:
     if rich is None:
         return []
     axes = [direction(axis) for axis in open_directions(rich)]
+    if len(axes) == 3:
+        return ["A bias is not determined in any direction: it looks like omega itself."]
     found = []
     if not chosen.bias:
         chance = compared.chances.get("bias", 1.0)
@@ -104,9 +107,7 @@ def _bias(compared: Compared, spread: Spread, terms: Terms) -> list[str]:
             f"A gyro bias is not supported by the data: noise alone gains as much with a "
             f"probability of {chance:.2g}. It is taken as zero."
         )
-    if len(axes) == 3:
-        found.append("A bias is not determined in any direction: it looks like omega itself.")
-    elif axes:
+    if axes:
         zero = " and is taken as zero there" if chosen.bias else ""
         found.append(
             f"A bias along {' and '.join(axes)} is not determined{zero}: other moments "

@@ -6,13 +6,24 @@ minima. Over a short one it has one. So the first few radians are fitted first, 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 
 from omegadot.commands.fit.motion import motion
-from omegadot.commands.fit.parameters import Free, Parameters, inside, parameters_of, vector_of
+from omegadot.commands.fit.parameters import (
+    Free,
+    Parameters,
+    factor_of,
+    factored,
+    inside,
+    is_body,
+    moved,
+    tail_of,
+)
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array
 
@@ -22,13 +33,14 @@ GROWTH = 2.5  # of a horizon to the next
 LEAST_SAMPLES = 8  # of a horizon
 STEP = 1e-7  # of differences, of numbers of the order of one
 MOST_RATES = 400  # evaluations a unit of time, about a radian: a tolerance of 1e-12 needs 60
-CLOSE, CLOSEST = 1e-4, 1e-13  # where a search ends: one that goes on, and the last
-TRIALS, MOST_TRIALS = 15, 60  # of the same
+CLOSE, TRIALS = 1e-4, 15  # where a search ends that goes on
+CLOSEST, MOST_TRIALS = 1e-13, 60  # and the last
 RIDGE = 1e-6
 FAR = 1e3  # a residual where there is no motion
+TRIED = 4  # of the starts, over the first horizon
 FOLLOWED = 2  # of the fits over the first horizon
 SAME = 1e-2  # costs of one minimum differ by less
-INSIDE = 1e-3  # the factor of a flat body has no slope out of the plane: start above it
+INSIDE = 1e-3  # the least second moment that a search within bodies starts from, of their sum
 
 
 @dataclass(frozen=True)
@@ -81,73 +93,109 @@ class Fitted:
     cost: float
 
 
-def solve(data: Data, start: Parameters, free: Free, last: bool = False) -> Fitted:
+def solve(
+    data: Data, start: Parameters, free: Free, closeness: float = CLOSE, trials: int = TRIALS
+) -> Fitted:
     """The least squares over the whole of `data` from one start.
 
-    last: to the last digit, where a search goes on from what was found otherwise.
+    closeness: relative, of parameters and sum of squares where the search ends.
     """
-    closeness, trials = (CLOSEST, MOST_TRIALS) if last else (CLOSE, TRIALS)
     start = _released(start, free)
+    lanes_of = partial(moved, start, free=free)
+    x0 = np.zeros(free.count)
+    found = _search(data, lanes_of, x0, tail_of(start, free)[3:], closeness, trials)
+    one = lanes_of(found.x)
+    if not free.shape or is_body(one.inertia):
+        return Fitted(one, free, 2.0 * float(found.cost))
+    one = replace(one, inertia=inside(one.inertia, INSIDE))  # a flat factor has no slope
+    lanes_of, tail = partial(factored, one, free=free), np.zeros(free.tail)
+    found = _search(data, lanes_of, factor_of(one, free), tail, closeness, trials)
+    return Fitted(lanes_of(found.x), free, 2.0 * float(found.cost))
+
+
+def _search(
+    data: Data,
+    lanes_of: Callable[[Array], Parameters],
+    x0: Array,
+    tail: Array,
+    closeness: float,
+    trials: int,
+) -> OptimizeResult:
+    """Levenberg and Marquardt's method, with the derivatives of all parameters in one motion."""
     known: dict[bytes, tuple[Array, Array]] = {}
 
     def both(x: Array) -> tuple[Array, Array]:
         if x.tobytes() not in known:
             known.clear()
-            known[x.tobytes()] = _evaluate(data, x, free, start)
+            known[x.tobytes()] = _evaluate(data, lanes_of, x, tail)
         return known[x.tobytes()]
 
-    x0 = vector_of(start, free)
-    if len(both(x0)[0]) < len(x0):
-        raise ValueError("fewer numbers than parameters")
-    done = least_squares(
-        lambda x: both(x)[0], x0, lambda x: both(x)[1],
-        method="lm", xtol=closeness, ftol=closeness, gtol=EPS, max_nfev=trials,
+    return least_squares(
+        lambda x: both(x)[0], x0, lambda x: both(x)[1], method="lm", x_scale="jac",
+        xtol=closeness, ftol=closeness, gtol=EPS, max_nfev=trials,
     )  # fmt: skip
-    return Fitted(parameters_of(done.x, free, start), free, 2.0 * float(done.cost))
 
 
 def _released(start: Parameters, free: Free) -> Parameters:
-    """The start with what is not fitted at zero, and the body not flat, or a sphere."""
+    """The start with what is not fitted at zero, and with a body that can exist, or a sphere."""
     bias = start.bias if free.bias else np.zeros(3)
     damping = start.damping if free.damping else np.zeros(())
     sphere = np.trace(start.inertia) / 3.0 * np.eye(3)
-    inertia = inside(start.inertia, INSIDE) if free.shape else sphere
+    inertia = inside(start.inertia, 0.0) if free.shape else sphere
+    if not free.scale:
+        inertia = 2.0 * inertia / np.trace(inertia)
     return replace(start, bias=bias, damping=damping, inertia=inertia)
 
 
-def _evaluate(data: Data, x: Array, free: Free, base: Parameters) -> tuple[Array, Array]:
+def _evaluate(
+    data: Data, lanes_of: Callable[[Array], Parameters], x: Array, tail: Array
+) -> tuple[Array, Array]:
     """Residuals and their derivatives.
 
-    With one more that holds the trace of the inertia at 2 where nothing gives it a scale, and one
-    for each of bias, damping and turn, so weak that it matters only where the data give no hold.
+    With one more for each of bias, damping and turn, so weak that it matters only where the data
+    give no hold.
     """
-    gauge, tail = free.shape and not free.scale, free.tail
-    vectors = np.vstack([x, x + STEP * np.eye(len(x))])
+    steps = STEP * np.maximum(np.abs(x), 1.0)
+    vectors = np.vstack([x, x + np.diag(steps)])
     try:
-        left = data.residuals(parameters_of(vectors, free, base))
+        left = data.residuals(lanes_of(vectors))
     except ArithmeticError:
-        count = data.omega.size * (1 if data.orientation is None else 2) + tail + gauge
+        count = data.omega.size * (1 if data.orientation is None else 2) + len(tail)
         return np.full(count, FAR), np.zeros((count, len(x)))
-    left = np.hstack([left, RIDGE * vectors[:, len(x) - tail :]])
-    if gauge:
-        left = np.hstack([left, np.sum(vectors[:, :6] ** 2, 1)[:, None] - 1.0])
-    return left[0], (left[1:] - left[0]).T / STEP
+    held = RIDGE * (vectors[:, len(x) - len(tail) :] + tail)
+    left = np.hstack([left, held])
+    return left[0], (left[1:] - left[0]).T / steps
+
+
+def finish(data: Data, fit: Fitted, trials: int = MOST_TRIALS) -> Fitted:
+    """The same minimum to the last digit."""
+    return solve(data, fit.one, fit.free, CLOSEST, trials)
 
 
 def follow(data: Data, starts: list[Parameters], free: Free) -> Fitted:
     """The least squares over horizons that grow to the whole, from the best of the starts.
 
-    All are fitted over the first horizon, and the best few over the whole.
+    The nearest are fitted over the first horizon, and the best of these over the whole.
     """
     counts = _horizons(data)
     short = data.until(counts[0])
-    found = sorted((solve(short, one, free) for one in starts), key=lambda fit: fit.cost)
+    near = sorted(starts, key=lambda one: _cost(short, one, free))[:TRIED]
+    found = sorted((solve(short, one, free) for one in near), key=lambda fit: fit.cost)
     ends = []
     for fit in _different(found)[:FOLLOWED]:
         for count in counts[1:]:
             fit = solve(data.until(count), fit.one, free)
         ends.append(fit)
     return min(ends, key=lambda fit: fit.cost)
+
+
+def _cost(data: Data, start: Parameters, free: Free) -> float:
+    """The sum of squares of a start itself."""
+    lane = moved(_released(start, free), np.zeros((1, free.count)), free)
+    try:
+        return float(np.sum(data.residuals(lane) ** 2))
+    except ArithmeticError:
+        return np.inf
 
 
 def _horizons(data: Data) -> list[int]:

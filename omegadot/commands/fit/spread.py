@@ -18,6 +18,7 @@ from omegadot.commands.fit.solve import Data, Fitted
 from omegadot.reference_impl.system import Array
 
 STEP = 1e-5  # of central differences, of numbers of the order of one: rounding and curve are alike
+RESOLVED = 1e-7  # relative, of derivatives by differences
 RANGE = 1.0  # in the units of the fit: of omega, bias, damping and moments without any data
 TURN_RANGE = np.pi  # of the attitude
 SCALE_RANGE = 10.0  # of the inertia where it has a scale, of its size
@@ -69,17 +70,21 @@ def spread_of(data: Data, fit: Fitted, noise: Noise) -> Spread:
         moved(fit.one, step * np.vstack([np.eye(count), -np.eye(count)]), fit.free)
     )
     slopes = (left[:count] - left[count:]) / (2.0 * step)
-    info = slopes @ slopes.T / (noise.omega**2 * noise.inflation)
+    slopes /= noise.omega * np.sqrt(noise.inflation)
     size = float(np.linalg.norm(fit.one.inertia))
     ranges = np.full(count, RANGE)
-    ranges[: len(directions)] = SCALE_RANGE * size if fit.free.scale else RANGE
     ranges[count - 3 * fit.free.orientation :] = TURN_RANGE
-    return Spread(fit.one, fit.free, _inverse(info, ranges), directions)
+    if fit.free.scale:
+        ranges[: len(directions)] = SCALE_RANGE * size
+        ranges[count - 3 * fit.free.orientation - fit.free.damping :][: fit.free.damping] *= size
+    return Spread(fit.one, fit.free, _covariance(slopes, ranges), directions)
 
 
-def _inverse(info: Array, ranges: Array) -> Array:
-    """``(info + diag(1 / ranges^2))^-1``, in units of the ranges so that it is well scaled."""
-    scaled = info * np.outer(ranges, ranges) + np.eye(len(ranges))
-    values, vectors = np.linalg.eigh(scaled)
-    inverse = (vectors / np.maximum(values, 1.0)) @ vectors.T
-    return np.asarray(inverse * np.outer(ranges, ranges))
+def _covariance(slopes: Array, ranges: Array) -> Array:
+    """``(J^T J + diag(1 / ranges^2))^-1``; slopes: (m, n), J's columns over the noise.
+
+    By singular values, in units of the ranges. One that the differences do not resolve is none.
+    """
+    vectors, sizes, _ = np.linalg.svd(slopes * ranges[:, None], full_matrices=False)
+    held = np.maximum(sizes**2 - (RESOLVED * sizes[0]) ** 2, 0.0) + 1.0
+    return np.asarray((vectors / held) @ vectors.T * np.outer(ranges, ranges))

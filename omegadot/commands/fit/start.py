@@ -12,6 +12,8 @@ interpolated and integrated, so that their noise averages out.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 
@@ -46,6 +48,14 @@ def starts(data: Data, free: Free) -> list[Parameters]:
         second = np.diag(shape) / sum(shape)
         found.append(_start(data, size * inertia_of(second), zero, 0.0))
     return found
+
+
+def sized(data: Data) -> Data:
+    """With the torque in a unit that makes the trace of the inertia about 2."""
+    if not np.any(data.torque):
+        return data
+    start = starts(data, Free(scale=True))[1]
+    return replace(data, torque=2.0 * data.torque / np.trace(start.inertia))
 
 
 def _start(data: Data, inertia: Array, bias: Array, damping: float) -> Parameters:
