@@ -38,10 +38,12 @@ def fit(
     body_axes: Annotated[
         Text, option("x,-y,-z", "The body axes x, y, z of the result, each as one of the trace.")
     ] = None,
-    start: Annotated[
+    from_time: Annotated[
         float | None, option("S", "Time in the trace, s, to fit from.", "--from")
     ] = None,
-    end: Annotated[float | None, option("S", "Time in the trace, s, to fit to.", "--to")] = None,
+    to_time: Annotated[
+        float | None, option("S", "Time in the trace, s, to fit to.", "--to")
+    ] = None,
     torque: Annotated[
         Text, option("X,Y,Z", "A known torque, N m, constant in the body's axes.")
     ] = None,

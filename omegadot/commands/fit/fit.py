@@ -37,8 +37,8 @@ def fit(
     quaternion: str | None = None,
     world_axes: str | None = None,
     body_axes: str | None = None,
-    start: float | None = None,
-    end: float | None = None,
+    from_time: float | None = None,
+    to_time: float | None = None,
     torque: str | Sequence[float] | None = None,
     moment: str | None = None,
     mass: float | None = None,
@@ -50,7 +50,7 @@ def fit(
     """Fit a free rigid body's motion to a trace of omega, or of omega and attitude.
 
     trace: a CSV or Parquet file.  columns, map_file, and the settings from time_unit to body_axes:
-    how it is to be read, as of `score`.  start, end: s of the trace, a window.
+    how it is to be read, as of `score`.  from_time, to_time: s of the trace, a window.
     torque: N m, constant in the body's axes.  moment: one that is known, ``"largest=0.0123"`` in
     kg m^2, where there is no torque.  mass: kg, for the scenario.  bias, damping: True to fit it,
     False not to, None where the data decide.  name, out: of the scenario, and its file.
@@ -66,7 +66,7 @@ def fit(
         check_number("--mass", mass, 0.0)
     mapped = Path(map_file) if map_file else None
     reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
-    samples = samples_of(reading, start, end)
+    samples = samples_of(reading, from_time, to_time)
     digits = (samples.digits[0] / samples.size, samples.digits[1])
     compared = compare_models(samples.data(load), digits, terms)
     spread = spread_of(compared.data, compared.best, compared.noise)

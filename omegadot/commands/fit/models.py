@@ -20,6 +20,7 @@ from omegadot.commands.fit.start import sized, starts
 # The probability that noise alone gains so much. A term that is wrongly left out distorts the rest,
 # one that is wrongly taken widens the errors: bias and damping enter easily, shape does not.
 SIGNIFICANT = {"shape": 1e-3, "bias": 0.05, "damping": 0.05}
+WIDEST = 1e4  # of weights, which derivatives by differences resolve
 ROUNDS = 3  # of the weights of omega and attitude: they settle in two
 FINE = 1e-5  # rms of residuals below which the motion is followed to the last digits
 HOPELESS = 100.0  # a sum of squares so many times that of the richest is worth few trials
@@ -89,7 +90,7 @@ def _weighted(data: Data, fit: Fitted, digits: Digits) -> Data:
     for _ in range(ROUNDS if data.orientation is not None else 1):
         noise = noise_of(data, fit, digits)
         fine = min(noise.omega, noise.turn if data.orientation is not None else 1.0) < FINE
-        weight = noise.omega / noise.turn
+        weight = float(np.clip(noise.omega / noise.turn, 1.0 / WIDEST, WIDEST))
         data = replace(data, turn_weight=weight, tolerance=FINEST if fine else data.tolerance)
         fit = finish(data, fit) if fine else solve(data, fit.one, fit.free)
     return data

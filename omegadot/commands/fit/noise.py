@@ -11,7 +11,8 @@ from omegadot.commands.fit.solve import Data, Fitted
 from omegadot.reference_impl.system import Array
 
 FINEST = 1e-12  # the tolerance with which the motion of a trace without noise is followed
-INTEGRATED = 10.0 * FINEST  # what that leaves
+# What that leaves where errors grow, as near the separatrix: below it there is no noise to be seen.
+INTEGRATED = 1000.0 * FINEST
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,8 @@ def noise_of(data: Data, fit: Fitted, digits: tuple[float, float]) -> Noise:
     rms = [float(np.sqrt(np.mean(part**2) * spare)) for part in left]
     floors = [max(INTEGRATED, digit) for digit in digits]
     omega, turn = (max(pair) for pair in zip([*rms, 0.0][:2], floors, strict=True))
-    return Noise(np.sqrt(np.mean(left[0] ** 2, axis=0)), omega, turn, _correlation(left))
+    correlation = _correlation(left) if rms[0] > floors[0] else 0.0  # of digits it means nothing
+    return Noise(np.sqrt(np.mean(left[0] ** 2, axis=0)), omega, turn, correlation)
 
 
 def one_lane(one: Parameters) -> Parameters:

@@ -13,7 +13,6 @@ import numpy as np
 from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product
 from omegadot.reference_impl.system import Array
 
-ROUNDING = 1e-12  # relative: scenario files take an excess of 5e-12
 LOWER = np.tril_indices(3)
 
 
@@ -95,11 +94,6 @@ def inside(inertia: Array, least: float) -> Array:
     values, axes = np.linalg.eigh(second_moments(inertia))
     whole = float(np.sum(np.maximum(values, 0.0))) or 1.0
     return inertia_of(axes @ np.diag(np.maximum(values, least * whole)) @ axes.T)
-
-
-def is_body(inertia: Array) -> bool:
-    """Whether a body can have it, but for the rounding of what was computed."""
-    return bool(np.linalg.eigvalsh(second_moments(inertia))[0] >= -ROUNDING * np.trace(inertia))
 
 
 def tail_of(one: Parameters, free: Free) -> Array:

@@ -45,7 +45,7 @@ class Samples:
         return Data(times, self.omega / self.size, self.orientation, torque / unit)
 
     def inertia_unit(self, torque: Array, fitted: Array) -> float:
-        """The unit of inertia, kg m^2, in which a torque (N m) is `fitted`; 1 where there is none."""
+        """The unit of inertia, kg m^2, in which a torque (N m) is `fitted`; 1 without one."""
         length = float(np.linalg.norm(fitted))
         return float(np.linalg.norm(torque)) / (length * self.size**2) if length else 1.0
 

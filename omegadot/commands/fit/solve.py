@@ -20,7 +20,6 @@ from omegadot.commands.fit.parameters import (
     factor_of,
     factored,
     inside,
-    is_body,
     moved,
     tail_of,
 )
@@ -35,6 +34,8 @@ STEP = 1e-7  # of differences, of numbers of the order of one
 MOST_RATES = 400  # evaluations a unit of time, about a radian: a tolerance of 1e-12 needs 60
 CLOSE, TRIALS = 1e-4, 15  # where a search ends that goes on
 CLOSEST, MOST_TRIALS = 1e-13, 60  # and the last
+NO_MORE = 1e-6  # relative, of a cost: what rounding a body to one that can exist may add
+FOLLOWED_TO = 1e-10  # rms, the same where there is no noise
 RIDGE = 1e-6
 FAR = 1e3  # a residual where there is no motion
 TRIED = 4  # of the starts, over the first horizon
@@ -104,9 +105,12 @@ def solve(
     lanes_of = partial(moved, start, free=free)
     x0 = np.zeros(free.count)
     found = _search(data, lanes_of, x0, tail_of(start, free)[3:], closeness, trials)
-    one = lanes_of(found.x)
-    if not free.shape or is_body(one.inertia):
-        return Fitted(one, free, 2.0 * float(found.cost))
+    one, cost = lanes_of(found.x), 2.0 * float(found.cost)
+    if not free.shape:
+        return Fitted(one, free, cost)
+    flat = replace(one, inertia=inside(one.inertia, 0.0))
+    if cost_of(data, flat, free) <= cost * (1.0 + NO_MORE) + data.omega.size * FOLLOWED_TO**2:
+        return Fitted(flat, free, cost)
     one = replace(one, inertia=inside(one.inertia, INSIDE))  # a flat factor has no slope
     lanes_of, tail = partial(factored, one, free=free), np.zeros(free.tail)
     found = _search(data, lanes_of, factor_of(one, free), tail, closeness, trials)
@@ -179,7 +183,7 @@ def follow(data: Data, starts: list[Parameters], free: Free) -> Fitted:
     """
     counts = _horizons(data)
     short = data.until(counts[0])
-    near = sorted(starts, key=lambda one: _cost(short, one, free))[:TRIED]
+    near = sorted(starts, key=lambda one: cost_of(short, one, free))[:TRIED]
     found = sorted((solve(short, one, free) for one in near), key=lambda fit: fit.cost)
     ends = []
     for fit in _different(found)[:FOLLOWED]:
@@ -189,7 +193,7 @@ def follow(data: Data, starts: list[Parameters], free: Free) -> Fitted:
     return min(ends, key=lambda fit: fit.cost)
 
 
-def _cost(data: Data, start: Parameters, free: Free) -> float:
+def cost_of(data: Data, start: Parameters, free: Free) -> float:
     """The sum of squares of a start itself."""
     lane = moved(_released(start, free), np.zeros((1, free.count)), free)
     try:
