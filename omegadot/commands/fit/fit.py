@@ -21,6 +21,7 @@ from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.settings import GivenColumns, reading_of, settings_of
 from omegadot.harness.usage import UsageError, check_number
 from omegadot.reports.record.whole_file import write_whole
+from omegadot.scenarios import scenario
 
 
 def fit(
@@ -64,6 +65,8 @@ def fit(
         raise UsageError("--moment: the scale is given by --torque already; give one of the two.")
     if mass is not None:
         check_number("--mass", mass, 0.0)
+    if name is not None:
+        scenario("sphere", name=name)  # refuses what is no name, before the work
     mapped = Path(map_file) if map_file else None
     reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
     samples = samples_of(reading, from_time, to_time)
