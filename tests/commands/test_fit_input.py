@@ -116,4 +116,4 @@ def test_the_models_that_were_compared_are_listed(tmp_path, capsys):
     assert rms[()] > rms["damping",]
     chosen = [model["terms"] for model in found["models"] if model["chosen"]]
     assert chosen == [["damping"]]
-    assert found["chances"]["damping"] < 0.05 < found["chances"]["bias"]
+    assert found["chances"]["damping"] < 0.01 < found["chances"]["bias"]

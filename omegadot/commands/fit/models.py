@@ -19,7 +19,7 @@ from omegadot.commands.fit.start import sized, starts
 
 # The probability that noise alone gains so much. A term that is wrongly left out distorts the rest,
 # one that is wrongly taken widens the errors: bias and damping enter easily, shape does not.
-SIGNIFICANT = {"shape": 1e-3, "bias": 0.05, "damping": 0.05}
+SIGNIFICANT = {"shape": 1e-3, "bias": 0.01, "damping": 0.01}
 WIDEST = 1e4  # of weights, which derivatives by differences resolve
 ROUNDS = 3  # of the weights of omega and attitude: they settle in two
 FINE = 1e-5  # rms of residuals below which the motion is followed to the last digits
@@ -75,7 +75,7 @@ def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
     found = follow(data, starts(data, rich), rich)
     first = follow(data, [*starts(data, plain), found.one], plain) if plain != rich else found
     found = min(found, solve(data, first.one, rich), key=lambda fit: fit.cost)
-    data = _weighted(data, found, digits)
+    data, found = _weighted(data, found, digits)
     fits = {rich: finish(data, found)}
     for free in _smaller(rich, terms, _keeps_direction(data)):
         near = [solve(data, one, free) for one in (fits[rich].one, first.one)]
@@ -85,15 +85,15 @@ def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
     return _chosen(data, fits, rich, terms, digits)
 
 
-def _weighted(data: Data, fit: Fitted, digits: Digits) -> Data:
+def _weighted(data: Data, fit: Fitted, digits: Digits) -> tuple[Data, Fitted]:
     """The data with the attitude weighted by the noise, followed as finely as that requires."""
     for _ in range(ROUNDS if data.orientation is not None else 1):
+        fit = finish(data, fit)
         noise = noise_of(data, fit, digits)
         fine = min(noise.omega, noise.turn if data.orientation is not None else 1.0) < FINE
         weight = float(np.clip(noise.omega / noise.turn, 1.0 / WIDEST, WIDEST))
         data = replace(data, turn_weight=weight, tolerance=FINEST if fine else data.tolerance)
-        fit = finish(data, fit) if fine else solve(data, fit.one, fit.free)
-    return data
+    return data, fit
 
 
 def _smaller(rich: Free, terms: Terms, shapeless: bool) -> list[Free]:
