@@ -105,7 +105,7 @@ def solve(
     lanes_of = partial(moved, start, free=free)
     x0 = np.zeros(free.count)
     found = _search(data, lanes_of, x0, tail_of(start, free)[3:], closeness, trials)
-    one, cost = lanes_of(found.x), 2.0 * float(found.cost)
+    one, cost = lanes_of(found.x), _of_data(found, free)
     if not free.shape:
         return Fitted(one, free, cost)
     flat = replace(one, inertia=inside(one.inertia, 0.0))
@@ -114,7 +114,12 @@ def solve(
     one = replace(one, inertia=inside(one.inertia, INSIDE))  # a flat factor has no slope
     lanes_of, tail = partial(factored, one, free=free), np.zeros(free.tail)
     found = _search(data, lanes_of, factor_of(one, free), tail, closeness, trials)
-    return Fitted(lanes_of(found.x), free, 2.0 * float(found.cost))
+    return Fitted(lanes_of(found.x), free, _of_data(found, free))
+
+
+def _of_data(found: OptimizeResult, free: Free) -> float:
+    """The sum of squares without what holds the rest."""
+    return float(np.sum(found.fun[: len(found.fun) - free.tail] ** 2))
 
 
 def _search(
