@@ -57,10 +57,10 @@ def samples_of(reading: Reading, start: float | None, end: float | None) -> Samp
     """
     trace = trace_of(reading, _ANY)
     file, omega = reading.table.file, trace.angular_velocity
-    if omega is None:
+    if omega is None or np.any(np.isnan(omega)):
         raise TraceError(
-            f"{file}: no column is an angular velocity, which a fit needs; map it, like "
-            "--column w=A,B,C."
+            f"{file}: no column is an angular velocity, which a fit needs in three axes; map it, "
+            "like --column w=A,B,C."
         )
     inside = _window(trace, start, end, file)
     digits = _digits(trace, inside)
