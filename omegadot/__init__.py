@@ -27,6 +27,8 @@ if TYPE_CHECKING:  # "as": it is exported
     from omegadot.commands.exact.exact import exact as exact
     from omegadot.commands.faults.faults import FaultsResult as FaultsResult
     from omegadot.commands.faults.faults import faults as faults
+    from omegadot.commands.fit.fit import fit as fit
+    from omegadot.commands.fit.result import FitResult as FitResult
     from omegadot.commands.progress import Progress as Progress
     from omegadot.commands.report.report import report as report
     from omegadot.commands.run.result import RunInterrupted as RunInterrupted
@@ -65,6 +67,8 @@ _PLACES = {
     "commands.engines.engines": ("EngineEntry", "engines"),
     "commands.exact.exact": ("ExactStates", "exact"),
     "commands.faults.faults": ("FaultsResult", "faults"),
+    "commands.fit.fit": ("fit",),
+    "commands.fit.result": ("FitResult",),
     "commands.progress": ("Progress",),
     "commands.report.report": ("report",),
     "commands.run.result": ("RunInterrupted", "RunResult"),

@@ -13,6 +13,7 @@ from omegadot.commands.choose.command import choose
 from omegadot.commands.compare.command import compare
 from omegadot.commands.engines.command import engines
 from omegadot.commands.faults.command import faults
+from omegadot.commands.fit.command import fit
 from omegadot.commands.options import INTERRUPTED, PlainHelp
 from omegadot.commands.report.command import report
 from omegadot.commands.run.command import run
@@ -43,6 +44,7 @@ for command, short_help in (
     (choose, "Find engine, integrator and step for a requirement."),
     (report, "Draw the report of a stored run, or of two runs."),
     (score, "Score a trajectory or log of any simulator."),
+    (fit, "Fit a body and its motion to a log of omega."),
     (compare, "Compare two runs: what improved, what got worse."),
     (versions, "Find what changed between releases of an engine."),
 ):

@@ -143,6 +143,7 @@ def test_a_scenario_in_code_is_the_files(folder: Path) -> None:
         (lambda: api.choose("sphere"), "choose sphere"),
         (lambda: api.choose("sphere", attitude="1m"), "choose sphere --attitude 1m"),
         (lambda: api.score("no.csv", "sphere"), "score no.csv --scenario sphere"),
+        (lambda: api.fit("no.csv"), "fit no.csv"),
         (lambda: api.versions("mujoco", "4.0.0"), "versions mujoco 4.0.0"),
         (lambda: api.faults("exact"), "faults --engine exact"),
         (lambda: api.report("nowhere"), "report nowhere"),

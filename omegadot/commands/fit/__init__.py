@@ -1,0 +1,1 @@
+"""``omegadot fit``: moments of inertia, bias and damping from a trace of omega."""

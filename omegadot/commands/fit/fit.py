@@ -1,0 +1,111 @@
+"""``omegadot.fit``: a body and its motion from a trace of omega."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from omegadot.commands.fit.estimates import estimates_of
+from omegadot.commands.fit.models import Terms, compare_models
+from omegadot.commands.fit.result import FitResult
+from omegadot.commands.fit.samples import Samples, samples_of
+from omegadot.commands.fit.scale import known_of, scale_of, torque_of
+from omegadot.commands.fit.scenario_file import scenario_of_fit, text_of
+from omegadot.commands.fit.sentences import sentences
+from omegadot.commands.fit.spread import spread_of
+from omegadot.commands.score.read_table import read_table
+from omegadot.commands.score.settings import GivenColumns, reading_of, settings_of
+from omegadot.harness.usage import UsageError, check_number
+from omegadot.reports.record.whole_file import write_whole
+from omegadot.scenarios import scenario
+
+
+def fit(
+    trace: str | os.PathLike[str],
+    *,
+    columns: GivenColumns = (),
+    map_file: str | os.PathLike[str] | None = None,
+    time_unit: str | None = None,
+    angle_unit: str | None = None,
+    rate_unit: str | None = None,
+    omega_frame: str | None = None,
+    attitude_is: str | None = None,
+    euler: str | None = None,
+    quaternion: str | None = None,
+    world_axes: str | None = None,
+    body_axes: str | None = None,
+    from_time: float | None = None,
+    to_time: float | None = None,
+    torque: str | Sequence[float] | None = None,
+    moment: str | None = None,
+    mass: float | None = None,
+    bias: bool | None = None,
+    damping: bool | None = None,
+    name: str | None = None,
+    out: str | os.PathLike[str] | None = None,
+) -> FitResult:
+    """Fit a free rigid body's motion to a trace of omega, or of omega and attitude.
+
+    trace: a CSV or Parquet file.  columns, map_file, and the settings from time_unit to body_axes:
+    how it is to be read, as of `score`.  from_time, to_time: s of the trace, a window.
+    torque: N m, constant in the body's axes.  moment: one that is known, ``"largest=0.0123"`` in
+    kg m^2, where there is no torque.  mass: kg, for the scenario.  bias, damping: True to fit it,
+    False not to, None where the data decide.  name, out: of the scenario, and its file.
+    Raises UsageError, TraceError (a UsageError), ScenarioError for the name and RecordError for the
+    file.
+    """
+    given: dict[str, Any] = locals()
+    settings = {key.replace("_", "-"): given[key] for key in SETTINGS}
+    load, known, terms = torque_of(torque), known_of(moment), Terms(bias, damping)
+    if known is not None and np.any(load):
+        raise UsageError("--moment: the scale is given by --torque already; give one of the two.")
+    if mass is not None:
+        check_number("--mass", mass, 0.0)
+    if name is not None:
+        scenario("sphere", name=name)  # refuses what is no name, before the work
+    mapped = Path(map_file) if map_file else None
+    reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
+    samples = samples_of(reading, from_time, to_time)
+    digits = (samples.digits[0] / samples.size, samples.digits[1])
+    compared = compare_models(samples.data(load), digits, terms)
+    spread = spread_of(compared.data, compared.best, compared.noise)
+    scale = scale_of(spread, known, samples.inertia_unit(load, compared.data.torque))
+    own = estimates_of(spread, scale, samples.size)
+    found_out = sentences(samples, compared, spread, own, scale, terms)
+    found = scenario_of_fit(samples, own, load, mass or 1.0, name)
+    if out is not None:
+        write_whole(Path(out), text_of(found, found_out))
+    return FitResult(
+        samples,
+        own,
+        scale,
+        compared,
+        found_out,
+        found,
+        _options(columns, mapped, settings, samples),
+    )
+
+
+def _options(
+    columns: GivenColumns, map_file: Path | None, settings: dict[str, Any], samples: Samples
+) -> list[str]:
+    """What `score` needs to read the trace as it was read here, and to begin where it begins."""
+    own, given = settings_of(columns, map_file, settings)
+    given = {"time-offset": 0.0, **given}
+    given["time-offset"] += float(samples.times[0])
+    found = [word for role, names in own for word in ("--column", f"{role}={','.join(names)}")]
+    for key, value in given.items():
+        if value != 0.0:
+            found += [f"--{key}", repr(value) if isinstance(value, float) else str(value)]
+    return found
+
+
+SETTINGS = (
+    *("time_unit", "angle_unit", "rate_unit", "omega_frame", "attitude_is", "euler", "quaternion"),
+    *("world_axes", "body_axes"),
+)
+"""Those of `score` that matter to a fit."""

@@ -1,0 +1,137 @@
+"""A fit, for a person and for machines."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from pathlib import Path
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from omegadot.commands.fit.result import FitResult
+from omegadot.commands.fit.sentences import direction
+from omegadot.reference_impl.system import Array
+
+WIDTH_WHEN_PIPED = 200
+EPS = float(np.finfo(float).eps)
+UNKNOWN = "not determined"
+
+
+def print_json(result: FitResult) -> None:
+    """Everything as numbers, SI units."""
+    typer.echo(json.dumps(result.as_dict(), indent=2, allow_nan=False))
+
+
+def print_text(result: FitResult, out: Path | None) -> None:
+    """Moments and axes, the other numbers, the models, the sentences, and how to go on."""
+    console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
+    samples = result.samples
+    console.print(
+        Text(
+            f"{samples.file}: {len(samples.times)} samples from {samples.times[0]:g} to "
+            f"{samples.times[-1]:g} s, in which the body turns by "
+            f"{samples.data(np.zeros(3)).turned[-1]:.3g} rad"
+        )
+    )
+    if result.shape_determined:
+        console.print(_moments(result))
+        if np.all(result.estimates.moments_known):
+            console.print(_tensor(result))
+    console.print(_others(result))
+    console.print(_models(result))
+    for sentence in result.sentences:
+        console.print(Text(sentence))
+    if out is not None:
+        for line in _next(result, out):
+            console.print(Text(line), soft_wrap=True)
+
+
+def _grid(*heads: str) -> Table:
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="bold")
+    for head in heads:
+        table.add_column(head, no_wrap=True)
+    return table
+
+
+def _moments(result: FitResult) -> Table:
+    own = result.estimates
+    unit = result.unit or "of the largest"
+    table = _grid("principal moment", unit, "+-", "axis (body)", "+- deg")
+    rows = zip(
+        own.moments, own.moment_errors, own.moments_known, own.axes.T, own.axis_errors,
+        own.axes_known, strict=True,
+    )  # fmt: skip
+    for letter, (moment, error, sure, axis, turn, fixed) in zip("xyz", rows, strict=True):
+        shown = _pair(moment, error) if sure else (UNKNOWN, "")
+        angle = f"{np.rad2deg(turn):.2g}"
+        table.add_row(
+            f"near {letter}", *shown, *((direction(axis), angle) if fixed else (UNKNOWN, ""))
+        )
+    return table
+
+
+def _tensor(result: FitResult) -> Table:
+    own, unit = result.estimates, result.unit or "of the largest"
+    table = _grid("inertia tensor", f"x, {unit}", "y", "z")
+    for letter, row, errors in zip("xyz", own.inertia, own.inertia_errors, strict=True):
+        cells = (" +- ".join(_pair(*pair)) for pair in zip(row, errors, strict=True))
+        table.add_row(letter, *cells)
+    return table
+
+
+def _others(result: FitResult) -> Table:
+    own = result.estimates
+    table = _grid("quantity", "x", "y", "z", "unit")
+    _row(table, "omega, first sample", own.omega, own.omega_errors, "rad/s")
+    if own.orientation is not None:
+        q = ", ".join(f"{part:.6f}" for part in own.orientation)
+        table.add_row("attitude, first sample", f"w x y z = {q}", "", "", "")
+    if "bias" in result.terms:
+        _row(table, "gyro bias", own.bias, own.bias_errors, "rad/s")
+    if "damping" in result.terms:
+        unit = "N m s/rad" if result.unit else "1/s, over the largest moment"
+        table.add_row("damping", " +- ".join(_pair(own.damping, own.damping_error)), "", "", unit)
+    _row(table, "residual, rms", result.rms, None, "rad/s")
+    if result.rms_attitude is not None:
+        table.add_row("residual of attitude, rms", f"{result.rms_attitude:.3g}", "", "", "rad")
+    return table
+
+
+def _row(table: Table, name: str, values: Array, errors: Array | None, unit: str) -> None:
+    if errors is None:
+        table.add_row(name, *(f"{value:.3g}" for value in values), unit)
+        return
+    pairs = zip(values, errors, strict=True)
+    table.add_row(name, *(" +- ".join(_pair(*pair)) for pair in pairs), unit)
+
+
+def _models(result: FitResult) -> Table:
+    table = _grid("model", "moments", "residual, rad/s rms", "")
+    for model in result.models:
+        shown = ", ".join(f"{moment:.3f}" for moment in model.moments)
+        terms = " and ".join(("plain", *model.terms)[bool(model.terms) :])
+        table.add_row(terms, shown, f"{model.rms:.3g}", "chosen" if model.chosen else "")
+    return table
+
+
+def _pair(value: float, error: float) -> tuple[str, str]:
+    """A number to the second digit of its standard error, and that."""
+    if error <= 64.0 * EPS * abs(value):  # set, not fitted
+        return f"{value:.6g}", "0"
+    decimals = 1 - int(np.floor(np.log10(error)))
+    if decimals > 12 or decimals < 0 or abs(value) < 1e-3 or abs(value) >= 1e6:
+        digits = max(1, int(np.floor(np.log10(max(abs(value), error)))) + decimals + 1)
+        return f"{value:.{min(digits, 12)}g}", f"{error:.2g}"
+    return f"{value:.{decimals}f}", f"{error:.2g}"
+
+
+def _next(result: FitResult, out: Path) -> list[str]:
+    """Where the file is, and the command that scores the trace by it."""
+    samples = result.samples
+    words = ["omegadot", "score", samples.file, "--scenario", str(out), *result.options]
+    return [f"Scenario: {out}", f"Score the trace: {shlex.join(words)}"]

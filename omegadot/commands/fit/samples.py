@@ -1,0 +1,118 @@
+"""The samples that are fitted: omega and attitude of a trace, within a window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.commands.fit.solve import Data
+from omegadot.commands.score.settings import Reading
+from omegadot.commands.score.table import TraceError
+from omegadot.commands.score.trace import Trace, trace_of
+from omegadot.harness.usage import UsageError
+from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.system import Array, Body, System
+
+LEAST_SAMPLES = 6  # 18 numbers, for the 8 to 12 that are fitted
+MOST_TURNED = 5000.0  # rad; an evaluation of the motion takes seconds then
+_ANY = System((Body(np.array(1.0), np.zeros(3), np.eye(3)),))  # a trace of omega needs no body
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What is fitted. file: its name.  times: (n,) s, of the trace.  omega: (n, 3) rad/s, body.
+
+    orientation: (n, 4), or None.  digits: rad/s and rad, the resolution of a component.
+    """
+
+    file: str
+    times: Array
+    omega: Array
+    orientation: Array | None
+    digits: tuple[float, float]
+
+    @property
+    def size(self) -> float:
+        """rad/s, the root-mean-square length of omega: its unit in the fit."""
+        return float(np.sqrt(np.mean(np.sum(self.omega**2, axis=1))))
+
+    def data(self, torque: Array) -> Data:
+        """In the units of the fit. torque: N m, of any length there."""
+        times = (self.times - self.times[0]) * self.size
+        unit = float(np.linalg.norm(torque)) or 1.0
+        return Data(times, self.omega / self.size, self.orientation, torque / unit)
+
+    def inertia_unit(self, torque: Array, fitted: Array) -> float:
+        """The unit of inertia, kg m^2, in which a torque (N m) is `fitted`; 1 without one."""
+        length = float(np.linalg.norm(fitted))
+        return float(np.linalg.norm(torque)) / (length * self.size**2) if length else 1.0
+
+
+def samples_of(reading: Reading, start: float | None, end: float | None) -> Samples:
+    """The samples from `start` to `end`, s of the trace, both included.
+
+    Raises TraceError where they cannot be fitted, UsageError for a window without samples.
+    """
+    trace = trace_of(reading, _ANY)
+    file, omega = reading.table.file, trace.angular_velocity
+    if omega is None or np.any(np.isnan(omega)):
+        raise TraceError(
+            f"{file}: no column is an angular velocity, which a fit needs in three axes; map it, "
+            "like --column w=A,B,C."
+        )
+    inside = _window(trace, start, end, file)
+    digits = _digits(trace, inside)
+    turned = None if trace.orientation is None else normalize(trace.orientation[inside])
+    found = Samples(file, trace.times[inside], omega[inside], turned, digits)
+    _check(found)
+    return found
+
+
+def _window(trace: Trace, start: float | None, end: float | None, file: str) -> NDArray[np.intp]:
+    """(n,), the numbers of the samples within. Raises UsageError."""
+    first = -np.inf if start is None else start
+    last = np.inf if end is None else end
+    inside = np.flatnonzero((trace.times >= first) & (trace.times <= last))
+    if not len(inside):
+        options = {"--from": start, "--to": end}
+        given = " ".join(f"{key} {value:g}" for key, value in options.items() if value is not None)
+        raise UsageError(
+            f"{given}: {file} has no sample there; its samples stand from {trace.times[0]:g} to "
+            f"{trace.times[-1]:g} s."
+        )
+    return inside
+
+
+def _digits(trace: Trace, inside: NDArray[np.intp]) -> tuple[float, float]:
+    """The root-mean-square rounding of a component: a third of the half unit of a vector's length.
+
+    Of a component rounded to within u, it is ``u / sqrt(3)``; the vector's resolution is
+    ``sqrt(3) u``.
+    """
+    opened = [trace.open.get(name) for name in ("angular_velocity", "orientation")]
+    omega, turn = (
+        0.0 if one is None else float(np.sqrt(np.mean(one[inside] ** 2))) / 3.0 for one in opened
+    )
+    return omega, turn
+
+
+def _check(found: Samples) -> None:
+    """Raise TraceError where nothing can be fitted."""
+    count = len(found.times)
+    if count < LEAST_SAMPLES:
+        raise TraceError(
+            f"{found.file}: {count} samples are given; a fit needs at least {LEAST_SAMPLES}."
+        )
+    if not found.size > 3.0 * found.digits[0]:
+        raise TraceError(
+            f"{found.file}: omega is zero to the digits that are given; a body at rest shows none "
+            "of its moments, so give a trace of one that turns."
+        )
+    turned = float(found.data(np.zeros(3)).turned[-1])
+    if turned > MOST_TURNED:
+        raise TraceError(
+            f"{found.file}: the body turns by {turned:.0f} rad; fit a part of at most "
+            f"{MOST_TURNED:.0f} rad, with --from and --to."
+        )

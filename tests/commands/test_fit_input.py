@@ -1,0 +1,119 @@
+"""The arguments of a fit, its file, and its faults: one sentence, exit code 2, nothing written."""
+
+import shlex
+import tomllib
+
+import numpy as np
+import pytest
+from fit_traces import Truth, fitted, run_fit, write_trace
+from score_line import run_score
+
+from omegadot import scenario
+
+TIMES = np.linspace(0.0, 4.0, 61)
+QUICK = ("--no-bias", "--no-damping")
+
+
+@pytest.fixture
+def trace(tmp_path):
+    return write_trace(tmp_path / "thrown box.csv", Truth(), TIMES, attitude=True)
+
+
+def cell(line, column, text):
+    def edit(rows):
+        cells = rows[line].split(",")
+        cells[column] = text
+        return [*rows[:line], ",".join(cells), *rows[line + 1 :]]
+
+    return edit
+
+
+def still(rows):
+    return [rows[0], *(f"{row.split(',')[0]},0.00,0.00,0.00,1,0,0,0" for row in rows[1:])]
+
+
+@pytest.mark.parametrize(
+    ("edit", "arguments", "message"),
+    [
+        (cell(4, 2, "nan"), (), "line 5: 'wy' is nan"),
+        (cell(0, 1, "roll rate"), (), "no column is wx"),
+        (lambda rows: rows[:5], (), "4 samples are given; a fit needs at least 6"),
+        (still, (), "omega is zero to the digits that are given"),
+        (None, ("--from", "7"), "--from 7:"),
+        (None, ("--from", "2", "--to", "2.1"), "a fit needs at least 6"),
+        (None, ("--torque", "1,2"), "--torque 1,2: write three numbers of N m"),
+        (None, ("--torque", "0,0,0"), "not all zero"),
+        (None, ("--moment", "larges=1"), "there is no moment 'larges'; write largest"),
+        (None, ("--moment", "x=-1"), "--moment x=-1: write a positive number of kg m^2"),
+        (None, ("--moment", "x=1", "--torque", "1,0,0"), "--torque already"),
+        (None, ("--mass", "0"), "--mass 0.0: give a number above 0"),
+        (None, ("--name", "Not Kebab"), "give a name of lower-case letters"),
+        (None, ("--rate-unit", "rad/h"), "no unit of an angular velocity"),
+        (None, ("--column", "w=a,b"), "2 given, 3 columns were expected"),
+        (None, ("--column", "q=qw,qx,qy,qz", "--column", "w=px,py,pz"), "no column 'px'"),
+    ],
+)
+def test_a_fault_is_one_sentence(tmp_path, capsys, trace, edit, arguments, message):
+    if edit:
+        trace.write_text("\n".join(edit(trace.read_text().splitlines())) + "\n")
+    out = tmp_path / "fitted.toml"
+    result = run_fit(capsys, trace, *arguments, *QUICK, "--out", out)
+    assert (result.code, result.out) == (2, ""), result.out
+    assert message in result.err
+    assert result.err.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == [trace.name]
+
+
+def test_omega_is_needed(tmp_path, capsys):
+    path = tmp_path / "attitude.csv"
+    path.write_text("t,qw,qx,qy,qz\n" + "".join(f"{k},1,0,0,0\n" for k in range(9)))
+    result = run_fit(capsys, path)
+    assert result.code == 2
+    assert "no column is an angular velocity, which a fit needs" in result.err
+
+
+def test_the_scenario_scores_the_trace_that_it_was_fitted_to(tmp_path, capsys, trace):
+    """With the very command that is printed, whose exit code is 0, and the errors are tiny."""
+    out = tmp_path / "fitted.toml"
+    result = run_fit(capsys, trace, *QUICK, "--out", out, "--mass", "2.5", "--name", "box")
+    assert result.code == 0, result.err
+    line = next(line for line in result.out.splitlines() if line.startswith("Score the trace: "))
+    words = shlex.split(line.removeprefix("Score the trace: "))
+    assert words[:2] == ["omegadot", "score"]
+    score = run_score(capsys, *words[2:], "--out", tmp_path / "score", "--format", "json")
+    assert score.code == 0, score.err
+    assert score.json["channels"]["omega"]["max"] < 1e-9
+    assert score.json["channels"]["attitude"]["max"] < 1e-8
+    written = scenario(str(out))
+    assert (written.name, written.body.mass) == ("box", 2.5)
+    assert tomllib.loads(out.read_text())["run"]["duration"] == TIMES[-1]
+
+
+def test_a_window_in_other_units_is_scored_from_its_start(tmp_path, capsys):
+    """Times in ms from 12 s on, omega in deg/s: the options are passed on, with the offset."""
+    truth = Truth(damping=0.02)
+    path = write_trace(tmp_path / "late.csv", truth, TIMES)
+    rows = np.loadtxt(path, delimiter=",", skiprows=1)
+    rows[:, 0] = 1e3 * (rows[:, 0] + 12.0)
+    rows[:, 1:] = np.rad2deg(rows[:, 1:])
+    np.savetxt(path, rows, "%.17g", ",", header="ms,p,q,r", comments="")
+    out = tmp_path / "fitted.toml"
+    units = ("--time-unit", "ms", "--rate-unit", "deg/s", "--column", "t=ms", "--column", "w=p,q,r")
+    result = run_fit(capsys, path, *units, "--from", "13", "--no-bias", "--out", out)
+    assert result.code == 0, result.err
+    line = next(line for line in result.out.splitlines() if line.startswith("Score the trace: "))
+    assert "--rate-unit deg/s" in line
+    words = shlex.split(line)
+    assert 13.0 <= float(words[words.index("--time-offset") + 1]) < 13.1
+    assert scenario(str(out)).load.damping == pytest.approx(0.02, abs=1e-8)
+
+
+def test_the_models_that_were_compared_are_listed(tmp_path, capsys):
+    truth = Truth(damping=0.05)
+    found = fitted(capsys, write_trace(tmp_path / "trace.csv", truth, TIMES, 0.02, 2))
+    rms = {tuple(model["terms"]): model["rms"] for model in found["models"]}
+    assert set(rms) == {(), ("bias",), ("damping",), ("bias", "damping")}
+    assert rms[()] > rms["damping",]
+    chosen = [model["terms"] for model in found["models"] if model["chosen"]]
+    assert chosen == [["damping"]]
+    assert found["chances"]["damping"] < 0.01 < found["chances"]["bias"]
