@@ -38,12 +38,11 @@ def fit(
     body_axes: Annotated[
         Text, option("x,-y,-z", "The body axes x, y, z of the result, each as one of the trace.")
     ] = None,
-    from_time: Annotated[
-        float | None, option("S", "Time in the trace, s, to fit from.", "--from")
+    rate: Annotated[
+        float | None, option("HZ", "Sample rate of a trace without times, the first at zero.")
     ] = None,
-    to_time: Annotated[
-        float | None, option("S", "Time in the trace, s, to fit to.", "--to")
-    ] = None,
+    from_time: Annotated[Text, option("T", "Fit from this time of the trace on.", "--from")] = None,
+    to_time: Annotated[Text, option("T", "Fit up to this time of the trace.", "--to")] = None,
     torque: Annotated[
         Text, option("X,Y,Z", "A known torque, N m, constant in the body's axes.")
     ] = None,

@@ -12,13 +12,13 @@ import numpy as np
 from omegadot.commands.fit.estimates import estimates_of
 from omegadot.commands.fit.models import Terms, compare_models
 from omegadot.commands.fit.result import FitResult
-from omegadot.commands.fit.samples import Samples, samples_of
+from omegadot.commands.fit.samples import samples_of
 from omegadot.commands.fit.scale import known_of, scale_of, torque_of
 from omegadot.commands.fit.scenario_file import scenario_of_fit, text_of
 from omegadot.commands.fit.sentences import sentences
 from omegadot.commands.fit.spread import spread_of
 from omegadot.commands.score.read_table import read_table
-from omegadot.commands.score.settings import GivenColumns, reading_of, settings_of
+from omegadot.commands.score.settings import GivenColumns, Reading, reading_of, settings_of
 from omegadot.harness.usage import UsageError, check_number
 from omegadot.reports.record.whole_file import write_whole
 from omegadot.scenarios import scenario
@@ -38,8 +38,9 @@ def fit(
     quaternion: str | None = None,
     world_axes: str | None = None,
     body_axes: str | None = None,
-    from_time: float | None = None,
-    to_time: float | None = None,
+    rate: float | None = None,
+    from_time: float | str | None = None,
+    to_time: float | str | None = None,
     torque: str | Sequence[float] | None = None,
     moment: str | None = None,
     mass: float | None = None,
@@ -50,8 +51,8 @@ def fit(
 ) -> FitResult:
     """Fit a free rigid body's motion to a trace of omega, or of omega and attitude.
 
-    trace: a CSV or Parquet file.  columns, map_file, and the settings from time_unit to body_axes:
-    how it is to be read, as of `score`.  from_time, to_time: s of the trace, a window.
+    trace: a CSV or Parquet file.  columns, map_file, and the settings from time_unit to to_time:
+    how it is to be read, and what part of it, as of `score`.
     torque: N m, constant in the body's axes.  moment: one that is known, ``"largest=0.0123"`` in
     kg m^2, where there is no torque.  mass: kg, for the scenario.  bias, damping: True to fit it,
     False not to, None where the data decide.  name, out: of the scenario, and its file.
@@ -59,7 +60,7 @@ def fit(
     file.
     """
     given: dict[str, Any] = locals()
-    settings = {key.replace("_", "-"): given[key] for key in SETTINGS}
+    settings = {option: given[key] for key, option in SETTINGS.items()}
     load, known, terms = torque_of(torque), known_of(moment), Terms(bias, damping)
     if known is not None and np.any(load):
         raise UsageError("--moment: the scale is given by --torque already; give one of the two.")
@@ -69,7 +70,7 @@ def fit(
         scenario("sphere", name=name)  # refuses what is no name, before the work
     mapped = Path(map_file) if map_file else None
     reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
-    samples = samples_of(reading, from_time, to_time)
+    samples = samples_of(reading)
     digits = (samples.digits[0] / samples.size, samples.digits[1])
     compared = compare_models(samples.data(load), digits, terms)
     spread = spread_of(compared.data, compared.best, compared.noise)
@@ -86,26 +87,26 @@ def fit(
         compared,
         found_out,
         found,
-        _options(columns, mapped, settings, samples),
+        _options(columns, mapped, settings, reading),
     )
 
 
 def _options(
-    columns: GivenColumns, map_file: Path | None, settings: dict[str, Any], samples: Samples
+    columns: GivenColumns, map_file: Path | None, settings: dict[str, Any], reading: Reading
 ) -> list[str]:
     """What `score` needs to read the trace as it was read here, and to begin where it begins."""
     own, given = settings_of(columns, map_file, settings)
-    given = {"time-offset": 0.0, **given}
-    given["time-offset"] += float(samples.times[0])
+    given |= {"time-offset": reading.stamps.text(0)}
     found = [word for role, names in own for word in ("--column", f"{role}={','.join(names)}")]
     for key, value in given.items():
-        if value != 0.0:
+        if key != "time-offset" or value != "0":
             found += [f"--{key}", repr(value) if isinstance(value, float) else str(value)]
     return found
 
 
-SETTINGS = (
+_READING = (
     *("time_unit", "angle_unit", "rate_unit", "omega_frame", "attitude_is", "euler", "quaternion"),
-    *("world_axes", "body_axes"),
+    *("world_axes", "body_axes", "rate"),
 )
-"""Those of `score` that matter to a fit."""
+SETTINGS = {key: key.replace("_", "-") for key in _READING} | {"from_time": "from", "to_time": "to"}
+"""Those of `score` that matter to a fit, by their options."""

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from omegadot.commands.fit.solve import Data
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import Trace, trace_of
-from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array, Body, System
 
@@ -50,11 +48,8 @@ class Samples:
         return float(np.linalg.norm(torque)) / (length * self.size**2) if length else 1.0
 
 
-def samples_of(reading: Reading, start: float | None, end: float | None) -> Samples:
-    """The samples from `start` to `end`, s of the trace, both included.
-
-    Raises TraceError where they cannot be fitted, UsageError for a window without samples.
-    """
+def samples_of(reading: Reading) -> Samples:
+    """The samples of a trace. Raises TraceError where they cannot be fitted."""
     trace = trace_of(reading, _ANY)
     file, omega = reading.table.file, trace.angular_velocity
     if omega is None or np.any(np.isnan(omega)):
@@ -62,39 +57,20 @@ def samples_of(reading: Reading, start: float | None, end: float | None) -> Samp
             f"{file}: no column is an angular velocity, which a fit needs in three axes; map it, "
             "like --column w=A,B,C."
         )
-    inside = _window(trace, start, end, file)
-    digits = _digits(trace, inside)
-    turned = None if trace.orientation is None else normalize(trace.orientation[inside])
-    found = Samples(file, trace.times[inside], omega[inside], turned, digits)
+    turned = None if trace.orientation is None else normalize(trace.orientation)
+    found = Samples(file, trace.times, omega, turned, _digits(trace))
     _check(found)
     return found
 
 
-def _window(trace: Trace, start: float | None, end: float | None, file: str) -> NDArray[np.intp]:
-    """(n,), the numbers of the samples within. Raises UsageError."""
-    first = -np.inf if start is None else start
-    last = np.inf if end is None else end
-    inside = np.flatnonzero((trace.times >= first) & (trace.times <= last))
-    if not len(inside):
-        options = {"--from": start, "--to": end}
-        given = " ".join(f"{key} {value:g}" for key, value in options.items() if value is not None)
-        raise UsageError(
-            f"{given}: {file} has no sample there; its samples stand from {trace.times[0]:g} to "
-            f"{trace.times[-1]:g} s."
-        )
-    return inside
-
-
-def _digits(trace: Trace, inside: NDArray[np.intp]) -> tuple[float, float]:
+def _digits(trace: Trace) -> tuple[float, float]:
     """The root-mean-square rounding of a component: a third of the half unit of a vector's length.
 
     Of a component rounded to within u, it is ``u / sqrt(3)``; the vector's resolution is
     ``sqrt(3) u``.
     """
     opened = [trace.open.get(name) for name in ("angular_velocity", "orientation")]
-    omega, turn = (
-        0.0 if one is None else float(np.sqrt(np.mean(one[inside] ** 2))) / 3.0 for one in opened
-    )
+    omega, turn = (0.0 if one is None else float(np.sqrt(np.mean(one**2))) / 3.0 for one in opened)
     return omega, turn
 
 
