@@ -36,10 +36,10 @@ def still(rows):
     ("edit", "arguments", "message"),
     [
         (cell(4, 2, "nan"), (), "line 5: 'wy' is nan"),
-        (cell(0, 1, "roll rate"), (), "no column is wx"),
+        (cell(0, 1, "roll rate"), (), "no column is an angular velocity"),
         (lambda rows: rows[:5], (), "4 samples are given; a fit needs at least 6"),
         (still, (), "omega is zero to the digits that are given"),
-        (None, ("--from", "7"), "--from 7:"),
+        (None, ("--from", "7"), "--from and --to leave 0"),
         (None, ("--from", "2", "--to", "2.1"), "a fit needs at least 6"),
         (None, ("--torque", "1,2"), "--torque 1,2: write three numbers of N m"),
         (None, ("--torque", "0,0,0"), "not all zero"),
