@@ -98,6 +98,7 @@ def check(
                 count.advance()
         finally:
             suite.finish()
+    results = {one: result.settled for one, result in results.items()}
     tally = Tally()
     for one, result in results.items():
         tally.add(one.engine, result.verdict, result.message)

@@ -1,0 +1,155 @@
+"""What an engine's steps do as they vanish: its own equation, without any forward dynamics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.diagnosis.evidence import SLACK, Evidence
+from omegadot.gates.scales import norm
+from omegadot.gates.vanishing_step import Limit, Probe, limits
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import rotate, rotate_inverse
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+
+@dataclass(frozen=True)
+class VanishingSteps:
+    """The rates at no step, by channel, and where a step of no length leads."""
+
+    system: System
+    states: State
+    rates: dict[str, Limit]
+    start: State
+    noise: float
+
+    @property
+    def evidence(self) -> Evidence:
+        """omega-dot and the linear acceleration that the steps follow."""
+        angular, angular_bound = _better(self.rates["omega"])
+        linear, linear_bound = _better(self.rates["linear_momentum"])
+        found = Acceleration(angular, linear)
+        return Evidence("steps", self.system, self.states, found, angular_bound, linear_bound)
+
+    def common_cause(self) -> str:
+        """Steps that are too long or too short by a part: every rate is off by one factor."""
+        k = common_factor(self.rates)
+        if k is None:
+            return ""
+        if k == 0.0:
+            return "a run of one step does not move"
+        return f"steps are {100 * abs(k - 1.0):.4g} % too {'long' if k > 1.0 else 'short'}"
+
+
+def vanishing_steps(system: System, probe: Probe, stepped: State) -> VanishingSteps:
+    """From the answers to the gate's own requests: states (m, 9, ...) after one step each."""
+    with np.errstate(all="ignore"):
+        rates = limits(system, probe, stepped)
+    ends = [2.0 * f[:, -1] - f[:, -2] for f in vars(stepped).values()]
+    step = float(np.max(probe.timesteps[:, -1]))
+    return VanishingSteps(system, probe.states, rates, State(*ends), step)
+
+
+def _better(limit: Limit) -> tuple[Array, Array]:
+    """Of the two ranges of steps the one with the smaller bound, at every state."""
+    bound = np.where(np.isfinite(limit.bound), limit.bound, np.inf)
+    best = np.argmin(bound, axis=0)
+    places = np.arange(bound.shape[1])
+    return limit.found[best, places], limit.bound[best, places]
+
+
+def common_factor(rates: dict[str, Limit]) -> float | None:
+    """The factor by which all rates are off; None where there is none."""
+    found = np.concatenate([np.ravel(_better(one)[0]) for one in rates.values()])
+    true = np.concatenate([np.ravel(one.expected) for one in rates.values()])
+    weight = np.concatenate([np.repeat(1.0 / _better(one)[1], 3) for one in rates.values()])
+    used = np.isfinite(weight) & np.isfinite(found)
+    found, true = found[used] * weight[used], true[used] * weight[used]
+    size = float(true @ true)
+    factor = float(found @ true) / size if size > 0.0 else 1.0
+    fits = all(np.all(one.shares(factor) <= 1.0) for one in rates.values())
+    return factor if fits and factor != 1.0 else None
+
+
+def kinematic_cause(steps: VanishingSteps) -> str:
+    """What attitude and position follow in place of omega and the velocity; "" where they do."""
+    system, states = steps.system, steps.states
+    q, w, v = states.orientation, states.angular_velocity, states.linear_velocity
+    lever = rotate(q, cross(w, system.body.center_of_mass))
+    candidates: dict[str, dict[str, Array]] = {
+        "attitude": {
+            "the attitude does not move": 0 * w,
+            "the attitude turns by omega taken in world axes": rotate_inverse(q, w),
+            "the attitude turns by R omega taken in body axes": rotate(q, w),
+            "the attitude turns the wrong way": -w,
+        },
+        "position": {
+            "the position does not move": 0 * v,
+            "the position moves by the velocity taken in body axes": rotate(q, v),
+            "the position moves by R^T v": rotate_inverse(q, v),
+            "the position moves with the velocity of the body's origin": v - lever,
+            "the position moves with the velocity of a point on the centre of mass's other side": (
+                v + lever
+            ),
+            "the position moves the wrong way": -v,
+        },
+    }
+    if system.load.pivot is not None:
+        del candidates["position"]
+    for channel, named in candidates.items():
+        limit = steps.rates[channel]
+        found, bound = _better(limit)
+        if np.all(limit.shares() <= 1.0):
+            continue
+        for text, rate in named.items():
+            if np.all(norm(found - rate) <= SLACK * bound):
+                return f"in the steps, {text}"
+        factor = float(np.sum(found * limit.expected) / np.sum(limit.expected**2))
+        if np.all(norm(found - factor * limit.expected) <= SLACK * bound):
+            what = "omega" if channel == "attitude" else "the velocity"
+            return f"in the steps, the {channel} moves by {factor:.9g} times {what}"
+    return ""
+
+
+def jump_cause(steps: VanishingSteps) -> str:
+    """What a step does to a state however short it is: limits, sleep, rounding; "" without any."""
+    before, after = steps.states, steps.start
+    w, new = before.angular_velocity, after.angular_velocity
+    v, moved = before.linear_velocity, after.linear_velocity
+    accelerations = forward_dynamics(steps.system, before)
+    for what, was, now, rate in (
+        ("omega", w, new, accelerations.angular),
+        ("the linear velocity", v, moved, accelerations.linear),
+    ):
+        if what != "omega" and steps.system.load.pivot is not None:
+            continue
+        # what is left of the extrapolation from two steps, and rounding
+        allowed = 1e-6 * (norm(was) + norm(rate) * steps.noise)
+        jumped = norm(now - was) > allowed
+        if not jumped.any() or not np.all(np.isfinite(now)):
+            continue
+        text = _limit(was, now, allowed, jumped)
+        if text:
+            return f"{what} {text}" if "component" not in text else text.replace("OMEGA", what)
+    return ""
+
+
+def _limit(was: Array, now: Array, allowed: Array, jumped: Array) -> str:
+    size, unit = norm(was), "rad/s"
+    held = norm(now)
+    if np.all(held[jumped] <= allowed[jumped]):
+        least = np.max(size[jumped])
+        more = size[~jumped]
+        if not len(more) or np.min(more) < least:
+            return ""
+        return f"is set to zero below a limit between {least:.4g} and {np.min(more):.4g} {unit}"
+    limit = float(np.median(held[jumped]))
+    scaled = was * np.minimum(1.0, limit / np.where(size > 0.0, size, 1.0))[:, None]
+    if np.all(norm(now - scaled) <= 10 * allowed) and np.count_nonzero(jumped) > 1:
+        return f"is held below {limit:.6g} {unit}"
+    largest = float(np.max(np.abs(now[jumped])))
+    if np.all(norm(now - np.clip(was, -largest, largest)) <= 10 * allowed):
+        return f"each component of OMEGA is held within {largest:.6g} {unit}"
+    return ""
