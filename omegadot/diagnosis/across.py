@@ -144,15 +144,14 @@ class Across:
         where = only_where(parts) or only_where(alone)
         if not where:
             return ""
-        text = "the equation holds at some states, and is wrong"
+        text = f"the equation holds at some states, and is wrong only where {where}"
         if len(wrong) >= LEAST:
             there = evidence.at(wrong)
             for level in islice(levels(there, deep=False), 2):
                 texts = list(dict.fromkeys(one.text(evidence.system) for one in level))
                 if 0 < len(texts) <= MOST_NAMED:
-                    text = " or ".join(texts) + ","
-                    break
-        return f"{text} only where {where}"
+                    return f"{text}; there, {' or '.join(texts)}"
+        return text
 
     def _held(self, one: Candidate, scene: Scene, source: str) -> Held:
         """A candidate against every other scenario with evidence of the same source."""

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.diagnosis.across import Across
-from omegadot.diagnosis.equation import FORWARD, equation_causes, inverse_causes, scene_of
+from omegadot.diagnosis.equation import ALONG, FORWARD, equation_causes, inverse_causes, scene_of
 from omegadot.diagnosis.model import model_causes
 from omegadot.diagnosis.runs import run_causes
 from omegadot.diagnosis.steps import VanishingSteps, jump_cause, kinematic_cause, vanishing_steps
@@ -94,25 +94,21 @@ class CaseCauses:
             found += model_causes(across, self._case, states, answers)
         if "equation" not in failed or found:
             return found
-        if self._forward_fails():
-            return equation_causes(across, self._case.name, FORWARD)
-        if answers.inverse.ok:
-            torque = answers.inverse.result["torque"]
-            given = (self._case.system, states.random, states.acceleration)
-            if any(row.verdict == "fail" for row in inverse_rows(*given, torque)):
-                return inverse_causes(*given, torque)
-        return []
-
-    def _forward_fails(self) -> bool:
-        rows, answers = [], self._answers
-        for answer, states in (
-            (answers.forward, self._states.random),
-            (answers.path, self._states.path),
+        for source, answer, at in (
+            (FORWARD, answers.forward, states.random),
+            (ALONG, answers.path, states.path),
         ):
             if answer.ok:
-                found = Acceleration(**answer.result)
-                rows += forward_rows(self._case.system, states, found, "residual")
-        return any(row.verdict == "fail" for row in rows)
+                given = Acceleration(**answer.result)
+                rows = forward_rows(self._case.system, at, given, "residual")
+                if any(row.verdict == "fail" for row in rows):
+                    return equation_causes(across, self._case.name, source)
+        if answers.inverse.ok:
+            torque = answers.inverse.result["torque"]
+            asked = (self._case.system, states.random, states.acceleration)
+            if any(row.verdict == "fail" for row in inverse_rows(*asked, torque)):
+                return inverse_causes(*asked, torque)
+        return []
 
     def _of_run(self, name: str) -> list[str]:
         """Of the steps as they vanish, then of the run itself."""

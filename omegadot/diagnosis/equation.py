@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
@@ -25,30 +25,21 @@ from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 from omegadot.workers.wire import body_from
 
-FORWARD = "forward"
+FORWARD, ALONG = "forward", "along the trajectory"
 
 
 def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> Scene:
     """What is kept of one scenario's forward dynamics."""
-    evidence = dict[str, Evidence]()
-    parts = [
-        (states, Acceleration(**answer.result))
-        for answer, states in (
-            (result.forward, evaluation_states.random),
-            (result.path, evaluation_states.path),
+    evidence = {
+        source: of_forward_dynamics(case.system, states, Acceleration(**answer.result))
+        for source, answer, states in (
+            (FORWARD, result.forward, evaluation_states.random),
+            (ALONG, result.path, evaluation_states.path),
         )
         if answer.ok
-    ]
-    if parts:
-        states = State(*_joined([tuple(vars(one).values()) for one, _ in parts]))
-        found = Acceleration(*_joined([tuple(vars(one).values()) for _, one in parts]))
-        evidence[FORWARD] = of_forward_dynamics(case.system, states, found)
+    }
     held = body_from(result.model.result["bodies"][0]) if result.model.ok else None
     return Scene(case.name, case.system, features_of(case.system, case.initial), evidence, held)
-
-
-def _joined(parts: Sequence[tuple[Array, ...]]) -> list[Array]:
-    return [np.concatenate(one) for one in zip(*parts, strict=True)]
 
 
 def equation_causes(across: Across, name: str, source: str) -> list[str]:
@@ -63,7 +54,7 @@ def equation_causes(across: Across, name: str, source: str) -> list[str]:
         if finite < len(values):
             return [f"{what} is not finite at {len(values) - finite} of {len(values)} states"]
     text = across.cause(name, source)
-    if not text and source == FORWARD:
+    if not text and source in (FORWARD, ALONG):
         text = _constant(evidence) or difference_quotient(evidence)
     return [text] if text else _known(across, name, source)
 

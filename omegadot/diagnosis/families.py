@@ -353,6 +353,27 @@ THREE_NUMBERS: tuple[Family, ...] = (
 )
 
 
+def _extra(name: str, frame: str) -> Family:
+    """A constant torque on a body that none was requested for."""
+
+    def starts(system: System) -> list[Array]:
+        return [] if _driven(system) else [np.zeros(3)]
+
+    def text(system: System, p: Array) -> str:
+        return f"a torque of {vector(p)} N m in {frame} axes acts that was not requested"
+
+    return Family(
+        f"extra {name}",
+        "torque",
+        starts,
+        lambda f, s, p: replace(f, **{name: p}),
+        text,
+        lambda s: np.zeros(3),
+        "N m",
+    )
+
+
+EXTRA = (_extra("torque_body", "body"), _extra("torque_world", "world"))
 _I, _J = np.triu_indices(3)
 _BASIS = np.zeros((6, 3, 3))
 _BASIS[range(6), _I, _J] = _BASIS[range(6), _J, _I] = 1.0

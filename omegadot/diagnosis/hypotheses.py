@@ -307,6 +307,12 @@ def _torque() -> Iterator[Hypothesis]:
                 "torque",
                 lambda one, k=order: _applied(one, lambda t: t[list(k)]),
             )
+    for what, power in (("divided", -1), ("multiplied", 1)):
+        yield _form(
+            f"all loads have a wrong torque: it is {what} by the mass",
+            "loads",
+            lambda f, s, k=power: _loads_scaled(f, float(s.body.mass) ** k),
+        )
     through: dict[str, Callable[[Form, System], Array]] = {
         "is not divided by the inertia": lambda f, s: np.eye(3),
         "is divided by the inertia's diagonal alone": lambda f, s: _over_diagonal(f),
@@ -333,6 +339,11 @@ def _torque() -> Iterator[Hypothesis]:
                 {"couple_offset": k * s.body.center_of_mass} if s.load.pivot is None else {}
             ),
         )
+
+
+def _loads_scaled(form: Form, k: float) -> dict[str, Any]:
+    parts = ("torque_body", "torque_world", "weight", "damping")
+    return {name: k * getattr(form, name) for name in parts}
 
 
 def _pivot() -> Iterator[Hypothesis]:

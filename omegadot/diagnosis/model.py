@@ -110,7 +110,8 @@ def _moments(requested: Array, back: Array) -> str:
         return "the inertia's moments are right, and its axes are not"
     off = float(np.linalg.norm(back - requested, 2) / np.linalg.norm(requested, 2))
     rows = "; ".join(vector(row, own) for row, own in zip(back, requested, strict=True))
-    return f"the inertia reads back as {rows} kg m^2, {100 * off:.2g} % off"
+    text = f"the dynamics are those of another inertia, {100 * off:.2g} % off"
+    return f"{text}: it reads back as {rows} kg m^2"
 
 
 def _alike(one: Array, other: Array, condition: float) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from omegadot.diagnosis.equation_form import Form, accelerations, form_of, stacked
 from omegadot.diagnosis.evidence import SCREENED, SLACK, Evidence
-from omegadot.diagnosis.families import LEAST, ONE_NUMBER, SIX_NUMBERS, THREE_NUMBERS, Family, fit
+from omegadot.diagnosis.families import EXTRA, LEAST, ONE_NUMBER, SIX_NUMBERS, THREE_NUMBERS, Family, fit
 from omegadot.diagnosis.hypotheses import Hypothesis, hypotheses, wrong_form
 from omegadot.diagnosis.readings import READINGS, Reading
 from omegadot.reference_impl.system import Acceleration, Array, System
@@ -86,21 +86,25 @@ def levels(evidence: Evidence, deep: bool = True) -> Iterator[list[Candidate]]:
     forms = [wrong_form([one], evidence.system) for one in known]
     single = [Candidate((known[k],)) for k in evidence.fitting(forms)]
     likely = [one for one in single if not one.fixed[0].unlikely]
-    likely += [
-        Candidate(reading=one) for one in READINGS if evidence.fits(one.accelerations(evidence))
-    ]
-    yield likely
+    yield likely + _readings(evidence)
     yield _fitted(evidence, ONE_NUMBER)
     yield _fitted(evidence, LEAST)
     unlikely = [one for one in single if one.fixed[0].unlikely]
     if deep:
         seen = _visible(evidence, known, forms)
         yield unlikely + _pairs(evidence, known, forms, seen)
-        yield _fitted(evidence, THREE_NUMBERS)
+        yield _fitted(evidence, (*THREE_NUMBERS, *EXTRA))
         yield _mixed(evidence, known, seen)
         yield _fitted(evidence, SIX_NUMBERS)
     else:
         yield unlikely
+
+
+def _readings(evidence: Evidence) -> list[Candidate]:
+    """Those that fit, and of several that make no difference here the plainest."""
+    made = [(one, one.accelerations(evidence)) for one in READINGS]
+    fits = [(one, found) for one, found in made if evidence.fits(found)]
+    return [Candidate(reading=one) for one, _ in fits[:1]]
 
 
 def _fitted(evidence: Evidence, families: Sequence[Family]) -> list[Candidate]:
