@@ -95,7 +95,6 @@ class Across:
 
     def _cause(self, name: str, source: str) -> str:
         scene = self.scenes[name]
-        evidence = scene.evidence[source]
         conditional: list[Held] = []
         for number, level in enumerate(self._search(scene, source)):
             if number == QUICK:

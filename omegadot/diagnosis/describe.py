@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.diagnosis.digits import number
 from omegadot.diagnosis.equation_form import form_of
@@ -37,7 +38,7 @@ def _of(evidence: Evidence, what: str, rest: Array, kind: str) -> str:
     if np.count_nonzero(clear) < 6:
         return ""
     wrong = np.abs(rest) > CLEAR_OF_ROUNDING * bound[:, None]
-    axes = [axis for axis, one in zip("xyz", wrong[clear].any(axis=0), strict=True) if one]
+    axes = [axis for k, axis in enumerate("xyz") if np.any(wrong[clear, k])]
     texts = [f"{what} is off"]
     if len(axes) < 3:
         texts[0] += f" in {' and '.join(axes)} alone"
@@ -58,7 +59,7 @@ def _of(evidence: Evidence, what: str, rest: Array, kind: str) -> str:
     return ", ".join(texts)
 
 
-def _direction(evidence: Evidence, rest: Array, clear: Array) -> str:
+def _direction(evidence: Evidence, rest: Array, clear: NDArray[np.bool_]) -> str:
     """The direction of the torque, or of the rate, that is too much."""
     system, w = evidence.system, evidence.states.angular_velocity
     form = form_of(system)

@@ -104,7 +104,7 @@ def inverse_causes(
     if fits(-true):
         found.append("inverse dynamics have the wrong sign")
     if all(np.any(one) for one in loads.values()) and fits(true - sum(loads.values())):
-            found.append("inverse dynamics leave out the loads that act: damping and torque")
+        found.append("inverse dynamics leave out the loads that act: damping and torque")
     for what, term in terms.items():
         k = _share(torque - true, term, bound)
         if k is not None and fits(true + k * term):

@@ -222,19 +222,6 @@ ONE_NUMBER: tuple[Family, ...] = (
         ),
         "kg m^2",
     ),
-    _scalar(
-        "diagonal",
-        "inertia",
-        0.0,
-        _always,
-        lambda f, s, a: replace(
-            f,
-            solve=np.linalg.inv(np.linalg.inv(f.solve) + a * np.eye(3)),
-            spin=f.spin + a * np.eye(3),
-        ),
-        lambda s, a: f"{number(a)} kg m^2 is added to the diagonal of the inertia",
-        "kg m^2",
-    ),
     Family(
         "mass",
         "mass",

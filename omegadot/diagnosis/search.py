@@ -9,7 +9,15 @@ import numpy as np
 
 from omegadot.diagnosis.equation_form import Form, accelerations, form_of, stacked
 from omegadot.diagnosis.evidence import SCREENED, SLACK, Evidence
-from omegadot.diagnosis.families import EXTRA, LEAST, ONE_NUMBER, SIX_NUMBERS, THREE_NUMBERS, Family, fit
+from omegadot.diagnosis.families import (
+    EXTRA,
+    LEAST,
+    ONE_NUMBER,
+    SIX_NUMBERS,
+    THREE_NUMBERS,
+    Family,
+    fit,
+)
 from omegadot.diagnosis.hypotheses import Hypothesis, hypotheses, wrong_form
 from omegadot.diagnosis.readings import READINGS, Reading
 from omegadot.reference_impl.system import Acceleration, Array, System

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.diagnosis.evidence import SLACK, Evidence
 from omegadot.gates.scales import norm
@@ -62,6 +63,11 @@ def _better(limit: Limit) -> tuple[Array, Array]:
 
 def common_factor(rates: dict[str, Limit]) -> float | None:
     """The factor by which all rates are off; None where there is none."""
+    with np.errstate(all="ignore"):
+        return _common_factor(rates)
+
+
+def _common_factor(rates: dict[str, Limit]) -> float | None:
     found = np.concatenate([np.ravel(_better(one)[0]) for one in rates.values()])
     true = np.concatenate([np.ravel(one.expected) for one in rates.values()])
     weight = np.concatenate([np.repeat(1.0 / _better(one)[1], 3) for one in rates.values()])
@@ -136,7 +142,7 @@ def jump_cause(steps: VanishingSteps) -> str:
     return ""
 
 
-def _limit(was: Array, now: Array, allowed: Array, jumped: Array) -> str:
+def _limit(was: Array, now: Array, allowed: Array, jumped: NDArray[np.bool_]) -> str:
     size, unit = norm(was), "rad/s"
     held = norm(now)
     if np.all(held[jumped] <= allowed[jumped]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import permutations, product
 
 import numpy as np
@@ -23,7 +23,15 @@ def _symmetric(tensor: Array, change: Callable[[list[float]], Sequence[float]]) 
     """A tensor with the products (xy, xz, yz) changed."""
     xy, xz, yz = change([tensor[0, 1], tensor[0, 2], tensor[1, 2]])
     products = np.array([[0.0, xy, xz], [xy, 0.0, yz], [xz, yz, 0.0]])
-    return _diagonal(tensor) + products
+    return np.asarray(_diagonal(tensor) + products)
+
+
+def _in_order(order: Sequence[int], products: list[float]) -> list[float]:
+    return [products[k] for k in order]
+
+
+def _times(factors: Sequence[float], products: list[float]) -> list[float]:
+    return [a * b for a, b in zip(factors, products, strict=True)]
 
 
 def product_mistakes(tensor: Array) -> Iterator[tuple[str, Array]]:
@@ -33,12 +41,12 @@ def product_mistakes(tensor: Array) -> Iterator[tuple[str, Array]]:
         if order != (0, 1, 2):
             held = ", ".join(names[k] for k in order)
             text = f"the products of inertia are in another order: xy, xz, yz hold {held}"
-            yield text, _symmetric(tensor, lambda p, k=order: [p[i] for i in k])
+            yield text, _symmetric(tensor, partial(_in_order, order))
     for index, name in enumerate(names):
         for what, factor in (("has the wrong sign", -1.0), ("is dropped", 0.0)):
             text = f"the product of inertia {name} {what}"
             signs = [factor if k == index else 1.0 for k in range(3)]
-            yield text, _symmetric(tensor, lambda p, k=signs: list(np.multiply(p, k)))
+            yield text, _symmetric(tensor, partial(_times, signs))
 
 
 def other_tensors(system: System) -> dict[str, Array]:
