@@ -58,6 +58,21 @@ class Held:
     contradicted: bool = False
     pairs: list[tuple[Array, Array]] = field(default_factory=list)
 
+    @property
+    def holds(self) -> bool:
+        """Whether no scenario is against it; numbers may be others, and right, elsewhere."""
+        return not self.contradicted and (not self.against or self.candidate.family is not None)
+
+    def where(self) -> str:
+        """Of numbers that act on some scenarios alone: on which."""
+        if not self.against or self.pairs:
+            return ""
+        shown, against = ([one.features for one in group] for group in (self.shown, self.against))
+        common = in_common(shown, against)
+        if common and len(common) <= 2:
+            return f", but only where {' or where '.join(common)}"
+        return f", on {len(shown)} of the {len(shown) + len(against)} scenarios that would show it"
+
 
 class _Search:
     """Levels that are worked out when they are first asked for, and kept."""
@@ -102,12 +117,16 @@ class Across:
                 if text:
                     return text
             held = [self._held(one, scene, source) for one in _distinct(level)]
-            whole = [one for one in held if not one.contradicted and not one.against]
+            whole = [one for one in held if one.holds]
             text = self._worded(whole, source)
             if text:
                 self._accepted.append([one.candidate for one in whole])
                 return text
             conditional += [one for one in held if not one.contradicted]
+            if number == 0:
+                text = self._conditional(conditional)
+                if text:
+                    return text
         return self._at_some_states(scene, source) or self._conditional(conditional)
 
     def _known_elsewhere(self, scene: Scene, source: str) -> str:
@@ -117,7 +136,7 @@ class Across:
             tried = [(one, one.predicted(evidence)) for one in group]
             fits = [one for one, made in tried if made is not None and evidence.fits(made)]
             held = [self._held(one, scene, source) for one in fits]
-            whole = [one for one in held if not one.contradicted and not one.against]
+            whole = [one for one in held if one.holds]
             text = self._worded(whole, source)
             if text:
                 return text
@@ -168,7 +187,7 @@ class Across:
                 continue
             if not evidence.visible(tried):
                 continue
-            if one.family is not None:
+            if one.family is not None and not bool(np.all(evidence.sound)):
                 held.contradicted |= not _own_numbers(one, evidence)
             elif bool(np.all(evidence.sound)):
                 held.against.append(other)
@@ -203,7 +222,7 @@ class Across:
             forms += [form] if form is not None else []
             if held.pairs and one.family is not None:
                 law = law_of(held.pairs, LAWS[one.family.name], one.family.unit)
-            texts.append(law or one.text(system))
+            texts.append(law or one.text(system) + held.where())
         texts = list(dict.fromkeys(texts))
         if not texts or len(texts) > MOST_NAMED:
             return ""
@@ -224,8 +243,8 @@ class Across:
 
 
 def _own_numbers(one: Candidate, evidence: Evidence) -> bool:
-    """Whether a scenario has numbers of its own for this cause, or shows none."""
-    return bool(np.all(evidence.sound)) or one.refitted(evidence) is not None
+    """Whether a scenario has numbers of its own for this cause."""
+    return one.refitted(evidence) is not None
 
 
 def _with_another(one: Candidate, evidence: Evidence) -> bool:

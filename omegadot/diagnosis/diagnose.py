@@ -19,19 +19,25 @@ from omegadot.diagnosis.across import Across
 from omegadot.diagnosis.equation import ALONG, FORWARD, equation_causes, inverse_causes, scene_of
 from omegadot.diagnosis.model import model_causes
 from omegadot.diagnosis.runs import run_causes
-from omegadot.diagnosis.steps import VanishingSteps, jump_cause, kinematic_cause, vanishing_steps
+from omegadot.diagnosis.steps import (
+    VanishingSteps,
+    jump_cause,
+    jumps,
+    kinematic_cause,
+    vanishing_steps,
+)
 from omegadot.gates.case import Case
 from omegadot.gates.equation import (
     EvaluationStates,
     evaluation_states_of,
-    forward_rows,
-    inverse_rows,
 )
+from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun, shared_rows
 from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase
-from omegadot.reference_impl.system import Acceleration, State
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import State
 
 
 class CaseCauses:
@@ -44,6 +50,7 @@ class CaseCauses:
         truth: Truth,
         evaluation_states: EvaluationStates,
         result: CaseResult,
+        shared: Sequence[Row],
         runs: Sequence[JudgedRun],
     ) -> None:
         self._across, self._case, self._states = across, case, evaluation_states
@@ -52,7 +59,7 @@ class CaseCauses:
         self._answers = replace(result, runs={}, first_steps={}, restarts={})
         self._steps = _steps_of(case, result)
         self._of_runs: dict[str, list[str]] = {}
-        self._failed: set[str] | None = None
+        self._shared_rows = [row for row in shared if row.verdict == "fail"]
         scene = scene_of(case, evaluation_states, result)
         for name, steps in self._steps.items():
             scene.evidence[_source(name)] = steps.evidence
@@ -61,7 +68,7 @@ class CaseCauses:
     def release(self) -> None:
         """Work out what needs the trajectories, and let go of them."""
         failed = {r.integrator.name for r in self._runs if _fails(r)}
-        for name in failed if not self._shared_failed() else ():
+        for name in failed if not self._shared_rows else ():
             self._of_run(name)
         self._result, self._runs = None, []
 
@@ -72,51 +79,54 @@ class CaseCauses:
         looked at by themselves only where neither gate failed.
         """
         with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-            failed = self._shared_failed()
-            if failed:
-                return self._shared(failed)
+            if self._shared_rows:
+                return self._shared()
             return [] if integrator is None else self._of_run(integrator)
 
     def text(self, run: JudgedRun | None) -> str:
         """The causes of one run, or of what all runs share, as one text."""
         return "; ".join(self.sentences(None if run is None else run.integrator.name))
 
-    def _shared_failed(self) -> set[str]:
-        if self._failed is None:
-            rows = shared_rows(self._case, self._states, self._answers)
-            self._failed = {row.gate for row in rows if row.verdict == "fail"}
-        return self._failed
-
-    def _shared(self, failed: set[str]) -> list[str]:
+    def _shared(self) -> list[str]:
+        """Of the model, then of forward dynamics, then of inverse dynamics."""
         answers, states, across = self._answers, self._states, self._across
-        found: list[str] = []
-        if "model" in failed:
-            found += model_causes(across, self._case, states, answers)
-        if "equation" not in failed or found:
-            return found
-        for source, answer, at in (
-            (FORWARD, answers.forward, states.random),
-            (ALONG, answers.path, states.path),
-        ):
-            if answer.ok:
-                given = Acceleration(**answer.result)
-                rows = forward_rows(self._case.system, at, given, "residual")
-                if any(row.verdict == "fail" for row in rows):
-                    return equation_causes(across, self._case.name, source)
-        if answers.inverse.ok:
+        failed = {(row.gate, row.metric) for row in self._shared_rows}
+        if any(gate == "model" for gate, _ in failed):
+            found = model_causes(across, self._case, states, answers)
+            if found:
+                return found
+        torques = any(row.channel == "torque" for row in self._shared_rows)
+        for source, metric in ((FORWARD, "residual"), (ALONG, "residual_on_path")):
+            rates = [r for r in self._shared_rows if r.metric == metric and r.channel != "torque"]
+            if rates:
+                return equation_causes(across, self._case.name, source)
+        if torques and answers.inverse.ok:
             torque = answers.inverse.result["torque"]
-            asked = (self._case.system, states.random, states.acceleration)
-            if any(row.verdict == "fail" for row in inverse_rows(*asked, torque)):
-                return inverse_causes(*asked, torque)
+            return inverse_causes(self._case.system, states.random, states.acceleration, torque)
         return []
 
     def _of_run(self, name: str) -> list[str]:
-        """Of the steps as they vanish, then of the run itself."""
-        steps = self._steps.get(name)
+        """Of the steps as they vanish and of the run itself.
+
+        What a declared scheme makes of a wrong state is known better by stepping again than by
+        the steps as they vanish; a wrong equation is known better by these.
+        """
+        steps, declared = self._steps.get(name), self._declares(name)
+        found: list[str] = []
         if steps is not None:
-            found = _of_steps(self._across, self._case.name, name, steps)
-            if found:
-                return found
+            common = steps.common_cause()
+            found = [common] if common else []
+            if not found and not declared:
+                found = _of_states(steps)
+            if not found and not jumps(steps):
+                found = _of_equation(self._across, self._case.name, name, steps)
+        found = found or self._of_trajectories(name)
+        return found or (_of_states(steps) if steps is not None else [])
+
+    def _declares(self, name: str) -> bool:
+        return any(i.name == name and i.scheme in SCHEMES for i in self._answers.integrators)
+
+    def _of_trajectories(self, name: str) -> list[str]:
         if name not in self._of_runs and self._result is not None:
             runs = [run for run in self._runs if run.integrator.name == name]
             self._of_runs[name] = run_causes(self._case, self._truth, self._result, runs)
@@ -139,15 +149,15 @@ def _steps_of(case: Case, result: CaseResult) -> dict[str, VanishingSteps]:
     }
 
 
-def _of_steps(across: Across, case: str, integrator: str, steps: VanishingSteps) -> list[str]:
-    """Why the limit of vanishing steps is not the equation's; nothing where it is."""
-    if all(np.all(one.shares() <= 1.0) for one in steps.rates.values()):
-        return []
-    found = steps.common_cause() or jump_cause(steps) or kinematic_cause(steps)
-    if found:
-        return [found]
-    evidence = steps.evidence
-    if np.all(evidence.sound):
+def _of_states(steps: VanishingSteps) -> list[str]:
+    """What steps do to states, however short they are."""
+    found = jump_cause(steps) or kinematic_cause(steps)
+    return [found] if found else []
+
+
+def _of_equation(across: Across, case: str, integrator: str, steps: VanishingSteps) -> list[str]:
+    """By which equation the limit of vanishing steps is another; nothing where it is the right."""
+    if np.all(steps.evidence.sound):
         return []
     return [f"in the steps, {one}" for one in equation_causes(across, case, _source(integrator))]
 
@@ -164,7 +174,9 @@ class Causes:
         across = self._engines.setdefault(found.engine.name, Across())
         states = evaluation_states_of(judged.case, judged.truth, seed)
         with np.errstate(all="ignore"):
-            return CaseCauses(across, judged.case, judged.truth, states, found.result, found.runs)
+            return CaseCauses(
+                across, judged.case, judged.truth, states, found.result, found.shared, found.runs
+            )
 
 
 def causes_over(cases: Sequence[JudgedCase], seed: int) -> CausesOf:
@@ -203,7 +215,8 @@ def diagnose(
     runs: Sequence[JudgedRun],
 ) -> list[str]:
     """Sentences that explain the failed gates of one case; none without failure."""
-    causes = CaseCauses(Across(), case, truth, evaluation_states, result, runs)
+    shared = shared_rows(case, evaluation_states, result)
+    causes = CaseCauses(Across(), case, truth, evaluation_states, result, shared, runs)
     found = causes.sentences(None)
     names = dict.fromkeys(run.integrator.name for run in _by_length(runs) if _fails(run))
     for name in names if not found else ():

@@ -7,11 +7,14 @@ import numpy as np
 from omegadot.reference_impl.system import Array
 
 MOST = 17
+NOTHING = 1e-9  # of what it is held against, a number is zero
 NOISE = 1e-15  # relative: a fitted number is no better known
 
 
 def number(value: float, other: float | None = None) -> str:
     """Six digits, or as many more as distinguish it from the other number."""
+    if other is not None and abs(value) < NOTHING * abs(other):
+        return "0"
     same = other is None or abs(value - other) <= NOISE * max(abs(value), abs(other))
     for digits in range(6, MOST):
         text = f"{value:.{digits}g}"

@@ -15,6 +15,7 @@ from omegadot.reference_impl.system import Array, System
 
 MOST_TRIES = 8
 DELTA = 1e-6
+NOTHING = 1e-7  # a part that cannot be kept apart from none in the limit of vanishing steps
 AXES = "xyz"
 
 
@@ -113,6 +114,8 @@ def _always(_: System) -> bool:
 def _scaled(what: str) -> Callable[[System, float], str]:
     def text(system: System, k: float) -> str:
         mass = float(system.body.mass)
+        if abs(k) < NOTHING:
+            return f"{what} is missing"
         known = {"it is divided by the mass": 1.0 / mass, "it is multiplied by the mass": mass}
         # where mass is one nothing shows it
         why = [t for t, v in known.items() if abs(mass - 1.0) > 1e-6 and abs(k / v - 1.0) < 1e-9]

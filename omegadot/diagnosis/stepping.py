@@ -15,6 +15,7 @@ from omegadot.diagnosis.step_ends import (
     clipped_at,
     held_below,
     left_multiplied,
+    speed_below,
     straight_quaternion,
     turned_by_last_omega,
     with_end,
@@ -75,14 +76,17 @@ def _asleep(reported: ReportedRun) -> str:
 
 
 def _limit(
-    reported: ReportedRun, size: Callable[[Array], Array], end: Callable[[float], End]
+    reported: ReportedRun,
+    size: Callable[[Array], Array],
+    end: Callable[[float], End],
+    field: str = "angular_velocity",
 ) -> float | None:
-    """The size that omega is kept within by the end of each step, where it is.
+    """The size that omega, or the velocity, is kept within by the end of each step, if any.
 
     The greatest that is reported is nearly the one that the steps keep to.
     """
-    greatest = float(np.max(size(reported.state.angular_velocity[1:])))
-    if not 0.0 < greatest < float(np.max(size(reported.own.angular_velocity[1:]))):
+    greatest = float(np.max(size(getattr(reported.state, field)[1:])))
+    if not 0.0 < greatest < float(np.max(size(getattr(reported.own, field)[1:]))):
         return None
 
     def stepped(more: float) -> State:
@@ -100,6 +104,11 @@ def _held(reported: ReportedRun) -> str:
 def _clipped(reported: ReportedRun) -> str:
     limit = _limit(reported, np.abs, clipped_at)
     return "" if limit is None else f"each component of omega is held within {limit:.6g} rad/s"
+
+
+def _speed(reported: ReportedRun) -> str:
+    limit = _limit(reported, norm, speed_below, "linear_velocity")
+    return "" if limit is None else f"the linear velocity is held below {limit:.6g} m/s"
 
 
 def _other_scheme(reported: ReportedRun) -> str:
@@ -231,6 +240,7 @@ CAUSES_OF_STEPPING = (
     _damped,
     _clipped,
     _held,
+    _speed,
     _other_equation,
 )
 CAUSES_OF_UNKNOWN = (
@@ -240,5 +250,6 @@ CAUSES_OF_UNKNOWN = (
     _damped,
     _clipped,
     _held,
+    _speed,
     _other_equation,
 )

@@ -7,13 +7,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from omegadot.diagnosis.conditions import only_where
+from omegadot.diagnosis.digits import limits
 from omegadot.diagnosis.evidence import SLACK, Evidence
+from omegadot.diagnosis.misreadings import misreadings
 from omegadot.gates.scales import norm
-from omegadot.gates.vanishing_step import Limit, Probe, limits
+from omegadot.gates.vanishing_step import Limit, Probe
+from omegadot.gates.vanishing_step import limits as rates_at_no_step
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.rotations import rotate, rotate_inverse
+from omegadot.reference_impl.rotations import attitude_angle, rotate, rotate_inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+LEFT = 1e-5  # relative: what is left of a state extrapolated to no step from two short ones
 
 
 @dataclass(frozen=True)
@@ -47,7 +53,7 @@ class VanishingSteps:
 def vanishing_steps(system: System, probe: Probe, stepped: State) -> VanishingSteps:
     """From the answers to the gate's own requests: states (m, 9, ...) after one step each."""
     with np.errstate(all="ignore"):
-        rates = limits(system, probe, stepped)
+        rates = rates_at_no_step(system, probe, stepped)
     ends = [2.0 * f[:, -1] - f[:, -2] for f in vars(stepped).values()]
     step = float(np.max(probe.timesteps[:, -1]))
     return VanishingSteps(system, probe.states, rates, State(*ends), step)
@@ -119,43 +125,71 @@ def kinematic_cause(steps: VanishingSteps) -> str:
     return ""
 
 
+def jumps(steps: VanishingSteps) -> bool:
+    """Whether a step of no length changes omega, the velocity, the attitude or the place."""
+    return not np.all(_stays(steps, steps.start))
+
+
+def _stays(steps: VanishingSteps, after: State) -> NDArray[np.bool_]:
+    """(m,): whether a state is the one before, but for what is left of the extrapolation."""
+    before, h = steps.states, steps.noise
+    rates = forward_dynamics(steps.system, before)
+    w, v = norm(before.angular_velocity), norm(before.linear_velocity)
+    lever = float(norm(steps.system.body.center_of_mass)) * float(steps.system.load.pivot is None)
+    turned = attitude_angle(before.orientation, after.orientation)
+    length = np.abs(norm(after.orientation) - 1.0)
+    same = np.asarray(np.maximum(turned, length) <= LEFT * (1.0 + w * h))
+    for was, now, size in (
+        (before.angular_velocity, after.angular_velocity, w + norm(rates.angular) * h),
+        (before.linear_velocity, after.linear_velocity, v + norm(rates.linear) * h + lever * w),
+        (before.position, after.position, norm(before.position) + v * h + lever),
+    ):
+        same &= norm(now - was) <= LEFT * size
+    return same
+
+
 def jump_cause(steps: VanishingSteps) -> str:
     """What a step does to a state however short it is: limits, sleep, rounding; "" without any."""
     before, after = steps.states, steps.start
+    if not jumps(steps):
+        return ""
+    for one in misreadings(steps.system):
+        if np.all(_stays(steps, one.right(after))):
+            return f"in the run, {one.statement}"
     w, new = before.angular_velocity, after.angular_velocity
     v, moved = before.linear_velocity, after.linear_velocity
-    accelerations = forward_dynamics(steps.system, before)
-    for what, was, now, rate in (
-        ("omega", w, new, accelerations.angular),
-        ("the linear velocity", v, moved, accelerations.linear),
+    rates = forward_dynamics(steps.system, before)
+    for what, unit, was, now, rate in (
+        ("omega", "rad/s", w, new, rates.angular),
+        ("the linear velocity", "m/s", v, moved, rates.linear),
     ):
-        if what != "omega" and steps.system.load.pivot is not None:
-            continue
-        # what is left of the extrapolation from two steps, and rounding
-        allowed = 1e-6 * (norm(was) + norm(rate) * steps.noise)
+        allowed = LEFT * (norm(was) + norm(rate) * steps.noise)
         jumped = norm(now - was) > allowed
-        if not jumped.any() or not np.all(np.isfinite(now)):
-            continue
-        text = _limit(was, now, allowed, jumped)
-        if text:
-            return f"{what} {text}" if "component" not in text else text.replace("OMEGA", what)
-    return ""
+        if jumped.any() and np.all(np.isfinite(now)):
+            text = _limit(what, unit, was, now, allowed, jumped)
+            if text:
+                return text
+    where = only_where([(steps.system, before, _stays(steps, after))])
+    return f"a step changes the state, however short it is, only where {where}" if where else ""
 
 
-def _limit(was: Array, now: Array, allowed: Array, jumped: NDArray[np.bool_]) -> str:
-    size, unit = norm(was), "rad/s"
-    held = norm(now)
+def _limit(
+    what: str, unit: str, was: Array, now: Array, allowed: Array, jumped: NDArray[np.bool_]
+) -> str:
+    size, held = norm(was), norm(now)
     if np.all(held[jumped] <= allowed[jumped]):
-        least = np.max(size[jumped])
-        more = size[~jumped]
-        if not len(more) or np.min(more) < least:
+        least, more = float(np.max(size[jumped])), size[~jumped]
+        sleeps = "the body is put to sleep: " if what == "omega" else ""
+        if not len(more):
+            return f"{sleeps}{what} is set to zero"
+        if np.min(more) < least:
             return ""
-        return f"is set to zero below a limit between {least:.4g} and {np.min(more):.4g} {unit}"
+        return f"{sleeps}{what} is set to zero below {limits(least, float(np.min(more)), unit)}"
     limit = float(np.median(held[jumped]))
     scaled = was * np.minimum(1.0, limit / np.where(size > 0.0, size, 1.0))[:, None]
-    if np.all(norm(now - scaled) <= 10 * allowed) and np.count_nonzero(jumped) > 1:
-        return f"is held below {limit:.6g} {unit}"
+    if np.all(norm(now - scaled) <= 10 * allowed):
+        return f"{what} is held below {limit:.6g} {unit}"
     largest = float(np.max(np.abs(now[jumped])))
     if np.all(norm(now - np.clip(was, -largest, largest)) <= 10 * allowed):
-        return f"each component of OMEGA is held within {largest:.6g} {unit}"
+        return f"each component of {what} is held within {largest:.6g} {unit}"
     return ""
