@@ -16,7 +16,14 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.diagnosis.across import Across
-from omegadot.diagnosis.equation import ALONG, FORWARD, equation_causes, inverse_causes, scene_of
+from omegadot.diagnosis.equation import (
+    ALONG,
+    FORWARD,
+    equation_causes,
+    inverse_causes,
+    known_difference,
+    scene_of,
+)
 from omegadot.diagnosis.model import model_causes
 from omegadot.diagnosis.runs import run_causes
 from omegadot.diagnosis.steps import (
@@ -24,6 +31,7 @@ from omegadot.diagnosis.steps import (
     jump_cause,
     jumps,
     kinematic_cause,
+    omega_share_cause,
     vanishing_steps,
 )
 from omegadot.gates.case import Case
@@ -113,15 +121,24 @@ class CaseCauses:
         """
         steps, declared = self._steps.get(name), self._declares(name)
         found: list[str] = []
-        if steps is not None:
-            common = steps.common_cause()
+        if steps is not None and not steps.sound:
+            common = steps.common_cause() or omega_share_cause(steps)
             found = [common] if common else []
-            if not found and not declared:
+            if not found and not declared and jumps(steps):
                 found = _of_states(steps)
             if not found and not jumps(steps):
                 found = _of_equation(self._across, self._case.name, name, steps)
         found = found or self._of_trajectories(name)
-        return found or (_of_states(steps) if steps is not None else [])
+        if found or steps is None or steps.sound:
+            return found
+        return _of_states(steps) or self._known(name)
+
+    def _known(self, name: str) -> list[str]:
+        """What is known of the steps' equation where nothing fits."""
+        if np.all(self._steps[name].evidence.sound):
+            return []
+        known = known_difference(self._across, self._case.name, _source(name))
+        return [f"in the steps, {one}" for one in known]
 
     def _declares(self, name: str) -> bool:
         return any(i.name == name and i.scheme in SCHEMES for i in self._answers.integrators)
@@ -159,7 +176,8 @@ def _of_equation(across: Across, case: str, integrator: str, steps: VanishingSte
     """By which equation the limit of vanishing steps is another; nothing where it is the right."""
     if np.all(steps.evidence.sound):
         return []
-    return [f"in the steps, {one}" for one in equation_causes(across, case, _source(integrator))]
+    text = across.cause(case, _source(integrator))
+    return [f"in the steps, {text}"] if text else []
 
 
 class Causes:

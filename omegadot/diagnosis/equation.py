@@ -56,7 +56,7 @@ def equation_causes(across: Across, name: str, source: str) -> list[str]:
     text = across.cause(name, source)
     if not text and source in (FORWARD, ALONG):
         text = _constant(evidence) or difference_quotient(evidence)
-    return [text] if text else _known(across, name, source)
+    return [text] if text else known_difference(across, name, source)
 
 
 def _constant(evidence: Evidence) -> str:
@@ -64,7 +64,7 @@ def _constant(evidence: Evidence) -> str:
     return "omega-dot is the same at every state" if moves == [False, True] else ""
 
 
-def _known(across: Across, name: str, source: str) -> list[str]:
+def known_difference(across: Across, name: str, source: str) -> list[str]:
     """What is known where no cause fits."""
     scenes = [scene for scene in across.scenes.values() if source in scene.evidence]
     sound = [bool(np.all(scene.evidence[source].sound)) for scene in scenes]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from omegadot.diagnosis.digits import vector
 from omegadot.diagnosis.equation_form import Form, accelerations, form_of, stacked
 from omegadot.diagnosis.evidence import SCREENED, SLACK, Evidence
 from omegadot.diagnosis.families import (
@@ -52,7 +53,7 @@ class Candidate:
         """The cause in words, with the numbers of this system."""
         if self.reading is not None:
             return self.reading.text
-        texts = [one.text.strip() for one in self.fixed]
+        texts = [_with_gravity(one, system) for one in self.fixed]
         if self.family is not None and self.numbers is not None:
             texts.append(self.family.text(system, self.numbers))
         return ", and ".join(texts)
@@ -83,6 +84,16 @@ class Candidate:
         base = wrong_form(self.fixed, evidence.system)
         found = None if base is None else fit(evidence, self.family, base)
         return None if found is None else replace(self, numbers=found)
+
+
+def _with_gravity(one: Hypothesis, system: System) -> str:
+    """A hypothesis in words; of another gravity also which one it comes to."""
+    text, requested = one.text.strip(), system.load.gravity
+    acting = one.system(system).load.gravity
+    if one.part != "gravity" or np.array_equal(acting, requested) or "component" not in text:
+        return text
+    shown = f"{vector(acting, requested)} m/s^2, where {vector(requested, acting)} was requested"
+    return f"gravity is {shown}: {text}"
 
 
 def levels(evidence: Evidence, deep: bool = True) -> Iterator[list[Candidate]]:

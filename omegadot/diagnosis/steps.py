@@ -19,6 +19,7 @@ from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, rotate, rotate_inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
+STILL = 1e-9  # a factor that is none but for rounding
 LEFT = 1e-5  # relative: what is left of a state extrapolated to no step from two short ones
 
 
@@ -40,13 +41,16 @@ class VanishingSteps:
         found = Acceleration(angular, linear)
         return Evidence("steps", self.system, self.states, found, angular_bound, linear_bound)
 
+    @property
+    def sound(self) -> bool:
+        """Whether every rate is the equation's."""
+        return all(bool(np.all(one.shares() <= 1.0)) for one in self.rates.values())
+
     def common_cause(self) -> str:
         """Steps that are too long or too short by a part: every rate is off by one factor."""
-        k = common_factor(self.rates)
-        if k is None:
+        k = None if self.sound else common_factor(self.rates)
+        if k is None or abs(k) < STILL:
             return ""
-        if k == 0.0:
-            return "a run of one step does not move"
         return f"steps are {100 * abs(k - 1.0):.4g} % too {'long' if k > 1.0 else 'short'}"
 
 
@@ -110,6 +114,9 @@ def kinematic_cause(steps: VanishingSteps) -> str:
     }
     if system.load.pivot is not None:
         del candidates["position"]
+    k = None if steps.sound else common_factor(steps.rates)
+    if k is not None and abs(k) < STILL:
+        return "a run of one step does not move"
     for channel, named in candidates.items():
         limit = steps.rates[channel]
         found, bound = _better(limit)
@@ -122,6 +129,20 @@ def kinematic_cause(steps: VanishingSteps) -> str:
         if np.all(norm(found - factor * limit.expected) <= SLACK * bound):
             what = "omega" if channel == "attitude" else "the velocity"
             return f"in the steps, the {channel} moves by {factor:.9g} times {what}"
+    return ""
+
+
+def omega_share_cause(steps: VanishingSteps) -> str:
+    """Omega alone moves by a part of omega-dot, as where it is of another time than the rest."""
+    if not all(np.all(one.shares() <= 1.0) for c, one in steps.rates.items() if c == "attitude"):
+        return ""
+    found, bound = _better(steps.rates["omega"])
+    true = steps.rates["omega"].expected
+    for k, when in ((0.5, "before"), (1.5, "after")):
+        if np.all(norm(found - k * true) <= SLACK * bound) and np.any(true):
+            return (
+                f"omega is reported as of half a step {when}: in one step it moves by {k:g} of it"
+            )
     return ""
 
 
