@@ -19,7 +19,7 @@ from omegadot.diagnosis.search import Candidate, levels
 from omegadot.reference_impl.system import Array, Body, System
 
 QUICK = 3  # levels of one scenario that are quick, and more basic than what another has shown
-MOST_DEEP = 8  # scenarios that are searched to the end; the rest have what these have
+MOST_DEEP = 5  # scenarios that are searched to the end; the rest have what these have
 MOST_NAMED = 3  # causes between which a scenario does not decide
 LAWS = {
     "damping": "the damping",

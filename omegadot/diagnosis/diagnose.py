@@ -126,12 +126,12 @@ class CaseCauses:
             found = [common] if common else []
             if not found and not declared and jumps(steps):
                 found = _of_states(steps)
-            if not found and not jumps(steps):
+            if not found and not jumps(steps) and not steps.still:
                 found = _of_equation(self._across, self._case.name, name, steps)
         found = found or self._of_trajectories(name)
         if found or steps is None or steps.sound:
             return found
-        return _of_states(steps) or self._known(name)
+        return _of_states(steps) or ([] if steps.still else self._known(name))
 
     def _known(self, name: str) -> list[str]:
         """What is known of the steps' equation where nothing fits."""

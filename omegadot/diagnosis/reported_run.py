@@ -64,6 +64,11 @@ class ReportedRun:
         )
 
     @property
+    def is_own(self) -> bool:
+        """Whether the whole run is the reference's."""
+        return len(self.time) == len(self.own.position) and self.agrees(self.state, self.own)
+
+    @property
     def distance_at_first(self) -> float:
         """How far the run is from the reference's in its first samples, in parts of the bound."""
         bounds, first = self.bounds, slice(1, LEAST_SAMPLES)

@@ -24,7 +24,24 @@ def run_causes(
         text = _of_run(case, truth, result, run)
         if text:
             return [text + _at_long_steps(runs)]
-    return []
+    text = _of_several_schemes(case, truth, result, runs)
+    return [text] if text else []
+
+
+def _of_several_schemes(
+    case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> str:
+    """Runs of one integrator that are different schemes' at different steps, none declared."""
+    named = dict[float, set[str]]()
+    for run in runs:
+        for guess in reported_run_guesses(case, truth, result, run):
+            if guess.is_own:
+                known = named.setdefault(run.sweep.timestep, set())
+                known.add(guess.integrator.scheme or "")
+    if len(named) < 2 or set.intersection(*named.values()):
+        return ""
+    parts = [f"{' or '.join(sorted(n))} at {h:g} s" for h, n in sorted(named.items())]
+    return f"runs with different steps are of different schemes: {', '.join(parts)}"
 
 
 def _at_long_steps(runs: Sequence[JudgedRun]) -> str:
@@ -53,6 +70,8 @@ def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> str
 
 
 def _of_reported(reported: ReportedRun, result: CaseResult) -> str:
+    if not reported.is_declared and reported.is_own:
+        return ""  # nothing in this run is wrong
     if begin_apart(reported, result):
         return "runs begin at other states than the one given: one is left over from a run before"
     tried = list(CAUSES_REPORTED)

@@ -15,7 +15,6 @@ from omegadot.gates.scales import norm
 from omegadot.gates.vanishing_step import Limit, Probe
 from omegadot.gates.vanishing_step import limits as rates_at_no_step
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, rotate, rotate_inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
@@ -31,13 +30,15 @@ class VanishingSteps:
     states: State
     rates: dict[str, Limit]
     start: State
-    noise: float
+    moved: State
 
     @property
     def evidence(self) -> Evidence:
         """omega-dot and the linear acceleration that the steps follow."""
         angular, angular_bound = _better(self.rates["omega"])
         linear, linear_bound = _better(self.rates["linear_momentum"])
+        if self.system.load.pivot is not None and not np.all(_stays_in_place(self, self.start)):
+            linear_bound = np.full_like(linear_bound, np.inf)  # placed by another pivot
         found = Acceleration(angular, linear)
         return Evidence("steps", self.system, self.states, found, angular_bound, linear_bound)
 
@@ -45,6 +46,12 @@ class VanishingSteps:
     def sound(self) -> bool:
         """Whether every rate is the equation's."""
         return all(bool(np.all(one.shares() <= 1.0)) for one in self.rates.values())
+
+    @property
+    def still(self) -> bool:
+        """Whether no step moves anything."""
+        k = None if self.sound else common_factor(self.rates)
+        return k is not None and abs(k) < STILL
 
     def common_cause(self) -> str:
         """Steps that are too long or too short by a part: every rate is off by one factor."""
@@ -59,8 +66,8 @@ def vanishing_steps(system: System, probe: Probe, stepped: State) -> VanishingSt
     with np.errstate(all="ignore"):
         rates = rates_at_no_step(system, probe, stepped)
     ends = [2.0 * f[:, -1] - f[:, -2] for f in vars(stepped).values()]
-    step = float(np.max(probe.timesteps[:, -1]))
-    return VanishingSteps(system, probe.states, rates, State(*ends), step)
+    moved = [f[:, -1] - f[:, -2] for f in vars(stepped).values()]
+    return VanishingSteps(system, probe.states, rates, State(*ends), State(*moved))
 
 
 def _better(limit: Limit) -> tuple[Array, Array]:
@@ -114,8 +121,7 @@ def kinematic_cause(steps: VanishingSteps) -> str:
     }
     if system.load.pivot is not None:
         del candidates["position"]
-    k = None if steps.sound else common_factor(steps.rates)
-    if k is not None and abs(k) < STILL:
+    if steps.still:
         return "a run of one step does not move"
     for channel, named in candidates.items():
         limit = steps.rates[channel]
@@ -152,21 +158,30 @@ def jumps(steps: VanishingSteps) -> bool:
 
 
 def _stays(steps: VanishingSteps, after: State) -> NDArray[np.bool_]:
-    """(m,): whether a state is the one before, but for what is left of the extrapolation."""
-    before, h = steps.states, steps.noise
-    rates = forward_dynamics(steps.system, before)
-    w, v = norm(before.angular_velocity), norm(before.linear_velocity)
-    lever = float(norm(steps.system.body.center_of_mass)) * float(steps.system.load.pivot is None)
+    """(m,): whether a state is the one before, but for what is left of the extrapolation.
+
+    A smooth step moves a state less from its limit than it moves between two short steps. A
+    pivoted body's place follows from its attitude.
+    """
+    before, moved = steps.states, steps.moved
     turned = attitude_angle(before.orientation, after.orientation)
     length = np.abs(norm(after.orientation) - 1.0)
-    same = np.asarray(np.maximum(turned, length) <= LEFT * (1.0 + w * h))
-    for was, now, size in (
-        (before.angular_velocity, after.angular_velocity, w + norm(rates.angular) * h),
-        (before.linear_velocity, after.linear_velocity, v + norm(rates.linear) * h + lever * w),
-        (before.position, after.position, norm(before.position) + v * h + lever),
-    ):
-        same &= norm(now - was) <= LEFT * size
-    return same
+    same = np.asarray(np.maximum(turned, length) <= LEFT + 2.0 * norm(moved.orientation))
+    w = norm(before.angular_velocity)
+    change = norm(after.angular_velocity - before.angular_velocity)
+    same &= change <= LEFT * w + norm(moved.angular_velocity)
+    return same if steps.system.load.pivot is not None else same & _stays_in_place(steps, after)
+
+
+def _stays_in_place(steps: VanishingSteps, after: State) -> NDArray[np.bool_]:
+    before, moved = steps.states, steps.moved
+    lever = float(norm(steps.system.body.center_of_mass))
+    speed = norm(before.linear_velocity) + lever * norm(before.angular_velocity)
+    push = norm(after.linear_velocity - before.linear_velocity)
+    way = norm(after.position - before.position)
+    same = push <= LEFT * speed + norm(moved.linear_velocity)
+    same &= way <= LEFT * (norm(before.position) + lever) + norm(moved.position)
+    return np.asarray(same)
 
 
 def jump_cause(steps: VanishingSteps) -> str:
@@ -179,12 +194,12 @@ def jump_cause(steps: VanishingSteps) -> str:
             return f"in the run, {one.statement}"
     w, new = before.angular_velocity, after.angular_velocity
     v, moved = before.linear_velocity, after.linear_velocity
-    rates = forward_dynamics(steps.system, before)
-    for what, unit, was, now, rate in (
-        ("omega", "rad/s", w, new, rates.angular),
-        ("the linear velocity", "m/s", v, moved, rates.linear),
+    between = steps.moved
+    for what, unit, was, now, step in (
+        ("omega", "rad/s", w, new, between.angular_velocity),
+        ("the linear velocity", "m/s", v, moved, between.linear_velocity),
     ):
-        allowed = LEFT * (norm(was) + norm(rate) * steps.noise)
+        allowed = LEFT * norm(was) + norm(step)
         jumped = norm(now - was) > allowed
         if jumped.any() and np.all(np.isfinite(now)):
             text = _limit(what, unit, was, now, allowed, jumped)
