@@ -95,6 +95,7 @@ class Across:
         self.scenes: dict[str, Scene] = {}
         self._accepted: list[list[Candidate]] = []
         self._texts: dict[tuple[str, str], str] = {}
+        self._with_another: dict[tuple[tuple[str, ...], str, str], bool] = {}
         self._searches: dict[tuple[str, str], _Search] = {}
 
     def add(self, scene: Scene) -> None:
@@ -105,7 +106,8 @@ class Across:
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
         if (name, source) not in self._texts:
-            self._texts[name, source] = self._cause(name, source)
+            with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+                self._texts[name, source] = self._cause(name, source)
         return self._texts[name, source]
 
     def _cause(self, name: str, source: str) -> str:
@@ -178,6 +180,8 @@ class Across:
             evidence = other.evidence.get(source)
             if other is scene or evidence is None:
                 continue
+            if held.contradicted:
+                break
             tried = one.predicted(evidence)
             if tried is None:
                 continue
@@ -192,10 +196,17 @@ class Across:
             elif bool(np.all(evidence.sound)):
                 held.against.append(other)
             else:
-                held.contradicted |= not _with_another(one, evidence)
+                held.contradicted |= not self._explained(one, other, source)
         if one.family is not None and one.family.name in LAWS and not one.fixed:
             held.pairs = self._numbers(one.family, source)
         return held
+
+    def _explained(self, one: Candidate, other: Scene, source: str) -> bool:
+        """Whether a scenario shows this and one more thing that is wrong; worked out once."""
+        key = (one.key, other.name, source)
+        if key not in self._with_another:
+            self._with_another[key] = _with_another(one, other.evidence[source])
+        return self._with_another[key]
 
     def _numbers(self, family: Family, source: str) -> list[tuple[Array, Array]]:
         """Requested and acting numbers of a family, on every scenario that has them."""

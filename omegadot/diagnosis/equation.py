@@ -53,10 +53,22 @@ def equation_causes(across: Across, name: str, source: str) -> list[str]:
         finite = int(np.count_nonzero(np.isfinite(values).all(-1)))
         if finite < len(values):
             return [f"{what} is not finite at {len(values) - finite} of {len(values)} states"]
+    single = _single(evidence)
+    if single:
+        return [single]
     text = across.cause(name, source)
     if not text and source in (FORWARD, ALONG):
         text = _constant(evidence) or difference_quotient(evidence)
     return [text] if text else known_difference(across, name, source)
+
+
+def _single(evidence: Evidence) -> str:
+    """omega-dot in numbers of single precision, which the right ones are not."""
+    rounded = [
+        np.array_equal(a.angular, a.angular.astype(np.float32).astype(float))
+        for a in (evidence.found, evidence.true)
+    ]
+    return "omega-dot is worked out in single precision" if rounded == [True, False] else ""
 
 
 def _constant(evidence: Evidence) -> str:

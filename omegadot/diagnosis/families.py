@@ -344,10 +344,10 @@ THREE_NUMBERS: tuple[Family, ...] = (
 
 
 def _extra(name: str, frame: str) -> Family:
-    """A constant torque on a body that none was requested for."""
+    """A constant torque in axes in which none was requested."""
 
     def starts(system: System) -> list[Array]:
-        return [] if _driven(system) else [np.zeros(3)]
+        return [] if np.any(getattr(system.load, name)) else [np.zeros(3)]
 
     def text(system: System, p: Array) -> str:
         return f"a torque of {vector(p)} N m in {frame} axes acts that was not requested"

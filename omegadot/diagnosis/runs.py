@@ -20,12 +20,14 @@ def run_causes(
 ) -> list[str]:
     """Of the failed run of the fewest steps in which one is found: hypotheses are stepped again."""
     failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
+    several = _of_several_schemes(case, truth, result, runs) if failed else ""
+    if several:
+        return [several]
     for run in sorted(failed, key=lambda run: run.sweep.steps):
         text = _of_run(case, truth, result, run)
         if text:
             return [text + _at_long_steps(runs)]
-    text = _of_several_schemes(case, truth, result, runs)
-    return [text] if text else []
+    return []
 
 
 def _of_several_schemes(

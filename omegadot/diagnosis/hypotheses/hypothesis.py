@@ -41,11 +41,12 @@ class Hypothesis:
 def wrong_form(hypotheses: Sequence[Hypothesis], system: System) -> Form | None:
     """The equation with all of these in it; None where it has no meaning for this system."""
     try:
-        for one in hypotheses:
-            system = one.system(system)
-        form = form_of(system)
-        for one in hypotheses:
-            form = one.form(form, system)
+        with np.errstate(all="ignore"):  # two at once may divide by what one has made zero
+            for one in hypotheses:
+                system = one.system(system)
+            form = form_of(system)
+            for one in hypotheses:
+                form = one.form(form, system)
     except (ValueError, np.linalg.LinAlgError, ZeroDivisionError):
         return None
     if not all(np.all(np.isfinite(part)) for part in vars(form).values()):
