@@ -9,7 +9,7 @@ from itertools import islice
 import numpy as np
 
 from omegadot.diagnosis.conditions import LEAST, only_where
-from omegadot.diagnosis.equation_form import Form
+from omegadot.diagnosis.equation_form import Form, same_form
 from omegadot.diagnosis.evidence import Evidence
 from omegadot.diagnosis.families import Family
 from omegadot.diagnosis.features import Features, in_common
@@ -228,7 +228,7 @@ class Across:
             one = held.candidate
             system, law = held.shown[0].evidence[source].system, ""
             form = one.form(system) if one.reading is None else None
-            if any(_same(form, other) for other in forms):
+            if form is not None and any(same_form(form, other) for other in forms):
                 continue
             forms += [form] if form is not None else []
             if held.pairs and one.family is not None:
@@ -269,13 +269,3 @@ def _with_another(one: Candidate, evidence: Evidence) -> bool:
 
 def _distinct(level: Sequence[Candidate]) -> list[Candidate]:
     return list({one.key: one for one in level}.values())
-
-
-def _same(one: Form | None, other: Form | None) -> bool:
-    """Whether two hypotheses come to one equation on a system."""
-    if one is None or other is None:
-        return False
-    pairs = zip(vars(one).values(), vars(other).values(), strict=True)
-    return all(
-        np.allclose(a, b, rtol=1e-12, atol=1e-14 * float(np.max(np.abs(a)))) for a, b in pairs
-    )

@@ -45,10 +45,10 @@ def _of(evidence: Evidence, what: str, rest: Array, kind: str) -> str:
     share = np.count_nonzero(~evidence.sound) / len(size)
     if share < 1.0:
         texts.append(f"at {100 * share:.0f} % of the states")
-    along = _direction(evidence, rest, clear) if kind else ""
+    along, vectors = _direction(evidence, rest, clear) if kind else ("", rest)
     if along:
         texts.append(along)
-    power = _power(norm(evidence.states.angular_velocity)[clear], size[clear])
+    power = _power(norm(evidence.states.angular_velocity)[clear], norm(vectors)[clear])
     if power is not None:
         grows = (
             "by the same amount at every omega"
@@ -59,8 +59,8 @@ def _of(evidence: Evidence, what: str, rest: Array, kind: str) -> str:
     return ", ".join(texts)
 
 
-def _direction(evidence: Evidence, rest: Array, clear: NDArray[np.bool_]) -> str:
-    """The direction of the torque, or of the rate, that is too much."""
+def _direction(evidence: Evidence, rest: Array, clear: NDArray[np.bool_]) -> tuple[str, Array]:
+    """The direction of the torque, or of the rate, that is too much, and these vectors."""
     system, w = evidence.system, evidence.states.angular_velocity
     form = form_of(system)
     momentum = apply(form.spin, w)
@@ -81,8 +81,8 @@ def _direction(evidence: Evidence, rest: Array, clear: NDArray[np.bool_]) -> str
             sizes = norm(direction)[clear] * norm(vectors)[clear]
             sine = norm(cross(vectors, direction))[clear]
             if np.all(sizes > 0.0) and np.all(sine <= PARALLEL * sizes):
-                return f"by {what} along {name}"
-    return ""
+                return f"by {what} along {name}", vectors
+    return "", rest
 
 
 def _power(x: Array, y: Array) -> float | None:

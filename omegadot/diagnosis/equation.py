@@ -68,7 +68,8 @@ def _single(evidence: Evidence) -> str:
         np.array_equal(a.angular, a.angular.astype(np.float32).astype(float))
         for a in (evidence.found, evidence.true)
     ]
-    return "omega-dot is worked out in single precision" if rounded == [True, False] else ""
+    moves = bool(np.any(evidence.found.angular))
+    return "omega-dot is worked out in single precision" * (moves and rounded == [True, False])
 
 
 def _constant(evidence: Evidence) -> str:

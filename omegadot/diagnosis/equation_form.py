@@ -99,3 +99,11 @@ def accelerations(form: Form, states: State) -> Acceleration:
     # R (R^T v) stands for v itself: the spatial term is ω × v with ω in the world
     lever = lever + form.spatial[..., None] * cross(w, into_body(v))
     return Acceleration(angular, form.gravity - form.drag[..., None] * v + apply(turn, lever))
+
+
+def same_form(one: Form, other: Form) -> bool:
+    """Whether two hypotheses come to one equation on a system."""
+    pairs = zip(vars(one).values(), vars(other).values(), strict=True)
+    return all(
+        np.allclose(a, b, rtol=1e-12, atol=1e-14 * float(np.max(np.abs(a)))) for a, b in pairs
+    )

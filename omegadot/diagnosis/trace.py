@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.diagnosis.equation_form import Form, accelerations, form_of, stacked
+from omegadot.diagnosis.equation_form import Form, accelerations, form_of, same_form, stacked
 from omegadot.diagnosis.families import ONE_NUMBER, Family
 from omegadot.diagnosis.hypotheses import hypotheses, wrong_form
 from omegadot.gates.scales import norm
@@ -66,7 +66,11 @@ def _causes(system: System, trace: Trace) -> list[str]:
     made = [(one, wrong_form([one], system)) for one in known]
     usable = [(one, form) for one, form in made if form is not None]
     fits = intervals.fits([form for _, form in usable])
-    texts = [one.text.strip() for (one, _), good in zip(usable, fits, strict=True) if good]
+    texts, kept = list[str](), list[Form]()
+    for (one, form), good in zip(usable, fits, strict=True):
+        if good and not any(same_form(form, other) for other in kept):
+            texts.append(one.text.strip())
+            kept.append(form)
     if not texts:
         found = [(family, intervals.numbers(family)) for family in ONE_NUMBER]
         texts = [family.text(system, p) for family, p in found if p is not None]
