@@ -189,6 +189,12 @@ def jump_cause(steps: VanishingSteps) -> str:
     before, after = steps.states, steps.start
     if not jumps(steps):
         return ""
+    finite = np.all([np.isfinite(values).all(-1) for values in vars(after).values()], axis=0)
+    if not finite.all():
+        count = int(np.count_nonzero(~finite))
+        where = only_where([(steps.system, before, finite)])
+        text = f"a step leads to numbers that are not finite from {count} of {len(finite)} states"
+        return f"{text}: only where {where}" if where else text
     for one in misreadings(steps.system):
         if np.all(_stays(steps, one.right(after))):
             return f"in the run, {one.statement}"
