@@ -1,50 +1,228 @@
 """The likeliest cause of what the gates found, as text.
 
-``diagnose(case, truth, evaluation_states, result, runs) -> list[str]`` is a pure function of what
-the harness has after judging one engine on one case: the `Case`, its `Truth` (with companions of
-the schemes in question), the `EvaluationStates`, the `CaseResult` with the engine's own answers,
-and the `JudgedRun` list of `judge_case`. Each sentence names a cause that was tried on
-those answers and explains them within the gates' own bounds. Where nothing does, or nothing failed,
-the list is empty: no guess is better than a wrong one.
+``diagnose(case, truth, evaluation_states, result, runs) -> list[str]`` is a function of what the
+harness has after judging one engine on one case: the `Case`, its `Truth` (with companions of the
+schemes in question), the `EvaluationStates`, the `CaseResult` with the engine's own answers, and
+the `JudgedRun` list of `judge_case`. Each sentence names a cause that was tried on those answers
+and explains them within the gates' own bounds. `Causes` does so over all scenarios of a run: what
+fits one scenario and is contradicted by another is not named.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
+from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis import equation, model
-from omegadot.diagnosis.reported_run import reported_run
-from omegadot.diagnosis.reported_run_causes import CAUSES_REPORTED, begin_apart
-from omegadot.diagnosis.reported_sample_causes import intervals, omega_dot_late, one_field
-from omegadot.diagnosis.stepping import CAUSES_OF_STEPPING, MOST_STEPS
+from omegadot.diagnosis.across import Across
+from omegadot.diagnosis.equation import (
+    ALONG,
+    FORWARD,
+    equation_causes,
+    inverse_causes,
+    known_difference,
+    scene_of,
+)
+from omegadot.diagnosis.model import model_causes
+from omegadot.diagnosis.runs import run_causes
+from omegadot.diagnosis.steps import (
+    VanishingSteps,
+    jump_cause,
+    jumps,
+    kinematic_cause,
+    omega_share_cause,
+    vanishing_steps,
+)
 from omegadot.gates.case import Case
-from omegadot.gates.equation import EvaluationStates, evaluation_states_of
+from omegadot.gates.equation import (
+    EvaluationStates,
+    evaluation_states_of,
+)
+from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun, is_finite, shared_rows
-from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
+from omegadot.harness.judge import JudgedRun, shared_rows
+from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import State
 
 
-def causes_of(judged: JudgedCase, found: EngineCase, seed: int) -> Cause:
-    """For one engine on one case: a run's likeliest cause, or that of what its runs share.
+class CaseCauses:
+    """The causes of one engine's failures on one case, worked out when they are asked for."""
 
-    Diagnosed on request, once for each integrator.
-    """
+    def __init__(
+        self,
+        across: Across,
+        case: Case,
+        truth: Truth,
+        evaluation_states: EvaluationStates,
+        result: CaseResult,
+        shared: Sequence[Row],
+        runs: Sequence[JudgedRun],
+    ) -> None:
+        self._across, self._case, self._states = across, case, evaluation_states
+        self._result: CaseResult | None = result
+        self._truth, self._runs = truth, list(runs)
+        self._answers = replace(result, runs={}, first_steps={}, restarts={})
+        self._steps = _steps_of(case, result)
+        self._of_runs: dict[str, list[str]] = {}
+        self._shared_rows = [row for row in shared if row.verdict == "fail"]
+        scene = scene_of(case, evaluation_states, result)
+        for name, steps in self._steps.items():
+            scene.evidence[_source(name)] = steps.evidence
+        across.add(scene)
 
-    @cache
-    def named(integrator: str | None) -> str:
+    def release(self) -> None:
+        """Work out what needs the trajectories, and let go of them."""
+        failed = {r.integrator.name for r in self._runs if _fails(r)}
+        for name in failed if not self._shared_rows else ():
+            self._of_run(name)
+        self._result, self._runs = None, []
+
+    def sentences(self, integrator: str | None) -> list[str]:
+        """The causes, the most basic first; of one integrator, or of what all runs share.
+
+        A wrong model or equation is looked for first, and explains the runs after it: these are
+        looked at by themselves only where neither gate failed.
+        """
+        with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+            if self._shared_rows:
+                return self._shared()
+            return [] if integrator is None else self._of_run(integrator)
+
+    def text(self, run: JudgedRun | None) -> str:
+        """The causes of one run, or of what all runs share, as one text."""
+        return "; ".join(self.sentences(None if run is None else run.integrator.name))
+
+    def _shared(self) -> list[str]:
+        """Of the model, then of forward dynamics, then of inverse dynamics."""
+        answers, states, across = self._answers, self._states, self._across
+        failed = {(row.gate, row.metric) for row in self._shared_rows}
+        if any(gate == "model" for gate, _ in failed):
+            found = model_causes(across, self._case, states, answers)
+            if found:
+                return found
+        torques = any(row.channel == "torque" for row in self._shared_rows)
+        for source, metric in ((FORWARD, "residual"), (ALONG, "residual_on_path")):
+            rates = [r for r in self._shared_rows if r.metric == metric and r.channel != "torque"]
+            if rates:
+                return equation_causes(across, self._case.name, source)
+        if torques and answers.inverse.ok:
+            torque = answers.inverse.result["torque"]
+            return inverse_causes(self._case.system, states.random, states.acceleration, torque)
+        return []
+
+    def _of_run(self, name: str) -> list[str]:
+        """Of the steps as they vanish and of the run itself.
+
+        What a declared scheme makes of a wrong state is known better by stepping again than by
+        the steps as they vanish; a wrong equation is known better by these.
+        """
+        steps, declared = self._steps.get(name), self._declares(name)
+        found: list[str] = []
+        if steps is not None and not steps.sound:
+            common = steps.common_cause() or omega_share_cause(steps)
+            found = [common] if common else []
+            if not found and not declared and jumps(steps):
+                found = _of_states(steps)
+            if not found and not jumps(steps) and not steps.still:
+                found = _of_equation(self._across, self._case.name, name, steps)
+        found = found or self._of_trajectories(name)
+        if found or steps is None or steps.sound:
+            return found
+        return _of_states(steps) or ([] if steps.still else self._known(name))
+
+    def _known(self, name: str) -> list[str]:
+        """What is known of the steps' equation where nothing fits."""
+        if np.all(self._steps[name].evidence.sound):
+            return []
+        known = known_difference(self._across, self._case.name, _source(name))
+        return [f"in the steps, {one}" for one in known]
+
+    def _declares(self, name: str) -> bool:
+        return any(i.name == name and i.scheme in SCHEMES for i in self._answers.integrators)
+
+    def _of_trajectories(self, name: str) -> list[str]:
+        if name not in self._of_runs and self._result is not None:
+            runs = [run for run in self._runs if run.integrator.name == name]
+            self._of_runs[name] = run_causes(self._case, self._truth, self._result, runs)
+        return self._of_runs.get(name, [])
+
+
+def _source(integrator: str) -> str:
+    return f"steps of {integrator}"
+
+
+def _fails(run: JudgedRun) -> bool:
+    return any(row.verdict == "fail" for row in run.rows)
+
+
+def _steps_of(case: Case, result: CaseResult) -> dict[str, VanishingSteps]:
+    return {
+        name: vanishing_steps(case.system, probe, State(**answer.result))
+        for name, (probe, answer) in result.first_steps.items()
+        if answer.ok
+    }
+
+
+def _of_states(steps: VanishingSteps) -> list[str]:
+    """What steps do to states, however short they are."""
+    found = jump_cause(steps) or kinematic_cause(steps)
+    return [found] if found else []
+
+
+def _of_equation(across: Across, case: str, integrator: str, steps: VanishingSteps) -> list[str]:
+    """By which equation the limit of vanishing steps is another; nothing where it is the right."""
+    if np.all(steps.evidence.sound):
+        return []
+    text = across.cause(case, _source(integrator))
+    return [f"in the steps, {text}"] if text else []
+
+
+class Causes:
+    """Causes over the scenarios of a run, of which each engine's are kept in small arrays."""
+
+    def __init__(self) -> None:
+        self._engines: dict[str, Across] = {}
+
+    def of_case(self, judged: JudgedCase, found: EngineCase, seed: int) -> CaseCauses:
+        """One more case of an engine. It must have an exact trajectory."""
         assert judged.truth is not None
-        runs = [run for run in found.runs if run.integrator.name == integrator]
-        evaluation_states = evaluation_states_of(judged.case, judged.truth, seed)
-        return "; ".join(diagnose(judged.case, judged.truth, evaluation_states, found.result, runs))
+        across = self._engines.setdefault(found.engine.name, Across())
+        states = evaluation_states_of(judged.case, judged.truth, seed)
+        with np.errstate(all="ignore"):
+            return CaseCauses(
+                across, judged.case, judged.truth, states, found.result, found.shared, found.runs
+            )
 
-    def cause(run: JudgedRun | None) -> str:
-        return named(None if run is None else run.integrator.name)
 
-    return cause
+def causes_over(cases: Sequence[JudgedCase], seed: int) -> CausesOf:
+    """The causes of every engine on every case of a run, each held against all of its cases.
+
+    An engine's cases are looked at when its first failure is.
+    """
+    kept: dict[str, dict[str, CaseCauses]] = {}
+
+    def of_engine(name: str) -> dict[str, CaseCauses]:
+        causes = Causes()
+        return {
+            judged.case.name: causes.of_case(judged, found, seed)
+            for judged in cases
+            for found in judged.engines
+            if judged.truth is not None and found.engine.name == name
+        }
+
+    def causes_of_case(judged: JudgedCase, found: EngineCase) -> Cause:
+        def cause(run: JudgedRun | None) -> str:
+            name = found.engine.name
+            if name not in kept:
+                kept[name] = of_engine(name)
+            return kept[name][judged.case.name].text(run)
+
+        return cause
+
+    return causes_of_case
 
 
 def diagnose(
@@ -54,56 +232,17 @@ def diagnose(
     result: CaseResult,
     runs: Sequence[JudgedRun],
 ) -> list[str]:
-    """Sentences that explain the failed gates, the most basic cause first; none without failure.
-
-    A wrong model or equation is looked for first, and explains the runs after it: these are looked
-    at by themselves only where neither gate failed.
-    """
-    with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-        failed = {
-            row.gate
-            for row in shared_rows(case, evaluation_states, result)
-            if row.verdict == "fail"
-        }
-        found: list[str] = []
-        if "model" in failed:
-            found += model.causes(case, evaluation_states, result)
-        if "equation" in failed and not found:
-            found += equation.causes(case, evaluation_states, result)
-        if not failed:
-            for run in _shortest_failed(runs):
-                found = _of_run(case, truth, result, run)
-                if found:
-                    break
-        return list(dict.fromkeys(found))
+    """Sentences that explain the failed gates of one case; none without failure."""
+    shared = shared_rows(case, evaluation_states, result)
+    causes = CaseCauses(Across(), case, truth, evaluation_states, result, shared, runs)
+    found = causes.sentences(None)
+    names = dict.fromkeys(run.integrator.name for run in _by_length(runs) if _fails(run))
+    for name in names if not found else ():
+        found = causes.sentences(name)
+        if found:
+            break
+    return list(dict.fromkeys(found))
 
 
-def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> list[str]:
-    """Causes in what one run reports, then in its stepping, then in where it is sound.
-
-    Where nothing but the omega-dot reported along it failed, only that is looked at.
-    """
-    reported = reported_run(case, truth, result, run)
-    if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
-        late = "" if reported is None else omega_dot_late(reported, result)
-        return [late] if late else []
-    if reported is None:
-        return []
-    if begin_apart(reported, result):
-        return ["runs begin at other states than the one given: one is left over from a run before"]
-    tried = list(CAUSES_REPORTED)
-    if len(reported.time) == len(reported.sweep.times):
-        if is_finite(reported.state) and reported.sweep.steps <= MOST_STEPS:
-            tried += CAUSES_OF_STEPPING
-        tried += (intervals, one_field)
-    sentence = next(filter(None, (cause(reported) for cause in tried)), None)
-    return [sentence] if sentence else []
-
-
-def _shortest_failed(runs: Sequence[JudgedRun]) -> list[JudgedRun]:
-    """Of each integrator the failed run of the fewest steps, for hypotheses are stepped again."""
-    failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
-    shortest: dict[str, JudgedRun] = {}
-    for run in sorted(failed, key=lambda run: run.sweep.steps):
-        shortest.setdefault(run.integrator.name, run)
-    return list(shortest.values())
+def _by_length(runs: Sequence[JudgedRun]) -> list[JudgedRun]:
+    return sorted(runs, key=lambda run: run.sweep.steps)

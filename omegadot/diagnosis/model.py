@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import permutations, product
+from collections.abc import Callable, Iterator, Sequence
+from itertools import permutations
 
 import numpy as np
 
+from omegadot.diagnosis.across import Across
+from omegadot.diagnosis.digits import factor, number, vector
+from omegadot.diagnosis.laws import law_of
 from omegadot.diagnosis.misreadings import misreadings
+from omegadot.diagnosis.tensors import other_tensors
 from omegadot.gates.case import Case
 from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.model import body_rows, state_rows
-from omegadot.gates.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
+from omegadot.gates.scales import EPS, ROUNDINGS_PER_EVALUATION
 from omegadot.harness.drive import CaseResult
-from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Array, Body, State, System
 from omegadot.workers.wire import body_from
 
 
-def causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[str]:
+def model_causes(
+    across: Across, case: Case, evaluation_states: EvaluationStates, result: CaseResult
+) -> list[str]:
     """What the engine holds instead of the body and of the state that it was given."""
     if not result.model.ok:
         return []
@@ -26,45 +31,130 @@ def causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) 
     if not all(np.all(np.isfinite(values)) for values in vars(held).values()):
         return ["the model reads back numbers that are not finite"]
     failed = {row.metric for row in body_rows(case, held) if row.verdict == "fail"}
+    bodies = [(one.system, one.held) for one in across.scenes.values() if one.held is not None]
+    parts = {"mass": _masses, "center_of_mass": _centers, "inertia": _inertias}
     found = []
-    if "mass" in failed:
-        factor = float(held.mass) / float(case.system.body.mass)
-        found.append(f"the mass is {factor:.6g} times what was requested")
-    if "center_of_mass" in failed:
-        found += _center(case.system.body, held)
-    if "inertia" in failed:
-        found += _inertia(case, held)
+    for part, named in parts.items():
+        if part in failed:
+            text = _part(part, named, (case.system, held), bodies)
+            found += [text] if text else []
     # Of a wrong body the state follows: where it is pivoted, where its centre of mass is.
-    return found or _state(case, evaluation_states.random[0], State(**result.model.result["state"]))
+    if found or failed:
+        return found
+    return _state(case, evaluation_states.random[0], State(**result.model.result["state"]))
 
 
-def _center(requested: Body, held: Body) -> list[str]:
-    lever, bound = norm(requested.center_of_mass), ROUNDINGS_PER_EVALUATION * EPS
-    if not np.any(held.center_of_mass):
-        return ["the centre of mass is ignored: it reads back at the body's origin"]
-    if norm(held.center_of_mass + requested.center_of_mass) <= bound * lever:
-        return ["the centre of mass has the wrong sign: it lies on the origin's other side"]
-    return []
+Named = Callable[[System], Iterator[tuple[str, Array]]]
+Held = tuple[System, Body]
+
+
+def _part(part: str, named: Named, here: Held, bodies: Sequence[Held]) -> str:
+    """The first name for what is held in place of one part that holds in every scenario."""
+    system, held = here
+
+    def fits(text: str, one: Held) -> bool:
+        """Where it makes no difference to a body, or matches what is held."""
+        other = dict(named(one[0])).get(text)
+        requested, back = (np.asarray(getattr(b, part)) for b in (one[0].body, one[1]))
+        return other is None or _alike(other, back, 1.0) or _alike(other, requested, 1.0)
+
+    requested, back = (np.asarray(getattr(b, part), dtype=float) for b in (system.body, held))
+    condition = float(np.linalg.cond(requested)) if part == "inertia" else 1.0
+    for text, value in named(system):
+        if not _alike(value, back, condition) or _alike(value, requested, condition):
+            continue
+        if all(fits(text, one) for one in bodies):
+            return text.strip()
+    return _by_numbers(part, requested, back, bodies)
+
+
+def _by_numbers(part: str, requested: Array, back: Array, bodies: Sequence[Held]) -> str:
+    """One factor, an addition to the diagonal, or a limit."""
+    what = part.replace("_", " ").replace("center", "centre")
+    size = float(np.sum(requested * back) / np.sum(requested * requested))
+    scaled = np.any(requested) and _alike(size * requested, back, 1.0)
+    if part != "inertia":
+        pairs = [
+            (np.atleast_1d(getattr(s.body, part)), np.atleast_1d(getattr(b, part)))
+            for s, b in bodies
+        ]
+        law = law_of(pairs, f"the {what}", "kg" if part == "mass" else "m") if pairs else ""
+        if law and "scaled" not in law:
+            return law
+        if scaled:
+            return f"the {what} is {factor(size)} times what was requested"
+        shown = vector(np.atleast_1d(back), np.atleast_1d(requested))
+        asked = vector(np.atleast_1d(requested), np.atleast_1d(back))
+        return f"the {what} reads back as {shown} m, where {asked} was requested"
+    if scaled:
+        return f"the inertia is {factor(size)} times what was requested"
+    more = back - requested
+    added = float(np.trace(more)) / 3.0
+    if _alike(requested + added * np.eye(3), back, 1.0):
+        return f"{number(added)} kg m^2 is added to the diagonal of the inertia (an armature)"
+    return _moments(requested, back)
+
+
+def _moments(requested: Array, back: Array) -> str:
+    """A least value of the moments or of the diagonal, or right moments about wrong axes."""
+    moments, axes = np.linalg.eigh(requested)
+    least = float(np.min(np.linalg.eigvalsh(back)))
+    if _alike((axes * np.maximum(moments, least)) @ axes.T, back, 1.0):
+        return f"every principal moment of inertia is held above {number(least)} kg m^2"
+    least = float(np.min(np.diag(back)))
+    held = np.maximum(np.diag(requested), least)
+    if _alike(requested + np.diag(held - np.diag(requested)), back, 1.0):
+        return f"the diagonal of the inertia is held above {number(least)} kg m^2"
+    condition = float(np.linalg.cond(requested))
+    if _alike(np.diag(moments), np.diag(np.linalg.eigvalsh(back)), condition):
+        return "the inertia's moments are right, and its axes are not"
+    off = float(np.linalg.norm(back - requested, 2) / np.linalg.norm(requested, 2))
+    rows = "; ".join(vector(row, own) for row, own in zip(back, requested, strict=True))
+    text = f"the dynamics are those of another inertia, {100 * off:.2g} % off"
+    return f"{text}: it reads back as {rows} kg m^2"
 
 
 def _alike(one: Array, other: Array, condition: float) -> bool:
-    bound = ROUNDINGS_PER_EVALUATION * EPS * condition * np.linalg.norm(one, 2)
-    return bool(np.linalg.norm(one - other, 2) <= bound)
+    bound = ROUNDINGS_PER_EVALUATION * EPS * condition * np.linalg.norm(one)
+    return bool(np.linalg.norm(one - other) <= bound)
 
 
-def _inertia(case: Case, held: Body) -> list[str]:
-    """The first tensor that matches within the gate's bound times the requested one's condition."""
-    requested, back = np.asarray(case.system.body.inertia), np.asarray(held.inertia)
-    factor = float(np.sum(requested * back) / np.sum(requested * requested))
-    if _alike(factor * requested, back, 1.0):
-        return [f"the inertia is {factor:.6g} times what was requested"]
-    condition = float(np.linalg.cond(requested))
-    for text, tensor in mistaken_inertias(case.system.body, case.system):
-        if _alike(tensor, back, condition) and not _alike(tensor, requested, condition):
-            return [text]
-    if _alike(np.diag(np.linalg.eigvalsh(requested)), np.diag(np.linalg.eigvalsh(back)), condition):
-        return ["the inertia's moments are right, and its axes are not"]
-    return []
+def _single(values: Array) -> Array:
+    return np.asarray(np.asarray(values, dtype=np.float32), dtype=float)
+
+
+def _masses(system: System) -> Iterator[tuple[str, Array]]:
+    mass = np.asarray(system.body.mass, dtype=float)
+    yield "the mass is kept in single precision", _single(mass)
+    yield "the mass is inverted: its reciprocal is held", 1.0 / mass
+    yield "the mass is 1 kg, whatever was requested", np.ones(())
+
+
+def _centers(system: System) -> Iterator[tuple[str, Array]]:
+    center = np.asarray(system.body.center_of_mass, dtype=float)
+    yield "the centre of mass is kept in single precision", _single(center)
+    yield "the centre of mass is ignored: it reads back at the body's origin", 0 * center
+    yield "the centre of mass has the wrong sign: it lies on the origin's other side", -center
+    for axis in range(3):
+        alone, name = np.arange(3) == axis, "xyz"[axis]
+        yield f"the {name} component of the centre of mass is dropped", np.where(alone, 0, center)
+        flipped = np.where(alone, -center, center)
+        yield f"the {name} component of the centre of mass has the wrong sign", flipped
+    for order in permutations(range(3)):
+        if order != (0, 1, 2):
+            names = ", ".join("xyz"[k] for k in order)
+            text = f"the centre of mass's components are permuted: x, y, z hold those of {names}"
+            yield text, center[list(order)]
+    if system.load.pivot is not None:
+        pivot = np.asarray(system.load.pivot, dtype=float)
+        yield "the centre of mass is given from the pivot, not from the origin", center - pivot
+        yield "the centre of mass is moved by the pivot", center + pivot
+
+
+def _inertias(system: System) -> Iterator[tuple[str, Array]]:
+    tensor = np.asarray(system.body.inertia, dtype=float)
+    yield "the inertia is kept in single precision", _single(tensor)
+    yield from other_tensors(system).items()
 
 
 def _state(case: Case, requested: State, back: State) -> list[str]:
@@ -82,32 +172,3 @@ def _state(case: Case, requested: State, back: State) -> list[str]:
     if all(np.array_equal(a, b) for a, b in pairs):
         return ["the state is kept in single precision"]
     return []
-
-
-def mistaken_inertias(body: Body, system: System) -> Iterator[tuple[str, Array]]:
-    """What it would be, and the tensor; the plainest first."""
-    tensor = np.asarray(body.inertia, dtype=float)
-    diagonal = np.diag(np.diag(tensor))
-    moments, axes = np.linalg.eigh(tensor)
-    yield "only the diagonal of the inertia is used", diagonal
-    yield "the products of inertia have the wrong sign", 2 * diagonal - tensor
-    about = "instead of the centre of mass"
-    shifted = tensor + parallel_axis(body.mass, body.center_of_mass)
-    yield f"the inertia is about the body's origin {about}", shifted
-    if system.load.pivot is not None:
-        lever = body.center_of_mass - system.load.pivot
-        yield f"the inertia is about the pivot {about}", tensor + parallel_axis(body.mass, lever)
-    yield "the inertia is inverted: its reciprocal is used", np.linalg.inv(tensor)
-    for order in permutations(range(3)):
-        if order != (0, 1, 2):
-            names = ", ".join("xyz"[k] for k in order)
-            text = f"the inertia's axes are permuted: x, y, z hold what belongs to {names}"
-            yield text, tensor[np.ix_(order, order)]
-    for order in permutations(range(3)):
-        text = "the principal moments stand on the diagonal: the rotation of their axes is dropped"
-        yield text, np.diag(moments[list(order)])
-    # R^T D R for R D R^T, whatever order and signs the axes are kept in
-    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3)):
-        turn = axes[:, order] * np.array(signs)
-        text = "the rotation of the inertia's principal axes looks transposed"
-        yield text, turn.T @ np.diag(moments[list(order)]) @ turn

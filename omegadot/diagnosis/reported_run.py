@@ -19,6 +19,7 @@ from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
 LEAST_SAMPLES = 6
+MOST_GUESSES = 3
 # In parts of what rounding may do: a fitted number is then good to six digits.
 DISTINCT = 1e6
 
@@ -27,7 +28,8 @@ DISTINCT = 1e6
 class ReportedRun:
     """time and state as reported; own: the reference's run of the declared scheme at the samples.
 
-    growth: (n,), how far rounding may have grown along it.
+    growth: (n,), how far rounding may have grown along it.  is_declared: False where the scheme is
+    a guess, and one of the nearest.
     """
 
     case: Case
@@ -38,6 +40,7 @@ class ReportedRun:
     state: State
     own: State
     growth: Array
+    is_declared: bool = True
 
     @property
     def declared(self) -> Scheme:
@@ -59,6 +62,21 @@ class ReportedRun:
             bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))
             for c in CHANNELS
         )
+
+    @property
+    def is_own(self) -> bool:
+        """Whether the whole run is the reference's."""
+        return len(self.time) == len(self.own.position) and self.agrees(self.state, self.own)
+
+    @property
+    def distance_at_first(self) -> float:
+        """How far the run is from the reference's in its first samples, in parts of the bound."""
+        bounds, first = self.bounds, slice(1, LEAST_SAMPLES)
+        shares = [
+            self.truth.yardstick.distance(c, self.state[first], self.own[first]) / bounds[c][first]
+            for c in CHANNELS
+        ]
+        return float(np.nan_to_num(np.median(np.max(shares, axis=0)), nan=np.inf))
 
     def stepped(
         self,
@@ -99,6 +117,31 @@ def reported_run(
     time, state = answer.result["time"], State(**answer.result["state"])
     whole = ReportedRun(case, truth, integrator, sweep, time, state, own.state, own.growth)
     return _until_it_shows(whole) if len(time) == len(sweep.times) else whole
+
+
+def reported_run_guesses(
+    case: Case, truth: Truth, result: CaseResult, run: JudgedRun
+) -> list[ReportedRun]:
+    """The run next to the nearest schemes of the reference, of an engine that declares none.
+
+    Which are nearest is seen in the first samples, before a fault has spoiled the rest.
+    """
+    integrator, sweep = run.integrator, run.sweep
+    answer = result.runs.get((integrator.name, sweep.timestep))
+    if answer is None or not answer.ok or integrator.scheme in SCHEMES:
+        return []
+    time, state = answer.result["time"], State(**answer.result["state"])
+    ranked = list[tuple[float, ReportedRun]]()
+    for (key, timestep), own in truth.companions.items():
+        if timestep != sweep.timestep:
+            continue
+        guess = replace(integrator, scheme=key.scheme, coordinates=key.coordinates)
+        one = ReportedRun(case, truth, guess, sweep, time, state, own.state, own.growth, False)
+        if len(time) != len(sweep.times):
+            return [one]
+        ranked.append((one.distance_at_first, one))
+    ranked.sort(key=lambda pair: pair[0])
+    return [_until_it_shows(one) for _, one in ranked[:MOST_GUESSES]]
 
 
 def _until_it_shows(reported: ReportedRun) -> ReportedRun:

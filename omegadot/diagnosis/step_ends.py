@@ -81,11 +81,20 @@ def clipped_at(rate: float) -> End:
     return _of_omega(lambda w: np.clip(w, -rate, rate))
 
 
+def _shortened(vectors: Array, length: float) -> Array:
+    with np.errstate(divide="ignore"):
+        return np.asarray(vectors * np.minimum(1.0, length / norm(vectors)[..., None]))
+
+
 def held_below(rate: float) -> End:
     """Omega is scaled down to a rate in rad/s."""
+    return _of_omega(lambda w: _shortened(w, rate))
 
-    def held(w: Array) -> Array:
-        with np.errstate(divide="ignore"):
-            return np.asarray(w * np.minimum(1.0, rate / norm(w)[..., None]))
 
-    return _of_omega(held)
+def speed_below(speed: float) -> End:
+    """The linear velocity is scaled down to a speed in m/s."""
+
+    def end(before: State, after: State, dt: float | Array) -> State:
+        return replace(after, linear_velocity=_shortened(after.linear_velocity, speed))
+
+    return end

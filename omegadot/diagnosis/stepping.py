@@ -7,20 +7,26 @@ from dataclasses import replace
 
 import numpy as np
 
+from omegadot.diagnosis.equation_form import Form, accelerations
+from omegadot.diagnosis.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.reported_run import ReportedRun
 from omegadot.diagnosis.step_ends import (
     End,
     clipped_at,
     held_below,
     left_multiplied,
+    speed_below,
     straight_quaternion,
     turned_by_last_omega,
     with_end,
 )
 from omegadot.gates.scales import norm
+from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import PHRASES, canonical, distinct
 from omegadot.reference_impl.growth import changes
+from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State
 
 ENDS: dict[str, End] = {
@@ -29,9 +35,13 @@ ENDS: dict[str, End] = {
     "the attitude turns by the step's last omega alone": turned_by_last_omega,
 }
 MOST_TRIES = 8
+CONVERGES = 0.3  # what a try must leave of the distance before it
 MOST_STEPS = 5000  # causes are tried by stepping again, and a step takes about 0.1 ms
 # A fitted run has come out of a search that ends within rounding, and bounds are of one run.
 SLACK = 4.0
+SEEN = 1e-9  # relative: a change that is smaller is not followed
+MOST_NAMED = 3
+NOT_STEPPED = ("report", "precision")
 
 
 def _precision(reported: ReportedRun) -> str:
@@ -66,14 +76,17 @@ def _asleep(reported: ReportedRun) -> str:
 
 
 def _limit(
-    reported: ReportedRun, size: Callable[[Array], Array], end: Callable[[float], End]
+    reported: ReportedRun,
+    size: Callable[[Array], Array],
+    end: Callable[[float], End],
+    field: str = "angular_velocity",
 ) -> float | None:
-    """The size that omega is kept within by the end of each step, where it is.
+    """The size that omega, or the velocity, is kept within by the end of each step, if any.
 
     The greatest that is reported is nearly the one that the steps keep to.
     """
-    greatest = float(np.max(size(reported.state.angular_velocity[1:])))
-    if not 0.0 < greatest < float(np.max(size(reported.own.angular_velocity[1:]))):
+    greatest = float(np.max(size(getattr(reported.state, field)[1:])))
+    if not 0.0 < greatest < float(np.max(size(getattr(reported.own, field)[1:]))):
         return None
 
     def stepped(more: float) -> State:
@@ -93,14 +106,22 @@ def _clipped(reported: ReportedRun) -> str:
     return "" if limit is None else f"each component of omega is held within {limit:.6g} rad/s"
 
 
+def _speed(reported: ReportedRun) -> str:
+    limit = _limit(reported, norm, speed_below, "linear_velocity")
+    return "" if limit is None else f"the linear velocity is held below {limit:.6g} m/s"
+
+
 def _other_scheme(reported: ReportedRun) -> str:
     for name, scheme in SCHEMES.items():
         system, declared = reported.case.system, reported.integrator.coordinates
         ways = sorted(distinct(system), key=lambda way: way != canonical(system, declared))
         for way in (way for way in ways if way in scheme.coordinates):
             other = replace(reported, integrator=replace(reported.integrator, coordinates=way))
+            same = name == reported.integrator.scheme
+            if same and way == canonical(system, declared):
+                continue  # what is declared: this is not what is wrong
             if reported.agrees(reported.state, other.stepped(scheme)):
-                if name == reported.integrator.scheme:
+                if same:
                     return f"it steps {PHRASES[way]}, which is not what is declared"
                 return f"it is stepped by {name}, though {reported.integrator.scheme} is declared"
     return ""
@@ -123,10 +144,15 @@ def _search(reported: ReportedRun, stepped: Callable[[float], State], delta: flo
     def apart(state: State) -> Array:
         return np.ravel(changes(state, reported.state, rate))
 
+    before = np.inf
     for _ in range(MOST_TRIES):
         here = stepped(found)
         if reported.agrees(reported.state, here, slack=SLACK):
             return found
+        left = float(norm(apart(here)))
+        if not left < CONVERGES * before:
+            return None
+        before = left
         slope = (apart(here) - apart(stepped(found + delta))) / delta
         size = float(slope @ slope)
         if not size > 0.0 or not np.isfinite(size):
@@ -159,6 +185,52 @@ def _damped(reported: ReportedRun) -> str:
     return f"a damping of {found:.3g} N m s/rad acts in the steps that was not requested"
 
 
+def _other_equation(reported: ReportedRun) -> str:
+    """The scheme over another equation, all hypotheses side by side in lanes."""
+    system, states = reported.case.system, reported.own
+    known = [h for h in hypotheses(system) if h.part not in NOT_STEPPED and not h.unlikely]
+    found, forms, kept = list[str](), list[Form](), list[Array]()
+    true = forward_dynamics(system, states)
+    for one in known:
+        form = wrong_form([one], system)
+        if form is None:
+            continue
+        tried = accelerations(form, states)
+        change = np.concatenate([tried.angular - true.angular, tried.linear - true.linear])
+        size = float(np.max(np.abs(change)))
+        if size <= SEEN * float(np.max(np.abs(true.angular)) + np.max(np.abs(true.linear))):
+            continue
+        if any(np.max(np.abs(change - other)) <= SEEN * size for other in kept):
+            continue
+        found.append(one.text.strip())
+        forms.append(form)
+        kept.append(change)
+    if not forms:
+        return ""
+    lanes = Form(*(np.stack(part) for part in zip(*(vars(f).values() for f in forms), strict=True)))
+    stepped = _in_lanes(reported, lanes, len(forms))
+    fits = [
+        text
+        for k, text in enumerate(found)
+        if reported.agrees(reported.state, stepped[:, k], slack=SLACK)
+    ]
+    if not 0 < len(fits) <= MOST_NAMED:
+        return ""
+    texts = fits[0] if len(fits) == 1 else "either " + ", or ".join(fits)
+    return f"in the steps, {texts}"
+
+
+def _in_lanes(reported: ReportedRun, lanes: Form, count: int) -> State:
+    """(n, lanes, ...): the declared scheme over each of these equations."""
+    system, sweep = reported.case.system, reported.sweep
+    coordinates = reported.integrator.coordinates
+    motion = motion_over(system, coordinates, lambda state: accelerations(lanes, state))
+    start = State(*(np.stack([f] * count) for f in vars(reported.case.initial).values()))
+    plan = (sweep.timestep, sweep.steps, sweep.every, coordinates, motion)
+    with np.errstate(all="ignore"):
+        return step_body(reported.declared, system, start, *plan)[1]
+
+
 CAUSES_OF_STEPPING = (
     _precision,
     _asleep,
@@ -168,4 +240,16 @@ CAUSES_OF_STEPPING = (
     _damped,
     _clipped,
     _held,
+    _speed,
+    _other_equation,
+)
+CAUSES_OF_UNKNOWN = (
+    _precision,
+    _asleep,
+    _longer,
+    _damped,
+    _clipped,
+    _held,
+    _speed,
+    _other_equation,
 )

@@ -114,11 +114,10 @@ def _unjudged_entries(
 
 
 def tasks_of_run(
-    outcome: Outcome, cases: list[Case], setup: str, seed: int, causes_of: CausesOf
+    outcome: Outcome, cases: list[Case], setup: str, causes_of: CausesOf
 ) -> list[dict[str, Any]]:
     """Every task with its outcome; engines that did not start have one task a scenario.
 
-    seed: that of the run, from which the evaluation states were drawn.
     causes_of: names the likeliest causes of an engine's failures.
     """
     entries: list[dict[str, Any]] = []
@@ -133,7 +132,7 @@ def tasks_of_run(
                 why = f"the exact solution itself, by {source}"
                 entries.append(_answered_entry(label(source), found, "ok", "", rows, why))
             else:
-                cause, known = causes_of(case, found, seed), diagnosed[found.engine.name]
+                cause, known = causes_of(case, found), diagnosed[found.engine.name]
                 for run in found.runs:
                     labels = label(run.integrator.name, run.sweep)
                     entries.append(_judged_entry(labels, found, run, cause, known))

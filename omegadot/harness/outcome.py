@@ -65,8 +65,8 @@ class JudgedCase:
 
 # Names the likeliest cause of a failure: in one run, or (None) in what all runs share.
 Cause = Callable[[JudgedRun | None], str]
-# From an engine's judged case to its causes; the seed is that of the evaluation states.
-CausesOf = Callable[[JudgedCase, EngineCase, int], Cause]
+# From an engine's judged case to its causes.
+CausesOf = Callable[[JudgedCase, EngineCase], Cause]
 
 
 @dataclass(frozen=True)

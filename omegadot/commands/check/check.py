@@ -115,6 +115,7 @@ def check(
         finally:
             suite.finish()
         failing = _shrunk(engine, selection, results, report) if shrink else []
+    results = {one: result.settled for one, result in results.items()}
     tally = Tally()
     for one, result in results.items():
         tally.add(one.engine, result.verdict, result.message)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Literal
@@ -54,11 +54,20 @@ class Result:
     verdict: "skip" has its reason in `message`, and is no pass; "declared" is a failure that an
     exception excuses; "error" is an engine that did not answer, and then
     outcome: crashed, timeout, raised or not-installed.
+    again: the message once more, when other scenarios may have contradicted its cause.
     """
 
     verdict: Verdict
     message: str = ""
     outcome: str = "ok"
+    again: Callable[[], str] | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def settled(self) -> Result:
+        """The same with a cause that holds on all scenarios that have been run since."""
+        if self.verdict != "fail" or self.again is None:
+            return self
+        return replace(self, message=self.again(), again=None)
 
 
 PASSED = Result("pass")

@@ -21,7 +21,7 @@ from omegadot.commands.check.result import (
     subject_of,
 )
 from omegadot.commands.check.select import Selection
-from omegadot.diagnosis.diagnose import causes_of
+from omegadot.diagnosis.diagnose import Causes
 from omegadot.gates.case import Case
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.runner import Runner
@@ -58,6 +58,7 @@ class Suite:
         }
         self.checks: list[Check] = self._generate()
         self._results: dict[Check, Result] = {}
+        self._causes = Causes()
         self.figures: dict[str, dict[str, ScenarioFigures]] = {}
 
     def _start(self) -> Registry:
@@ -134,7 +135,10 @@ class Suite:
                 self._runner.engines.stop()  # no one waits for what they are busy with
                 raise
             for found in judged.engines:
-                self._results |= dict(results_of(judged, found, causes_of(judged, found, SEED)))
+                if judged.truth is not None:
+                    causes = self._causes.of_case(judged, found, SEED)
+                    self._results |= dict(results_of(judged, found, causes.text))
+                    causes.release()
                 kept = judged.truth is not None and case.name not in self.selection.drawn
                 if kept and answered(found):
                     self.figures.setdefault(found.engine.name, {})[case.name] = figures_of(found)

@@ -10,7 +10,7 @@ import numpy as np
 
 from omegadot import __version__
 from omegadot.diagnosis.clusters import clusters_of_run
-from omegadot.diagnosis.diagnose import causes_of
+from omegadot.diagnosis.diagnose import causes_over
 from omegadot.gates.case import Case
 from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
 from omegadot.harness.outcome import Outcome, RunRequest
@@ -23,6 +23,7 @@ def record_of(
     outcome: Outcome, request: RunRequest, command: Sequence[str], seconds: float
 ) -> Record:
     """The record of a finished or interrupted run."""
+    causes = causes_over(outcome.cases, request.seed)
     now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
     run = {
         "schema": SCHEMA,
@@ -38,7 +39,7 @@ def record_of(
         "scenarios": [_scenario(case) for case in request.cases],
         "worker_deaths": [{"engine": name, "how": how} for name, how in outcome.deaths],
         "clusters": [vars(cluster) for cluster in clusters_of_run(outcome.cases)],
-        "tasks": tasks_of_run(outcome, list(request.cases), request.setup, request.seed, causes_of),
+        "tasks": tasks_of_run(outcome, list(request.cases), request.setup, causes),
     }
     setup = request.setup
     return Record(run, metrics_of_run(outcome, setup), trajectories_of_run(outcome, setup))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from omegadot.commands.score.measured import Measured, distance, filled
-from omegadot.diagnosis.model import mistaken_inertias
+from omegadot.diagnosis.tensors import mistaken_inertias
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates

@@ -1,0 +1,50 @@
+"""Numbers as text, with as many digits as it takes to see that two of them differ."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.reference_impl.system import Array
+
+MOST = 17
+NOTHING = 1e-9  # of what it is held against, a number is zero
+NOISE = 1e-15  # relative: a fitted number is no better known
+
+
+def number(value: float, other: float | None = None) -> str:
+    """Six digits, or as many more as distinguish it from the other number."""
+    if other is not None and abs(value) < NOTHING * abs(other):
+        return "0"
+    same = other is None or abs(value - other) <= NOISE * max(abs(value), abs(other))
+    for digits in range(6, MOST):
+        text = f"{value:.{digits}g}"
+        if same or text != f"{other:.{digits}g}":
+            return text
+    return repr(value)
+
+
+def vector(values: Array, other: Array | None = None) -> str:
+    """``(x, y, z)``, with digits that distinguish it from the other vector."""
+    others = [None] * len(values) if other is None else [float(v) for v in other]
+    least = 1e3 * NOISE * float(np.max(np.abs(values)))
+    kept = (0.0 if abs(v) <= least else float(v) for v in values)
+    pairs = zip(kept, others, strict=True)
+    return f"({', '.join(number(value, than) for value, than in pairs)})"
+
+
+def factor(value: float) -> str:
+    """A factor; one that is nearly one as what it is off by, ``1 + 1e-12``."""
+    off = value - 1.0
+    if 0.0 < abs(off) < 5e-6:
+        return f"1 {'+' if off > 0 else '-'} {abs(off):.3g}"
+    return number(value)
+
+
+def limits(low: float, high: float, unit: str) -> str:
+    """What lies between two numbers: both, in digits that differ."""
+    return f"{number(low, high)} and {number(high, low)} {unit}".strip()
+
+
+def is_about(value: float, whole: float, uncertainty: float = 1e-9) -> bool:
+    """Whether a fitted number is a given one, but for its own rounding."""
+    return bool(abs(value - whole) <= uncertainty * max(1.0, abs(whole)) and np.isfinite(value))

@@ -1,0 +1,92 @@
+"""Causes in the runs of one integrator: in what is reported, in the stepping, in the past."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from omegadot.diagnosis.reported_run import ReportedRun, reported_run, reported_run_guesses
+from omegadot.diagnosis.reported_run_causes import CAUSES_REPORTED, begin_apart
+from omegadot.diagnosis.reported_sample_causes import intervals, omega_dot_late, one_field
+from omegadot.diagnosis.restarts import restart_cause
+from omegadot.diagnosis.stepping import CAUSES_OF_STEPPING, CAUSES_OF_UNKNOWN, MOST_STEPS
+from omegadot.gates.case import Case
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.judge import JudgedRun, is_finite
+
+
+def run_causes(
+    case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> list[str]:
+    """Of the failed run of the fewest steps in which one is found: hypotheses are stepped again."""
+    failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
+    several = _of_several_schemes(case, truth, result, runs) if failed else ""
+    if several:
+        return [several]
+    for run in sorted(failed, key=lambda run: run.sweep.steps):
+        text = _of_run(case, truth, result, run)
+        if text:
+            return [text + _at_long_steps(runs)]
+    return []
+
+
+def _of_several_schemes(
+    case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> str:
+    """Runs of one integrator that are different schemes' at different steps, none declared."""
+    named = dict[float, set[str]]()
+    for run in runs:
+        for guess in reported_run_guesses(case, truth, result, run):
+            if guess.is_own:
+                known = named.setdefault(run.sweep.timestep, set())
+                known.add(guess.integrator.scheme or "")
+    if len(named) < 2 or set.intersection(*named.values()):
+        return ""
+    parts = [f"{' or '.join(sorted(n))} at {h:g} s" for h, n in sorted(named.items())]
+    return f"runs with different steps are of different schemes: {', '.join(parts)}"
+
+
+def _at_long_steps(runs: Sequence[JudgedRun]) -> str:
+    """Where the longer steps alone fail, between which steps it begins."""
+    failed, sound = (
+        [r.sweep.timestep for r in runs if any(row.verdict == "fail" for row in r.rows) is wrong]
+        for wrong in (True, False)
+    )
+    if not failed or not sound or max(sound) >= min(failed):
+        return ""
+    return f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s are sound"
+
+
+def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> str:
+    """Causes in what one run reports, then in its stepping, then in where it is sound.
+
+    Where nothing but the omega-dot reported along it failed, only that is looked at.
+    """
+    reported = reported_run(case, truth, result, run)
+    if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
+        return omega_dot_late(case, truth, result, run)
+    if reported is not None:
+        return _of_reported(reported, result)
+    text = next(_of_guesses(case, truth, result, run), "")
+    return text or restart_cause(truth, result, run)
+
+
+def _of_reported(reported: ReportedRun, result: CaseResult) -> str:
+    if not reported.is_declared and reported.is_own:
+        return ""  # nothing in this run is wrong
+    if begin_apart(reported, result):
+        return "runs begin at other states than the one given: one is left over from a run before"
+    tried = list(CAUSES_REPORTED)
+    if len(reported.time) == len(reported.sweep.times):
+        if is_finite(reported.state) and reported.sweep.steps <= MOST_STEPS:
+            tried += CAUSES_OF_STEPPING if reported.is_declared else CAUSES_OF_UNKNOWN
+        tried += (intervals, one_field)
+    return next(filter(None, (cause(reported) for cause in tried)), "")
+
+
+def _of_guesses(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> Iterator[str]:
+    """By the schemes of the reference that come nearest, where none is declared."""
+    for guess in reported_run_guesses(case, truth, result, run):
+        text = _of_reported(guess, result)
+        if text:
+            yield text

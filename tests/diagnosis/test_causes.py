@@ -1,0 +1,246 @@
+"""Causes of faults that the catalogue does not have: named, or nothing, over several scenarios."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from omegadot.diagnosis.across import Across, Scene
+from omegadot.diagnosis.digits import factor, number
+from omegadot.diagnosis.equation import FORWARD, equation_causes, inverse_causes
+from omegadot.diagnosis.evidence import of_forward_dynamics
+from omegadot.diagnosis.features import features_of
+from omegadot.diagnosis.steps import jump_cause, vanishing_steps
+from omegadot.diagnosis.trace import Trace, trace_causes
+from omegadot.gates.case import Case
+from omegadot.gates.equation import random_acceleration, random_states
+from omegadot.gates.vanishing_step import RADIANS, STEPS, Probe
+from omegadot.harness.arguments import case_of
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import damping_torque, gravity_torque
+from omegadot.reference_impl.motion import (
+    center_of_mass_acceleration,
+    forward_dynamics,
+    inverse_dynamics,
+)
+from omegadot.reference_impl.rotations import rotate
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import stack, step_body
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.scenarios import scenario
+
+TENSOR = [[1.0, 0.1, 0.2], [0.1, 1.6, -0.15], [0.2, -0.15, 2.1]]
+RUN = {"duration": 2.0, "timesteps": [0.02, 0.01], "sample": 0.1}
+
+
+def case(name: str, load: dict[str, Any], mass: float = 2.0, tensor: Any = TENSOR) -> Case:
+    initial: dict[str, Any] = {"orientation": [0.5, 0.1, -0.7, 0.4]}
+    initial["angular_velocity"] = [0.8, 2.0, -0.5]
+    if "pivot" not in load:
+        initial |= {"position": [0.4, -1.0, 2.0], "linear_velocity": [1.0, -0.5, 3.0]}
+    body = {"mass": mass, "inertia": tensor, "center_of_mass": [0.05, -0.2, 0.1]}
+    data = {"name": name, "body": body, "initial": initial, "load": load, "run": RUN}
+    return case_of(scenario(data), [])
+
+
+GRAVITY, PIVOT = [1.0, -2.0, -9.0], [0.3, 0.1, -0.2]
+BODY_TORQUE = {"frame": "body", "value": [0.4, -0.9, 0.6]}
+WORLD_TORQUE = {"frame": "world", "value": [-0.7, 0.2, 0.5]}
+CASES = (
+    case("free", {}),
+    case("falling", {"gravity": GRAVITY}, 3.1),
+    case("damped", {"damping": 0.3}),
+    case("damped-more", {"damping": 1.7, "torque": BODY_TORQUE}, 0.7),
+    case("damped-most", {"damping": 2.9, "gravity": GRAVITY}),
+    case("driven", {"torque": BODY_TORQUE}, 1.3),
+    case("driven-in-world", {"torque": WORLD_TORQUE}),
+    case("top", {"gravity": GRAVITY, "pivot": PIVOT}),
+    case("top-damped", {"gravity": GRAVITY, "pivot": PIVOT, "damping": 0.4}, 1.7),
+    case("top-driven", {"pivot": PIVOT, "torque": WORLD_TORQUE}, 0.9),
+    case("top-driven-damped", {"pivot": PIVOT, "torque": BODY_TORQUE, "damping": 0.2}),
+)
+
+
+def with_torque(system: System, states: State, torque: Array) -> Acceleration:
+    """The right accelerations with one more torque."""
+    true = forward_dynamics(system, states)
+    angular = true.angular + apply(inverse(moving_inertia(system)), torque)
+    if system.load.pivot is None:
+        return Acceleration(angular, true.linear)
+    return Acceleration(angular, center_of_mass_acceleration(system, states, angular))
+
+
+def gyroscopic(system: System, states: State) -> Array:
+    w = states.angular_velocity
+    return cross(w, apply(moving_inertia(system), w))
+
+
+def damping_as_rate(system: System, states: State) -> Acceleration:
+    w, d = states.angular_velocity, system.load.damping
+    return with_torque(system, states, d * w - apply(moving_inertia(system), d * w))
+
+
+def rate_and_no_gyroscopic_term(system: System, states: State) -> Acceleration:
+    w, d = states.angular_velocity, system.load.damping
+    more = d * w - apply(moving_inertia(system), d * w)
+    return with_torque(system, states, more + gyroscopic(system, states))
+
+
+def mirrored_center(system: System, states: State) -> Acceleration:
+    return with_torque(system, states, -2.0 * gravity_torque(system, states))
+
+
+def armature(system: System, states: State) -> Acceleration:
+    true = forward_dynamics(system, states)
+    inertia = moving_inertia(system)
+    angular = np.linalg.solve(inertia + 1e-6 * np.eye(3), (inertia @ true.angular.T)).T
+    if system.load.pivot is None:
+        return Acceleration(angular, true.linear)
+    return Acceleration(angular, center_of_mass_acceleration(system, states, angular))
+
+
+def under(**change: Any) -> Any:
+    def found(system: System, states: State) -> Acceleration:
+        made = {name: of(system) for name, of in change.items()}
+        return forward_dynamics(replace(system, load=replace(system.load, **made)), states)
+
+    return found
+
+
+def products_in_another_order(system: System, states: State) -> Acceleration:
+    tensor = np.array(system.body.inertia)
+    tensor[0, 1] = tensor[1, 0] = system.body.inertia[0, 2]
+    tensor[0, 2] = tensor[2, 0] = system.body.inertia[0, 1]
+    body = replace(system.body, inertia=tensor)
+    return forward_dynamics(replace(system, bodies=(body,)), states)
+
+
+def mass_in_single_precision(system: System, states: State) -> Acceleration:
+    mass = np.asarray(float(np.float32(system.body.mass)))
+    body = replace(system.body, mass=mass)
+    return forward_dynamics(replace(system, bodies=(body,)), states)
+
+
+def spatial(system: System, states: State) -> Acceleration:
+    true = forward_dynamics(system, states)
+    turning = rotate(states.orientation, states.angular_velocity)
+    return Acceleration(true.angular, true.linear - cross(turning, states.linear_velocity))
+
+
+def no_gyroscopic_term_when_fast(system: System, states: State) -> Acceleration:
+    fast = np.sum(states.angular_velocity**2, axis=-1, keepdims=True) > 9.0
+    return with_torque(system, states, np.where(fast, gyroscopic(system, states), 0.0))
+
+
+def cubic_damping(system: System, states: State) -> Acceleration:
+    w = states.angular_velocity
+    return with_torque(system, states, -0.01 * np.sum(w * w, axis=-1, keepdims=True) * w)
+
+
+EQUATIONS: dict[str, tuple[Any, str]] = {
+    "rate": (damping_as_rate, "the damping acts as a rate"),
+    "rate-no-gyro": (rate_and_no_gyroscopic_term, "the gyroscopic term is missing"),
+    "mirrored": (mirrored_center, "the centre of mass is mirrored"),
+    "armature": (armature, "1e-06 kg m^2 is added to the inertia's diagonal"),
+    "clamp": (
+        under(damping=lambda s: np.minimum(s.load.damping, 1.0)),
+        "the damping is limited to 1 N m s/rad",
+    ),
+    "elif": (
+        under(torque_body=lambda s: s.load.torque_body * (s.load.damping == 0.0)),
+        "is missing",
+    ),
+    "pivot-no-damping": (
+        under(damping=lambda s: s.load.damping * (s.load.pivot is None)),
+        "the damping is missing, but only where the body is pivoted",
+    ),
+    "gravity-down": (
+        under(gravity=lambda s: np.array([0.0, 0.0, -np.linalg.norm(s.load.gravity)])),
+        "gravity points along -z, whatever direction was requested",
+    ),
+    "products": (products_in_another_order, "the products of inertia are in another order"),
+    "mass-float32": (mass_in_single_precision, "the mass is kept in single precision"),
+    "spatial": (spatial, "the linear acceleration is the spatial one"),
+    "fast": (no_gyroscopic_term_when_fast, "there, the gyroscopic term is missing"),
+    "cubic": (cubic_damping, "by a torque along omega, by an amount that goes as |omega|^3"),
+}
+
+
+def causes_over(found: Any, cases: tuple[Case, ...] = CASES) -> dict[str, str]:
+    """The cause on every scenario on which this equation is not the right one."""
+    across, wrong = Across(), list[str]()
+    for one in cases:
+        states = random_states(one, 60, [1])
+        evidence = of_forward_dynamics(one.system, states, found(one.system, states))
+        features = features_of(one.system, one.initial)
+        across.add(Scene(one.name, one.system, features, {FORWARD: evidence}))
+        wrong += [] if np.all(evidence.sound) else [one.name]
+    return {name: "; ".join(equation_causes(across, name, FORWARD)) for name in wrong}
+
+
+@pytest.mark.parametrize("name", EQUATIONS)
+def test_a_wrong_equation_is_named_on_every_scenario_that_shows_it(name: str) -> None:
+    found, phrase = EQUATIONS[name]
+    causes = causes_over(found)
+    assert causes
+    assert all(phrase in text for text in causes.values()), causes
+
+
+def test_two_causes_that_one_scenario_cannot_distinguish_are_both_named() -> None:
+    alone = case("alone", {"gravity": [0.0, 0.0, -9.0], "pivot": PIVOT})
+    (text,) = causes_over(mirrored_center, (alone,)).values()
+    assert text.startswith("either gravity has the wrong sign, or ")
+    assert "the centre of mass is mirrored" in text
+
+
+def test_a_cause_that_another_scenario_contradicts_is_not_named() -> None:
+    alone = case("alone", {"gravity": [0.0, 0.0, -9.0], "pivot": PIVOT})
+    (text,) = causes_over(mirrored_center, (alone, CASES[1])).values()
+    assert "gravity has the wrong sign" not in text
+
+
+def test_numbers_have_digits_that_differ() -> None:
+    assert factor(1.0 + 1e-12) == "1 + 1e-12"
+    assert number(0.1, float(np.float32(0.1))) != number(float(np.float32(0.1)), 0.1)
+
+
+def test_damping_in_inverse_dynamics() -> None:
+    system, states = CASES[2].system, random_states(CASES[2], 60, [1])
+    requested = random_acceleration(system, states, [2])
+    true = inverse_dynamics(system, states, requested)
+    less = true - damping_torque(system, states)
+    (text,) = inverse_causes(system, states, requested, less)
+    assert "leave out what damping takes up" in text
+
+
+def test_a_limit_on_the_speed_is_seen_in_steps_of_no_length() -> None:
+    one = CASES[1]
+    states = random_states(one, 12, [1])
+    rate = 4.0 * float(np.max(np.abs(states.angular_velocity))) + 1.0
+    steps = np.full((12, 1), RADIANS / rate) / 2.0 ** np.arange(STEPS)
+
+    def end(k: int, h: float) -> State:
+        scheme = SCHEMES["semi-implicit-euler"]
+        after = step_body(scheme, one.system, states[k], h, 1, 1)[1][-1]
+        speed = float(np.linalg.norm(after.linear_velocity))
+        return replace(after, linear_velocity=after.linear_velocity * min(1.0, 0.5 / speed))
+
+    stepped = stack([stack([end(k, h) for h in steps[k]]) for k in range(12)])
+    found = jump_cause(vanishing_steps(one.system, Probe(states, steps), stepped))
+    assert found == "the linear velocity is held below 0.5 m/s"
+
+
+def test_a_trace_has_causes() -> None:
+    one = CASES[5]
+    wrong = replace(one.system, load=replace(one.system.load, torque_body=np.zeros(3)))
+    times, state = step_body(SCHEMES["rk4-quaternion"], wrong, one.initial, 1e-3, 1000, 20)
+    nothing = np.zeros(len(times))
+    found = trace_causes(one.system, Trace(times, state, nothing, nothing))
+    assert found == ["the applied torque is missing"]
+    right = step_body(SCHEMES["rk4-quaternion"], one.system, one.initial, 1e-3, 1000, 20)[1]
+    assert trace_causes(one.system, Trace(times, right, nothing, nothing)) == []
