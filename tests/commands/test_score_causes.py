@@ -112,3 +112,13 @@ def test_the_cause_is_a_sentence_too(tmp_path, capsys):
     options = ("--scenario", BRICK, "--column", "w=p,q,r", "--rate-unit", "deg/s")
     result = run_score(capsys, trace, *options, "--angle-unit", "deg", "--out", tmp_path / "out")
     assert "Likeliest cause: the gyroscopic term has the wrong sign." in result.out
+
+
+def scaled(t, y):
+    w = y[:3]
+    return np.concatenate((-0.9 * np.cross(w, INERTIA * w) / INERTIA, slope(t, y)[3:]))
+
+
+def test_a_term_with_a_number_is_found_between_the_samples(causes):
+    (cause,) = causes("nesc-checkcase-2", TIMES, brick_with(scaled), "--rate-unit", "rad/s")
+    assert cause.startswith("the gyroscopic term is scaled by 0.9")

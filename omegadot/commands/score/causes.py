@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from omegadot.commands.score.measured import Measured, distance, filled
+from omegadot.diagnosis import trace as diagnosis
 from omegadot.diagnosis.tensors import mistaken_inertias
 from omegadot.gates.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
@@ -47,7 +48,28 @@ class Mistake:
 
 
 def causes_of_trace(found: Measured) -> list[str]:
-    """The mistakes that the trace follows, in words; none where several unlike ones fit."""
+    """The mistakes that the trace follows, in words; none where several unlike ones fit.
+
+    It follows one from its start, or from each sample to the next.
+    """
+    return _from_the_start(found) or _between_samples(found)
+
+
+def _between_samples(found: Measured) -> list[str]:
+    trace, count = found.trace, len(found.trace.times)
+    omega = trace.angular_velocity
+    wrong = any(np.any(found.error[c] > found.bound[c]) for c in ("omega",) if c in found.error)
+    if not wrong or omega is None or np.any(np.isnan(omega)):
+        return []
+    turns = trace.orientation is not None and not np.any(np.isnan(trace.orientation))
+    none, unknown = np.zeros(count), np.full(count, np.inf)
+    opened = trace.open.get("angular_velocity", none)
+    turned = trace.open.get("orientation", none) if turns else unknown
+    own = diagnosis.Trace(trace.times, found.state, opened, turned)
+    return diagnosis.trace_causes(found.case.system, own)
+
+
+def _from_the_start(found: Measured) -> list[str]:
     channels = [c for c in CHANNELS if c in found.error]
     wrong = [c for c in channels if np.any(found.error[c] > found.bound[c])]
     if not wrong or found.rate * float(found.trace.times[-1]) > MOST_TURNED:
