@@ -134,6 +134,8 @@ def _vanishes(sweep: Sequence[Errors]) -> bool:
 
     At fine steps, of which there are many, the bound of rounding is larger: it may hide an error.
     """
+    if not sweep:  # no run of it can be measured
+        return False
     finest = min(sweep, key=lambda one: one.timestep)
     if np.any(finest.size > finest.bound):
         return False

@@ -34,7 +34,13 @@ from omegadot.scenarios.random_traits import BLOCK
 SEED = 20
 # Until causes are sought for them.
 UNDIAGNOSED = (branches, coarse, limits, occasional, pivots, precision, solving, start)
-DIAGNOSED = [f for f in ORDERED if f.wrap.__module__ not in {m.__name__ for m in UNDIAGNOSED}]
+FIRST_STEP = ("GravityOffInFirstStep", "TorqueOneStepLate")  # named as missing in all steps
+DIAGNOSED = [
+    fault
+    for fault in ORDERED
+    if fault.wrap.__module__ not in {module.__name__ for module in UNDIAGNOSED}
+    and fault.name not in FIRST_STEP
+]
 # One of each kind, and of each way in which a fault is put into an engine.
 EVERYWHERE = (
     *("InertiaDiagonal", "InertiaAboutOrigin", "OmegaInWorldThroughout", "QuaternionScalarLast"),

@@ -22,7 +22,7 @@ timed = partial(other_run, "logging", "trajectory")
 misread = partial(fault_by, Misread, "reported", "convention", "scheme")
 
 
-@start("scalar-negative", named=("start", "quaternion", "attitude"))
+@start("scalar-negative", named="does not begin at the state it is given")
 def StartScalarBySize(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """A run begins with the scalar part of the quaternion taken by its size."""
     q = initial.orientation.copy()
@@ -30,7 +30,7 @@ def StartScalarBySize(run: Run, initial: State, h: float, steps: int, every: int
     return run(replace(initial, orientation=q), h, steps, every)
 
 
-@start(named=("start", "quaternion", "attitude"))
+@start(named="does not begin at the state it is given")
 def StartQuaternionYZSwapped(
     run: Run, initial: State, h: float, steps: int, every: int
 ) -> Trajectory:
@@ -39,7 +39,7 @@ def StartQuaternionYZSwapped(
     return run(replace(initial, orientation=q), h, steps, every)
 
 
-@start("free", named=("start", "position"))
+@start("free", named="does not begin at the state it is given")
 def StartPositionXYSwapped(
     run: Run, initial: State, h: float, steps: int, every: int
 ) -> Trajectory:
@@ -112,7 +112,7 @@ def ClockInMicroseconds(run: Run, initial: State, h: float, steps: int, every: i
     return Trajectory(np.round(found.time * MICRO) / MICRO, found.state)
 
 
-@timed("fine-steps", named=("clock", "time", "step"))
+@timed("fine-steps", named=("clock", "steps are"))
 def StepInMicroseconds(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """Steps are rounded to whole microseconds, and reported as requested."""
     found = run(initial, max(1.0, np.round(h * MICRO)) / MICRO, steps, every)

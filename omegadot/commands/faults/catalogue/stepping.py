@@ -37,7 +37,13 @@ class SecretTorque(ExtraTorque):
         return self.inner.forward_dynamics(states)
 
 
-@fault_by(SecretTorque, "torque", "stepping", "scheme", named="a damping of 0.0001")
+@fault_by(
+    SecretTorque,
+    "torque",
+    "stepping",
+    "scheme",
+    named=("a damping of 0.0001", "the damping that acts is"),
+)
 def SecretDamping(system: System, state: State) -> Array:
     """A damping of 1e-4 N m s/rad that was not requested acts in the steps."""
     return -SECRET_DAMPING * state.angular_velocity
