@@ -42,7 +42,8 @@ from omegadot.gates.equation import (
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun, shared_rows
+from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judge_engine import shared_rows
 from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State

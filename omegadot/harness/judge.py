@@ -1,4 +1,4 @@
-"""Send one engine's answers for one scenario through the gates."""
+"""Send the runs of one engine on one scenario through the gates."""
 
 from __future__ import annotations
 
@@ -12,27 +12,23 @@ from omegadot.gates import (
     accuracy,
     accuracy_followed,
     cost,
-    equation,
     invariants,
-    model,
     phase,
     rounding_step,
     scheme,
     trajectory,
 )
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import eps_of
 from omegadot.gates.truth import Truth
 from omegadot.gates.verdicts import Finding
 from omegadot.harness.drive import CaseResult
+from omegadot.harness.judge_engine import held
 from omegadot.harness.repeats import rows_again
 from omegadot.harness.step_probes import rows_of_probes
-from omegadot.reference_impl.system import Acceleration, State
+from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
-from omegadot.workers.wire import body_from
 
 
 @dataclass(frozen=True)
@@ -50,42 +46,6 @@ class JudgedRun:
     why: str = ""
     unresolved: bool = False
     finer: Sweep | None = None
-
-
-def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[Row]:
-    """The rows that belong to engine and scenario, whatever the integrator."""
-    rows: list[Row] = []
-    eps = eps_of(result.precision)
-    if result.model.ok:
-        found = result.model.result
-        for body in found["bodies"]:
-            rows += model.body_rows(case, body_from(body), eps)
-        rows += model.state_rows(case, evaluation_states.random[0], State(**found["state"]), eps)
-    random = evaluation_states.random
-    named = {
-        "residual": (result.forward, random),
-        "residual_on_path": (result.path, evaluation_states.path),
-        "residual_alone": (result.alone, random[:1]),
-        "residual_reloaded": (result.reloaded, random),
-    }
-    for metric, (answer, states) in named.items():
-        if answer.ok:
-            acceleration = Acceleration(**answer.result)
-            rows += equation.forward_rows(case.system, states, acceleration, metric, eps)
-    for metric, answer, count in (
-        ("residual", result.inverse, None),
-        ("residual_alone", result.inverse_alone, 1),
-    ):
-        if answer.ok:
-            states, acceleration = random[:count], evaluation_states.acceleration[:count]
-            torque = answer.result["torque"]
-            rows += equation.inverse_rows(case.system, states, acceleration, torque, metric, eps)
-    return _held(result, rows)
-
-
-def _held(result: CaseResult, rows: list[Row]) -> list[Row]:
-    """The rows at the bounds of a body that went in as it did."""
-    return [model.of_read_body(row) for row in rows] if result.via else rows
 
 
 def is_finite(state: State) -> bool:
@@ -207,7 +167,7 @@ def _rows_of_run(
     state, sweep = State(**answer.result["state"]), measured.sweep
     misreported = trajectory.reported_rows(truth, measured, state, result.precision)
     omega_dot = trajectory.omega_dot_rows(system, state, answer.result["omega_dot"], eps)
-    misreported += _held(result, omega_dot)
+    misreported += held(result, omega_dot)
     rows = invariants.rows(measured, findings, sweep.times)
     rows.append(trajectory.time_row(sweep, answer.result["time"], eps))
     rows += [*misreported, *trajectory.rows(measured, findings)]
