@@ -44,7 +44,8 @@ def growth_along(system: System, times: Array, states: State, rate: float) -> Ar
     From each sample twelve neighbours move to the next by Runge-Kutta steps; the maps between
     samples, each well conditioned, are then multiplied up, so that the growth may be as large as
     it will. Infinite from the first state on that is not finite, or turns so far to the next sample
-    that its neighbours cannot be followed there in MOST_STEPS: a trajectory that has blown up.
+    that its neighbours cannot be followed there in MOST_STEPS: a trajectory that has blown up, or a
+    damping that stops the body in far less than the time between samples.
     """
     w = states.angular_velocity
     finite = np.all(np.isfinite(w), axis=-1) & np.all(np.isfinite(states.orientation), axis=-1)
@@ -53,7 +54,10 @@ def growth_along(system: System, times: Array, states: State, rate: float) -> Ar
         turns = spans * np.max(np.abs(w), axis=-1)
         followed = finite & (STEPS_A_RADIAN * turns <= MOST_STEPS)
     count = len(times) if np.all(followed) else int(np.argmin(followed))
-    maps = _maps_between(system, np.asarray(times)[:count], states, rate)
+    with np.errstate(over="ignore", invalid="ignore"):
+        maps = _maps_between(system, np.asarray(times)[:count], states, rate)
+    known = np.all(np.isfinite(maps), axis=(-1, -2))
+    count = count if np.all(known) else int(np.argmin(known)) + 1
     starts = _starts(count)
     found = np.full(len(times), np.inf)
     products = np.empty((len(starts), 6, 6))

@@ -128,3 +128,14 @@ def test_state_may_diverge_at_once() -> None:
     nowhere = np.full((3, 3), np.nan)
     states = State(np.full((3, 4), np.nan), nowhere, nowhere, nowhere)
     assert np.all(np.isinf(growth_along(system([1, 2, 2.5]), np.arange(3.0), states, 1.0)))
+
+
+def test_growth_that_cannot_be_followed_is_infinite() -> None:
+    """A damping that stops the body in far less than the time between two samples."""
+    stiff = replace(DAMPED, load=replace(DAMPED.load, damping=np.array(1e7)))
+    times = np.linspace(0, 1, 5)
+    one = start((0.3, 0.1, -0.2))
+    still = State(*(np.repeat(values[None], 5, axis=0) for values in vars(one).values()))
+    found = growth_along(stiff, times, still, 1.0)
+    assert found[0] == 1.0
+    assert np.all(found[1:] == np.inf)
