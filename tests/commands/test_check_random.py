@@ -170,3 +170,15 @@ def test_every_built_in_scenario_can_be_written() -> None:
     for name in ("nesc-checkcase-2", "heavy-top", "driven-world", "damped-tumble", "free-bar"):
         found = scenario(name)
         assert scenario_of(_toml(to_toml(found)), name) == found
+
+
+def test_a_long_step_that_an_engine_refuses_is_skipped_where_nobody_chose_it() -> None:
+    how = {"integrators": "semi-implicit-euler", "shrink": False}
+    found = package.check(f"{WRONG}:RefusesLongSteps", scenarios="sphere", random=4, **how)
+    skipped = [one for one in found.results.values() if one.verdict == "skip"]
+    assert found.passed
+    assert {one.message.partition(":")[0] for one in skipped} == {
+        "raised at this step and at no finer one"
+    }
+    coarse = next(c for c in map(random_case, (0,) * 4, range(4)) if c.sweeps[0].steps in (13, 15))
+    assert not package.check(f"{WRONG}:RefusesLongSteps", scenarios=coarse.name, **how).passed

@@ -289,3 +289,12 @@ class GravityAlwaysDown(Wrong):
     def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
         down = np.array([0.0, 0.0, -np.linalg.norm(system.load.gravity)])
         return acceleration_of(replace(system, load=replace(system.load, gravity=down)))
+
+
+class RefusesLongSteps(ReferenceAdapter):
+    """Sound, but for steps that it does not take."""
+
+    def run(self, *arguments: object) -> Trajectory:
+        if arguments[3] in (13, 15):  # the coarsest runs of random systems
+            raise ArithmeticError("no solution")
+        return super().run(*arguments)

@@ -106,12 +106,26 @@ def _of_run(run: JudgedRun, gate: str, cause: Callable[[], str]) -> Result:
     return _of_rows(rows, cause, run.why)
 
 
+def _refuses_the_step(run: JudgedRun, runs: Sequence[JudgedRun]) -> bool:
+    """Whether an integrator raises at a step, and runs at a finer one of the same sweep.
+
+    An implicit step's equation need not have a solution where the step is long.
+    """
+    return run.outcome == "raised" and any(
+        other.integrator.name == run.integrator.name
+        and other.sweep.knob < run.sweep.knob
+        and other.outcome == "ok"
+        for other in runs
+    )
+
+
 def results_of(
-    judged: JudgedCase, found: EngineCase, cause: Cause
+    judged: JudgedCase, found: EngineCase, cause: Cause, *, drawn: bool = False
 ) -> Iterator[tuple[Check, Result]]:
     """The results of every check of one engine on one case; none without an exact trajectory.
 
-    cause: called only where a check fails; "" where no cause is found.
+    cause: called only where a check fails; "" where no cause is found.  drawn: the steps are those
+    of a system that nobody named; one that an engine refuses is skipped.
     """
     name, case = found.engine.name, judged.case
     if judged.truth is None:
@@ -124,6 +138,10 @@ def results_of(
         why = "nothing is constant under this load"
         yield Check(name, case.name, "invariants"), _of_rows(rows, lambda: "", why)
     for run in found.runs:
+        refused = drawn and _refuses_the_step(run, found.runs)
         for gate in GATES_OF_A_RUN:
             check = Check(name, case.name, gate, run.integrator.name, **knobs_of(run.sweep))
-            yield check, _of_run(run, gate, partial(cause, run))
+            if refused:
+                yield check, skipped(f"raised at this step and at no finer one: {run.reason}")
+            else:
+                yield check, _of_run(run, gate, partial(cause, run))

@@ -137,7 +137,9 @@ class Suite:
             for found in judged.engines:
                 if judged.truth is not None:
                     causes = self._causes.of_case(judged, found, SEED)
-                    self._results |= dict(results_of(judged, found, causes.text))
+                    drawn = case.name in self.selection.drawn
+                    results = results_of(judged, found, causes.text, drawn=drawn)
+                    self._results |= dict(results)
                     causes.release()
                 kept = judged.truth is not None and case.name not in self.selection.drawn
                 if kept and answered(found):
