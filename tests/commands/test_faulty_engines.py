@@ -150,7 +150,7 @@ def wait_until(condition: Callable[[], object]) -> None:
 def wait_for_worker(process: subprocess.Popen[str], name: str) -> int:
     for _ in range(600):
         for child in psutil.Process(process.pid).children():
-            if any(name in target for target in child.cmdline()[-2:-1]):
+            if any(name in target for target in child.cmdline()[-3:-2]):
                 return child.pid
         time.sleep(0.05)
     raise AssertionError(f"no worker for {name} came up")
