@@ -81,7 +81,8 @@ def _of_rows(rows: Sequence[Row], cause: Callable[[], str], unjudged: str) -> Re
     if verdict == "pass":
         return PASSED
     notes = dict.fromkeys(row.note for row in rows if row.note)
-    return skipped(f"not judged: {next(iter(notes), unjudged)}")
+    note = next(iter(notes), unjudged)
+    return skipped(f"not judged: {note.removeprefix('not judged: ')}")
 
 
 def _of_scenario(found: EngineCase, gate: str, cause: Callable[[], str]) -> Result:
