@@ -75,7 +75,7 @@ class Held:
 
 
 class _Search:
-    """Levels that are worked out when they are first asked for, and kept."""
+    """Levels that are worked out when they are first needed, and kept."""
 
     def __init__(self, source: Iterator[list[Candidate]]) -> None:
         self._source, self._known = source, list[list[Candidate]]()

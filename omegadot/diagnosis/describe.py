@@ -23,7 +23,7 @@ CLEAR_OF_ROUNDING = 1e4
 
 
 def description(evidence: Evidence) -> str:
-    """The difference of an engine's accelerations from the right ones in words; "" without any."""
+    """The difference of an engine's accelerations from the right ones, as text; "" without any."""
     parts = [
         _of(evidence, "omega-dot", evidence.found.angular - evidence.true.angular, "angular"),
         _of(evidence, "the linear acceleration", evidence.found.linear - evidence.true.linear, ""),

@@ -50,7 +50,7 @@ from omegadot.reference_impl.system import State
 
 
 class CaseCauses:
-    """The causes of one engine's failures on one case, worked out when they are asked for."""
+    """The causes of one engine's failures on one case, worked out when they are needed."""
 
     def __init__(
         self,

@@ -1,6 +1,6 @@
 """The equations of one body with every part of them apart, so that each can be another.
 
-A wrong engine's equation is one of these forms with a few parts changed, which is evaluated beside
+A wrong engine's equation is one of these forms with a few parts changed, which is evaluated next to
 others at the same states: the parts take a leading axis, the lane of a hypothesis.
 """
 

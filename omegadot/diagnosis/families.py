@@ -24,7 +24,7 @@ class Family:
     """One thing that is wrong by a number or a few.
 
     starts: where the search begins, each (k,); none where the family does not apply.  form: the
-    equation with these numbers.  text: the cause in words.  right: the numbers of the right
+    equation with these numbers.  text: the cause as text.  right: the numbers of the right
     equation, (k,), against which those found are held over several scenarios.
     """
 

@@ -36,10 +36,10 @@ def law_of(pairs: Sequence[tuple[Array, Array]], what: str, unit: str) -> str:
         return f"{each} is held above {number(low)} {unit}"
     if not few and _close(np.clip(requested, -high, high), acting, size):
         return f"{each} is limited to {number(high)} {unit} either way"
-    lengths, asked = (np.linalg.norm(v, axis=-1, keepdims=True) for v in (acting, requested))
+    lengths, due = (np.linalg.norm(v, axis=-1, keepdims=True) for v in (acting, requested))
     longest = float(np.max(lengths[changed.any(axis=-1)]))
     with np.errstate(divide="ignore", invalid="ignore"):
-        scaled = np.where(asked > 0.0, requested * np.minimum(1.0, longest / asked), 0.0)
+        scaled = np.where(due > 0.0, requested * np.minimum(1.0, longest / due), 0.0)
     if not few and _close(scaled, acting, size):
         return f"the size of {what} is limited to {number(longest)} {unit}"
     zero = np.abs(requested[changed])

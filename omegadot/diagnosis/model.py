@@ -84,8 +84,8 @@ def _by_numbers(part: str, requested: Array, back: Array, bodies: Sequence[Held]
         if scaled:
             return f"the {what} is {factor(size)} times what was requested"
         shown = vector(np.atleast_1d(back), np.atleast_1d(requested))
-        asked = vector(np.atleast_1d(requested), np.atleast_1d(back))
-        return f"the {what} reads back as {shown} m, where {asked} was requested"
+        due = vector(np.atleast_1d(requested), np.atleast_1d(back))
+        return f"the {what} reads back as {shown} m, where {due} was requested"
     if scaled:
         return f"the inertia is {factor(size)} times what was requested"
     more = back - requested

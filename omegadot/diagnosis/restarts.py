@@ -1,4 +1,4 @@
-"""Causes in what a run remembers: it is compared with itself, begun again at one of its samples."""
+"""Causes in what a run remembers: it is compared with itself, restarted at one of its samples."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def restart_cause(truth: Truth, result: CaseResult, run: JudgedRun) -> str:
     for shift, when in ((1, "late"), (-1, "early")):
         first, second = (rest[:-1], again[1:]) if shift > 0 else (rest[1:], again[:-1])
         if _alike(truth, sweep, sample + 1, first, second).all():
-            return f"the run is logged one sample {when}: begun again, it is one sample apart"
+            return f"the run is logged one sample {when}: restarted, it is one sample apart"
     first_apart = int(np.argmin(same))
     if first_apart > 1:
         steps = int(sweep.sample_steps[sample + first_apart] - sweep.sample_steps[sample])
         return (
-            f"the steps depend on how many went before: begun again at t = "
+            f"the steps depend on how many went before: restarted at t = "
             f"{sweep.times[sample]:.4g} s, the run is the same for a while and another after "
             f"{steps} steps"
         )

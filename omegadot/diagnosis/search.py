@@ -50,7 +50,7 @@ class Candidate:
         return own | ({self.family.part} if self.family else set())
 
     def text(self, system: System) -> str:
-        """The cause in words, with the numbers of this system."""
+        """The cause as text, with the numbers of this system."""
         if self.reading is not None:
             return self.reading.text
         texts = [_with_gravity(one, system) for one in self.fixed]
@@ -87,7 +87,7 @@ class Candidate:
 
 
 def _with_gravity(one: Hypothesis, system: System) -> str:
-    """A hypothesis in words; of another gravity also which one it comes to."""
+    """A hypothesis as text; of another gravity also which one it comes to."""
     text, requested = one.text.strip(), system.load.gravity
     acting = one.system(system).load.gravity
     if one.part != "gravity" or np.array_equal(acting, requested) or "component" not in text:
@@ -99,7 +99,7 @@ def _with_gravity(one: Hypothesis, system: System) -> str:
 def levels(evidence: Evidence, deep: bool = True) -> Iterator[list[Candidate]]:
     """What fits at every state: without numbers, with one, two at once, with three, with six.
 
-    A level is worked out when it is asked for. deep: also those that take long.
+    A level is worked out when it is needed. deep: also those that take long.
     """
     known = hypotheses(evidence.system)
     forms = [wrong_form([one], evidence.system) for one in known]

@@ -14,20 +14,20 @@ Refinements = dict[str, dict[Sweep, tuple[Sweep, Answer]]]
 def refine(driver: Driver, case: Case, runs: list[JudgedRun], finer: Refinements) -> list[str]:
     """Run the integrators that are still unresolved at half their finest step so far.
 
-    Error-controlled ones are run at the accuracy, or at the spacing of samples, that they ask for.
+    Error-controlled ones are run at the accuracy, or at the spacing of samples, that they need.
 
     The new runs go into `finer`. Returns the integrators that were run; none when all is decided,
     when a run failed, or after the most halvings.
     """
     finest = min(case.sweeps, key=lambda sweep: sweep.timestep)
     done = []
-    asked = {run.integrator.name: run.finer for run in runs if run.unresolved}
-    for name in sorted(asked):
+    wanted = {run.integrator.name: run.finer for run in runs if run.unresolved}
+    for name in sorted(wanted):
         known = finer.setdefault(name, {})
         halvings = len(known) + 1
         if halvings > MOST_HALVINGS or any(not answer.ok for _, answer in known.values()):
             continue
-        sweep = asked[name] or finest.refined(2**halvings)
+        sweep = wanted[name] or finest.refined(2**halvings)
         known[sweep] = (sweep, driver.run(case, name, sweep))
         done.append(name)
     return done

@@ -58,12 +58,12 @@ def short_sweep(sweep: Sweep) -> Sweep:
 def request_again(
     driver: Driver, case: Case, evaluation_states: EvaluationStates, result: CaseResult
 ) -> None:
-    """Have the coarsest run of every integrator begun again, in two ways or three, into `result`.
+    """Have the coarsest run of every integrator repeated, in two ways or three, into `result`.
 
     At the end another system is loaded and stepped, and then this one again; forward dynamics are
     requested then as well.
     """
-    sweeps = {i.name: _begun_again(case, i) for i in result.integrators}
+    sweeps = {i.name: _repeated(case, i) for i in result.integrators}
     runs = {name: result.runs.get((name, sweep.knob)) for name, sweep in sweeps.items()}
     steppers = [i for i in result.integrators if (run := runs[i.name]) is not None and run.ok]
     if not steppers:
@@ -88,7 +88,7 @@ def request_again(
         replay(integrator, "reloaded", case.initial)
 
 
-def _begun_again(case: Case, integrator: Integrator) -> Sweep:
+def _repeated(case: Case, integrator: Integrator) -> Sweep:
     """The coarsest run's first samples; all of them where the steps are the integrator's own, for
     these may depend on the length of the run.
     """

@@ -1,4 +1,4 @@
-"""Further requests to an integrator: first steps, and of unknown schemes runs begun again."""
+"""Further requests to an integrator: first steps, and restarts of unknown schemes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from omegadot.reference_impl.system import State
 def probe_steps(
     driver: Driver, case: Case, evaluation_states: EvaluationStates, result: CaseResult
 ) -> None:
-    """Have integrators take first steps, and unknown schemes begin runs again, into `result`.
+    """Have integrators take first steps, and unknown schemes restart runs, into `result`.
 
     A known scheme's runs are held against the reference's, which depend on nothing else.
     """

@@ -139,10 +139,10 @@ def _shrunk(
     kinds, found = kinds_of_failure(results, cases), []
     count = Count(report, "shrinking what fails", len(kinds)) if kinds else None
     for one in kinds:
-        words = ["omegadot", "check", given]
-        words += ["--integrator", one.integrator] if one.integrator else []
+        line = ["omegadot", "check", given]
+        line += ["--integrator", one.integrator] if one.integrator else []
         choice = next(choice for choice in selection.choices if choice.name == one.engine)
-        how = (selection.arguments.timeout, SEED, shlex.join(words))
+        how = (selection.arguments.timeout, SEED, shlex.join(line))
         found.append(shrink_check(one, cases[one.scenario], choice, *how))
         if count:
             count.advance()

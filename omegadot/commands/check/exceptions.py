@@ -122,7 +122,7 @@ def with_exceptions(
 ) -> Result:
     """A failure that is declared becomes "declared"; a pass that is declared to fail fails.
 
-    drawn: of a random system that nobody named. It may pass: no exception is about it.
+    drawn: of a random system that was not named. It may pass: no exception is about it.
     """
     exception = next((e for e in exceptions if e.matches(check)), None)
     if exception is None:

@@ -126,7 +126,7 @@ def results_of(
     """The results of every check of one engine on one case; none without an exact trajectory.
 
     cause: called only where a check fails; "" where no cause is found.  drawn: the steps are those
-    of a system that nobody named; one that an engine refuses is skipped.
+    of a system that was drawn, not named; one that an engine refuses is skipped.
     """
     name, case = found.engine.name, judged.case
     if judged.truth is None:

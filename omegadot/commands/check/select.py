@@ -46,7 +46,7 @@ class Arguments:
 class Selection:
     """What to check. unknown: engines that are required and unknown.  baseline: a folder.
 
-    drawn: names of the random systems that nobody named. They have no baseline.
+    drawn: names of the random systems that were drawn, not named. They have no baseline.
     """
 
     arguments: Arguments

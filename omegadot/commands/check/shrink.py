@@ -81,7 +81,7 @@ def shrink(
 ) -> Failing | None:
     """The simplest system on which this check's gate fails; None where it fails no more.
 
-    choice: the engine.  seed: of the evaluation states.  command: the words before the scenario.
+    choice: the engine.  seed: of the evaluation states.  command: the line up to the scenario.
     """
     chosen = replace(choice, integrators=(check.integrator,) if check.integrator else ())
     request = RunRequest([], [chosen], seed=seed, timeout=min(timeout, SECONDS))

@@ -12,7 +12,7 @@ from omegadot.commands.fit.scale import Scale
 from omegadot.commands.fit.spread import Spread
 from omegadot.reference_impl.system import Array
 
-# A standard error above this says that the data determine nothing.
+# A standard error above this means that the data determine nothing.
 MOST_MOMENT = 0.25  # of the largest moment: all that bodies have is within 0 and 1
 MOST_TURN = 0.35  # rad, of an axis: a quarter of a right angle
 MOST_SIZE = 0.5  # relative, of the inertia where a torque is given

@@ -97,7 +97,7 @@ def _options(
     """What `score` needs to read the trace as it was read here, and to begin where it begins."""
     own, given = settings_of(columns, map_file, settings)
     given |= {"time-offset": reading.stamps.text(0)}
-    found = [word for role, names in own for word in ("--column", f"{role}={','.join(names)}")]
+    found = [text for role, names in own for text in ("--column", f"{role}={','.join(names)}")]
     for key, value in given.items():
         if key != "time-offset" or value != "0":
             found += [f"--{key}", repr(value) if isinstance(value, float) else str(value)]

@@ -133,5 +133,5 @@ def _pair(value: float, error: float) -> tuple[str, str]:
 def _next(result: FitResult, out: Path) -> list[str]:
     """Where the file is, and the command that scores the trace by it."""
     samples = result.samples
-    words = ["omegadot", "score", samples.file, "--scenario", str(out), *result.options]
-    return [f"Scenario: {out}", f"Score the trace: {shlex.join(words)}"]
+    line = ["omegadot", "score", samples.file, "--scenario", str(out), *result.options]
+    return [f"Scenario: {out}", f"Score the trace: {shlex.join(line)}"]

@@ -48,7 +48,7 @@ class Mistake:
 
 
 def causes_of_trace(found: Measured) -> list[str]:
-    """The mistakes that the trace follows, in words; none where several unlike ones fit.
+    """The mistakes that the trace follows, as sentences; none where several unlike ones fit.
 
     It follows one from its start, or from each sample to the next.
     """
@@ -170,8 +170,8 @@ def _loads(system: System) -> Iterator[tuple[str, Load]]:
         field = {"gravity": "gravity", "the damping": "damping"}.get(
             name, "torque_body" if "body" in name else "torque_world"
         )
-        for words, factor in (("left out", 0.0), ("of the wrong sign", -1.0), ("doubled", 2.0)):
-            yield f"{name} is {words}", replace(load, **{field: factor * value})
+        for text, factor in (("left out", 0.0), ("of the wrong sign", -1.0), ("doubled", 2.0)):
+            yield f"{name} is {text}", replace(load, **{field: factor * value})
     torques = {"torque_body": load.torque_world, "torque_world": load.torque_body}
     if np.any(load.torque_body) or np.any(load.torque_world):
         yield "the torque is held in the other axes, body for world", replace(load, **torques)
@@ -180,8 +180,8 @@ def _loads(system: System) -> Iterator[tuple[str, Load]]:
             value = np.array(getattr(load, field), dtype=float)
             if value[axis] and np.sum(value != 0.0) > 1:
                 value[axis] *= -1.0
-                words = f"the torque about {'xyz'[axis]} is of the wrong sign"
-                yield words, replace(load, **{field: value})
+                text = f"the torque about {'xyz'[axis]} is of the wrong sign"
+                yield text, replace(load, **{field: value})
     if load.pivot is not None:
         c = system.body.center_of_mass
         if np.any(load.pivot != c):
@@ -223,14 +223,14 @@ def _starts(initial: State) -> Iterator[tuple[str, State]]:
     if norm(q[1:]) > 0.0:
         in_body, in_world = rotate_inverse(q, w), rotate(q, w)
         if np.any(in_body != w):
-            words = "the initial omega is taken to be in world axes"
-            yield words, replace(initial, angular_velocity=in_body)
+            text = "the initial omega is taken to be in world axes"
+            yield text, replace(initial, angular_velocity=in_body)
             yield "the initial omega is turned by R", replace(initial, angular_velocity=in_world)
-        words = "the initial attitude is transposed"
-        yield words, replace(initial, orientation=conjugate(q))
-        words = "the initial quaternion is read as (x, y, z, w)"
-        yield words, replace(initial, orientation=np.roll(q, 1))
-        words = "the initial attitude is left out"
-        yield words, replace(initial, orientation=np.array([1.0, 0.0, 0.0, 0.0]))
-    words = "the initial omega has the wrong sign"
-    yield words, replace(initial, angular_velocity=-w)
+        text = "the initial attitude is transposed"
+        yield text, replace(initial, orientation=conjugate(q))
+        text = "the initial quaternion is read as (x, y, z, w)"
+        yield text, replace(initial, orientation=np.roll(q, 1))
+        text = "the initial attitude is left out"
+        yield text, replace(initial, orientation=np.array([1.0, 0.0, 0.0, 0.0]))
+    text = "the initial omega has the wrong sign"
+    yield text, replace(initial, angular_velocity=-w)

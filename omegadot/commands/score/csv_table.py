@@ -184,7 +184,7 @@ def names_of(line: str, delimiter: str, widths: Sequence[int]) -> list[str]:
 
     Between blanks, a name may have a unit behind a single one: ``wx (deg/s)   wy (deg/s)``. A
     comment may name its columns so, or between commas, whatever separates the samples, and behind
-    a word such as ``columns:``.
+    a term such as ``columns:``.
     """
     line = _PREFIX.sub("", line)
     rows = [cells_of(line, other) for other in ",;" if not delimiter and other in line]

@@ -21,7 +21,7 @@ class ShiftedTheta:
     """``Θ(u) = θ(z + iη)``, up to a positive factor, as series in a clock's frame.
 
     real, imaginary: rows of a ``Series``, which lack factors of the frame.  start: the value at the
-    reference, u = 0 if not said otherwise.  slope: ``d arg Θ / du`` there.  gain: the mean of
+    reference, u = 0 unless given.  slope: ``d arg Θ / du`` there.  gain: the mean of
     ``d arg Θ / du`` over a period.  skew: ``arg Θ`` is ``gain u`` and a periodic part, which is the
     argument of the series less ``2π skew turn`` with the frame's turn.
     """

@@ -1,4 +1,4 @@
-"""Faults of branches: one load is forgotten where another acts, or in a case nobody tried."""
+"""Faults of branches: one load is forgotten where another acts, or in an untested case."""
 
 from __future__ import annotations
 
