@@ -17,7 +17,7 @@ from omegadot.diagnosis.steps import jump_cause, vanishing_steps
 from omegadot.diagnosis.trace import Trace, trace_causes
 from omegadot.gates.case import Case
 from omegadot.gates.equation import random_acceleration, random_states
-from omegadot.gates.vanishing_step import RADIANS, STEPS, Probe
+from omegadot.gates.vanishing_step import DOUBLE, Probe
 from omegadot.harness.arguments import case_of
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
@@ -222,7 +222,7 @@ def test_a_limit_on_the_speed_is_seen_in_steps_of_no_length() -> None:
     one = CASES[1]
     states = random_states(one, 12, [1])
     rate = 4.0 * float(np.max(np.abs(states.angular_velocity))) + 1.0
-    steps = np.full((12, 1), RADIANS / rate) / 2.0 ** np.arange(STEPS)
+    steps = np.full((12, 1), DOUBLE.radians / rate) / 2.0 ** np.arange(DOUBLE.count)
 
     def end(k: int, h: float) -> State:
         scheme = SCHEMES["semi-implicit-euler"]
