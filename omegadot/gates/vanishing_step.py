@@ -32,6 +32,7 @@ from omegadot.reference_impl.system import Array, State, System
 
 GATE = "scheme"
 METRIC = "rate_at_no_step"
+UNITS = {"attitude": "rad/s", "omega": "rad/s^2", "position": "m/s", "linear_momentum": "m/s^2"}
 UNDETERMINED = "not judged: in this precision the inverse of the inertia has no digit"
 PROBES = 6  # of the random states, and as many along the exact trajectory
 
@@ -125,12 +126,14 @@ class Limit:
         least: Array = np.min(np.where(np.isnan(shares), np.inf, shares), axis=0)
         return least
 
-    @property
-    def off(self) -> float:
-        """How far it is from the equation's at the worst of the states, relative."""
+    def off(self, unit: str) -> str:
+        """How far it is from the equation's at the worst of the states, relative or in its unit."""
         place = int(np.argmax(self.shares()))
-        apart = np.min(norm(self.found - self.expected)[:, place])
-        return float(apart / max(float(norm(self.expected[place])), float(np.finfo(float).tiny)))
+        apart = float(np.min(norm(self.found - self.expected)[:, place]))
+        size = float(norm(self.expected[place]))
+        if size <= float(np.max(self.bound[:, place])):
+            return f"it is {apart:.1e} {unit} instead of nothing"
+        return f"the relative error is {apart / size:.1e}"
 
 
 @dataclass(frozen=True)
@@ -232,20 +235,19 @@ def rows(
         if wrong and ROUNDINGS_PER_EVALUATION * eps * scale.largest >= scale.smallest:
             worst = max(shares, key=lambda channel: shares[channel])
             return [Row(GATE, worst, METRIC, shares[worst], "1", 1.0, "info", UNDETERMINED)]
-        notes = {channel: _note(one, factor, digits) for channel, one in found.items()}
+        notes = {
+            channel: _note(one, factor, digits, UNITS[channel]) for channel, one in found.items()
+        }
         return [
             within(GATE, channel, METRIC, share, "1", 1.0, notes[channel])
             for channel, share in shares.items()
         ]
 
 
-def _note(limit: Limit, factor: float | None, digits: int) -> str:
+def _note(limit: Limit, factor: float | None, digits: int, unit: str) -> str:
     if factor == 0.0:
         return "a run of one step does not move"
     if factor is not None:
         off = f"{100 * abs(factor - 1.0):.{digits}g} %"
         return f"steps are {off} too {'long' if factor > 1 else 'short'}"
-    return (
-        f"as the step vanishes, its rate is not the equation's: the relative error is "
-        f"{limit.off:.1e}"
-    )
+    return f"as the step vanishes, its rate is not the equation's: {limit.off(unit)}"

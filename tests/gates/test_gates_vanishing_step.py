@@ -80,7 +80,9 @@ def test_the_nearer_of_two_ranges_counts() -> None:
     found = expected + apart
     limit = Limit(found, expected, np.full((2, 2), 1e-3))
     assert limit.shares() == pytest.approx([0.0, 2.0])
-    assert limit.off == pytest.approx(1e-3)
+    assert limit.off("m/s") == "the relative error is 1.0e-03"
+    still = Limit(apart, np.zeros((2, 3)), np.full((2, 2), 1e-3))
+    assert still.off("m/s") == "it is 2.0e-03 m/s instead of nothing"
     assert Limit(found, expected, np.full((2, 2), np.nan)).shares().tolist() == [0.0, np.inf]
 
 
