@@ -105,7 +105,8 @@ class Yardstick:
         omega-dot, so that an ill-conditioned inertia counts), and what was added earlier grows by
         at most `growth`: ``theta = c eps (n + 1) (k + h A / rate) growth``, for attitude in rad and
         for omega / rate alike. The others follow from it to first order; a velocity that is kept in
-        body axes is turned by theta. faster: of a scheme whose velocity grows beyond the exact one,
+        body axes is turned by theta, as far as steps do not turn it back: ``h rate`` of it a
+        radian. faster: of a scheme whose velocity grows beyond the exact one,
         and rounding with it, see `faster`; ``m |v|^2`` may be among the terms of omega-dot.
         """
         amount = ROUNDINGS_PER_STEP * self.eps * (steps + 1.0)
@@ -114,7 +115,7 @@ class Yardstick:
         time = timestep * steps
         swift = self.speed * faster
         speed = amount * (swift + self.gravity * time) + theta * self.rate * self.scale.lever
-        speed = speed + theta * swift
+        speed = speed + theta * swift * np.minimum(1.0, timestep * self.rate**2 * time)
         reach = amount * self.reach + time * speed + theta * self.scale.lever
         return {
             "omega": theta,
