@@ -24,6 +24,7 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import AccelerationOf, acceleration_of
 from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
+from omegadot.reference_impl.schemes.motion import slope_of
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 
@@ -115,13 +116,11 @@ def _solved(mistake: Mistake, times: Array) -> State | None:
     q, v = to_coordinates(mistake.system, mistake.initial, "com-world")
     motion = motion_over(mistake.system, "com-world", mistake.acceleration)
     count, evaluations = len(q), iter(range(MOST_EVALUATIONS))
+    slope = slope_of(motion, count)
 
     def rate(_: float, y: Array) -> Array:
         next(evaluations)
-        unit = motion.normalize(y[:count])
-        return np.concatenate(
-            (motion.coordinate_rate(y[:count], y[count:]), motion.acceleration(unit, y[count:]))
-        )
+        return slope(y)
 
     start, span = np.concatenate((q, v)), (0.0, float(times[-1]))
     small = PRECISION * max(1e-6, float(norm(v[-3:])))

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from omegadot.reference_impl.system import Array
 
 Velocity = Callable[[Array, Array], Array]  # of (q, v) or (u, v): (..., n)
@@ -64,3 +66,17 @@ class Motion:
 def per_matrix(h: float | Array) -> Any:
     """The step, a float or (..., 1), shaped to multiply matrices (..., n, m)."""
     return h if isinstance(h, float) else h[..., None]
+
+
+def slope_of(motion: Motion, size: int) -> Callable[[Array], Array]:
+    """The derivative of q and v in one vector, (n,), for a general solver of such equations.
+
+    size: of q, the coordinates of which are normalised before accelerations are taken there.
+    """
+
+    def slope(y: Array) -> Array:
+        q, v = y[:size], y[size:]
+        turned = motion.coordinate_rate(q, v)
+        return np.concatenate((turned, motion.acceleration(motion.normalize(q), v)))
+
+    return slope
