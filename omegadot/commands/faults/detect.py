@@ -96,7 +96,8 @@ def stages(
     for integrator in result.integrators:
         own = replace(result, integrators=(integrator,))
         runs = _runs(pool, prepared, driver, own, whole)
-        rows = _shared_rows(prepared, CaseResult(reloaded=own.reloaded))
+        repeated = CaseResult(reloaded=own.reloaded, precision=own.precision)
+        rows = _shared_rows(prepared, repeated)
         yield _stage([*rows, *(row for run in runs for row in run.rows)], own, tuple(runs))
 
 
