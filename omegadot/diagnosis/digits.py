@@ -43,8 +43,3 @@ def factor(value: float) -> str:
 def limits(low: float, high: float, unit: str) -> str:
     """What lies between two numbers: both, in digits that differ."""
     return f"{number(low, high)} and {number(high, low)} {unit}".strip()
-
-
-def is_about(value: float, whole: float, uncertainty: float = 1e-9) -> bool:
-    """Whether a fitted number is a given one, but for its own rounding."""
-    return bool(abs(value - whole) <= uncertainty * max(1.0, abs(whole)) and np.isfinite(value))
