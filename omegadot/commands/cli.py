@@ -101,7 +101,7 @@ def _sentence(error: Exception) -> str | None:
         return text if text.endswith(".") else f"{text}."
     from omegadot.adapters.registry import AdapterError
     from omegadot.harness.usage import UsageError
-    from omegadot.reference_impl.precision import ExtendedTypeError
+    from omegadot.reference_impl.arithmetic.precision import ExtendedTypeError
     from omegadot.reports.record.schema import RecordError
     from omegadot.scenarios import ScenarioError
 

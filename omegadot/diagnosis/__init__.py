@@ -1,1 +1,1 @@
-"""Causes that are tried on an engine's own answers, one file a gate."""
+"""Causes that are tried on an engine's own answers, a folder for each kind of mistake."""

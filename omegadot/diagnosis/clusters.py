@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from omegadot.gates.bounds.likeness import likeness
+from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Sweep
-from omegadot.gates.likeness import likeness
-from omegadot.gates.measured_run import ROTATION
-from omegadot.gates.scales import norm
+from omegadot.gates.errors.measured_run import ROTATION
 from omegadot.gates.truth import Truth
 from omegadot.harness.outcome import EngineCase, JudgedCase
 from omegadot.reference_impl.rotations import attitude_angle

@@ -15,8 +15,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.across import Across
-from omegadot.diagnosis.equation import (
+from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.wrong_equation import (
     ALONG,
     FORWARD,
     equation_causes,
@@ -24,9 +24,9 @@ from omegadot.diagnosis.equation import (
     known_difference,
     scene_of,
 )
-from omegadot.diagnosis.model import model_causes
+from omegadot.diagnosis.models.wrong_model import model_causes
 from omegadot.diagnosis.runs import run_causes
-from omegadot.diagnosis.steps import (
+from omegadot.diagnosis.stepping.vanishing_steps import (
     VanishingSteps,
     jump_cause,
     jumps,
@@ -35,11 +35,11 @@ from omegadot.diagnosis.steps import (
     vanishing_steps,
 )
 from omegadot.gates.case import Case
-from omegadot.gates.equation import (
+from omegadot.gates.rows import Row
+from omegadot.gates.states.equation import (
     EvaluationStates,
     evaluation_states_of,
 )
-from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun

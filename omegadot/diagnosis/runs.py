@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from omegadot.diagnosis.reported_run import ReportedRun, reported_run, reported_run_guesses
-from omegadot.diagnosis.reported_run_causes import CAUSES_REPORTED, begin_apart
-from omegadot.diagnosis.reported_sample_causes import intervals, omega_dot_late, one_field
-from omegadot.diagnosis.restarts import restart_cause
-from omegadot.diagnosis.stepping import CAUSES_OF_STEPPING, CAUSES_OF_UNKNOWN, MOST_STEPS
+from omegadot.diagnosis.reported.run import ReportedRun, reported_run, reported_run_guesses
+from omegadot.diagnosis.reported.run_causes import CAUSES_REPORTED, begin_apart
+from omegadot.diagnosis.reported.sample_causes import intervals, omega_dot_late, one_field
+from omegadot.diagnosis.stepping.restarts import restart_cause
+from omegadot.diagnosis.stepping.wrong_steps import (
+    CAUSES_OF_STEPPING,
+    CAUSES_OF_UNKNOWN,
+    MOST_STEPS,
+)
 from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult

@@ -1,1 +1,1 @@
-"""The gates, in order: model, equation, scheme, invariants, trajectory, cost. Small files all."""
+"""The gates: what they judge (`case`, `truth`), how (`bounds`, `errors`), and one file a gate."""

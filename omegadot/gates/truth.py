@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.bounds.scales import EPS, eps_of
 from omegadot.gates.case import Sweep
-from omegadot.gates.measures import Yardstick
-from omegadot.gates.scales import EPS, eps_of
 from omegadot.reference_impl.coordinates import Coordinates, canonical
 from omegadot.reference_impl.system import Array, State, System
 

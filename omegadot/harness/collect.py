@@ -11,11 +11,11 @@ import numpy as np
 import polars as pl
 
 from omegadot import __version__
+from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case, Sweep, knobs_of
-from omegadot.gates.exact import exact_rows, floor_rows
 from omegadot.gates.rows import Row, worst
-from omegadot.gates.scales import eps_of
-from omegadot.gates.trajectory import time_row
+from omegadot.gates.runs.exact import exact_rows, floor_rows
+from omegadot.gates.runs.trajectory import time_row
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase, Outcome
 from omegadot.reference_impl.system import Array, State

@@ -14,9 +14,9 @@ from typing import Any
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.equation import EvaluationStates
-from omegadot.gates.repeats import How
-from omegadot.gates.vanishing_step import Probe
+from omegadot.gates.runs.repeats import How
+from omegadot.gates.states.equation import EvaluationStates
+from omegadot.gates.steps.vanishing_step import Probe
 from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer, WorkerProcess

@@ -8,21 +8,20 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import (
-    accuracy,
-    accuracy_followed,
-    cost,
-    invariants,
-    phase,
-    rounding_step,
-    scheme,
-    trajectory,
-)
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.measured_run import Declared, MeasuredRun, findings_of, measure, orders_for
+from omegadot.gates.errors import rounding_step
+from omegadot.gates.errors.measured_run import (
+    Declared,
+    MeasuredRun,
+    findings_of,
+    measure,
+    orders_for,
+)
+from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
+from omegadot.gates.runs import cost, invariants, phase, trajectory
+from omegadot.gates.steps import accuracy, accuracy_followed, scheme
 from omegadot.gates.truth import Truth
-from omegadot.gates.verdicts import Finding
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge_engine import held
 from omegadot.harness.repeats import rows_again

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from omegadot.gates import equation, model
+from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
-from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import eps_of
+from omegadot.gates.states import equation, model
+from omegadot.gates.states.equation import EvaluationStates
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.wire import body_from

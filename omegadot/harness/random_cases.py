@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.case import Case
-from omegadot.gates.scales import EPS, norm
 from omegadot.harness.arguments import case_of
 from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.schemes.scheme import kinds_of

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import repeats
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.equation import EvaluationStates
-from omegadot.gates.measured_run import MeasuredRun
-from omegadot.gates.repeats import How
+from omegadot.gates.errors.measured_run import MeasuredRun
 from omegadot.gates.rows import Row
+from omegadot.gates.runs import repeats
+from omegadot.gates.runs.repeats import How
+from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import CaseResult, Driver

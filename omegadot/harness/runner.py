@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.equation import evaluation_states_of
-from omegadot.gates.scheme import comparison_keys
+from omegadot.gates.states.equation import evaluation_states_of
+from omegadot.gates.steps.scheme import comparison_keys
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.engines import Engines, outcome_of

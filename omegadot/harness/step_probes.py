@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates import restart, vanishing_step
-from omegadot.gates.accuracy import finest_of, tolerated_by
+from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.equation import EvaluationStates
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import eps_of
+from omegadot.gates.states.equation import EvaluationStates
+from omegadot.gates.steps import restart, vanishing_step
+from omegadot.gates.steps.accuracy import finest_of, tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.reference_impl.schemes import SCHEMES

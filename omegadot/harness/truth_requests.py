@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from omegadot.gates.bounds.measures import Yardstick
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.measures import Yardstick
 from omegadot.gates.truth import Companion, SchemeKey, Truth
 from omegadot.harness.drive import Driver
 from omegadot.reference_impl.companion import Steps

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.reference_impl.components import (
+from omegadot.reference_impl.arithmetic.components import (
     Number,
     Numbers,
     arctan,

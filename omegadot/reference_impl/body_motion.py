@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL, WORLD
-from omegadot.reference_impl.components import (
+from omegadot.reference_impl.arithmetic.components import (
     Formula,
     Numbers,
     constants,
@@ -16,6 +15,7 @@ from omegadot.reference_impl.components import (
     in_components,
     rotated,
 )
+from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL, WORLD
 from omegadot.reference_impl.coordinates import Coordinates, acceleration_in, from_coordinates
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.inertia import lever, moving_inertia

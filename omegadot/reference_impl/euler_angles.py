@@ -12,7 +12,7 @@ from math import cos, sin
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from omegadot.reference_impl.components import Numbers, cross3
+from omegadot.reference_impl.arithmetic.components import Numbers, cross3
 from omegadot.reference_impl.rotations import conjugate, quaternion_product
 from omegadot.reference_impl.system import Array
 

@@ -17,8 +17,8 @@ from math import sqrt
 
 import numpy as np
 
+from omegadot.reference_impl.arithmetic.components import formulas_of
 from omegadot.reference_impl.body_motion import body_motion
-from omegadot.reference_impl.components import formulas_of
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.euler_angles import Angles, angle_rates, angles_of, quaternion_of
 from omegadot.reference_impl.rotations import normalize

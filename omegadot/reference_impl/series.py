@@ -17,14 +17,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.reference_impl.kinematics import place_on_pivot
-from omegadot.reference_impl.precision import (
+from omegadot.reference_impl.arithmetic.precision import (
     LEAST_EPS,
     extended,
     in_doubles,
     to_double,
     to_extended,
 )
+from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.series_equations import Equations, G, Q, T, W, equations_of
 from omegadot.reference_impl.system import Array, State, System

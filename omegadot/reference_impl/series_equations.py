@@ -17,9 +17,9 @@ from decimal import Decimal
 
 import numpy as np
 
+from omegadot.reference_impl.arithmetic.precision import from_decimals, to_double, to_extended
 from omegadot.reference_impl.closed_forms.digits import apply, cross, many_digits
 from omegadot.reference_impl.closed_forms.given import Given, principal_axes
-from omegadot.reference_impl.precision import from_decimals, to_double, to_extended
 from omegadot.reference_impl.rotations import normalize, quaternion_product, rotate_inverse
 from omegadot.reference_impl.system import Array, State, System
 

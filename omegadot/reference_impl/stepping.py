@@ -8,8 +8,8 @@ from itertools import repeat
 
 import numpy as np
 
+from omegadot.reference_impl.arithmetic.components import in_lanes
 from omegadot.reference_impl.body_motion import body_motion
-from omegadot.reference_impl.components import in_lanes
 from omegadot.reference_impl.coordinates import (
     Coordinates,
     canonical,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from omegadot.reference_impl.precision import like, to_extended
+from omegadot.reference_impl.arithmetic.precision import like, to_extended
 from omegadot.reference_impl.system import Array
 
 

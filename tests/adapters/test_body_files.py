@@ -17,10 +17,10 @@ from omegadot.adapters.mujoco import importer as mujoco_importer
 from omegadot.adapters.pinocchio import model as pinocchio_model
 from omegadot.adapters.protocol import Adapter, Format, UnsupportedError
 from omegadot.adapters.registry import BUILT_IN, build_adapter
-from omegadot.gates.equation import forward_rows, random_states
-from omegadot.gates.model import body_rows, of_read_body
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_OF_A_READER, ROUNDINGS_PER_EVALUATION
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import EPS, ROUNDINGS_OF_A_READER, ROUNDINGS_PER_EVALUATION
+from omegadot.gates.states.equation import forward_rows, random_states
+from omegadot.gates.states.model import body_rows, of_read_body
 from omegadot.reference_impl.system import State, System
 
 Misread = Callable[[str], str]

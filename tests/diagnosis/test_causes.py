@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from omegadot.diagnosis.across import Across, Scene
-from omegadot.diagnosis.digits import factor, number
-from omegadot.diagnosis.equation import FORWARD, equation_causes, inverse_causes
-from omegadot.diagnosis.evidence import of_forward_dynamics
-from omegadot.diagnosis.features import features_of
-from omegadot.diagnosis.steps import jump_cause, vanishing_steps
-from omegadot.diagnosis.trace import Trace, trace_causes
+from omegadot.diagnosis.equations.across import Across, Scene
+from omegadot.diagnosis.equations.evidence import of_forward_dynamics
+from omegadot.diagnosis.equations.wrong_equation import FORWARD, equation_causes, inverse_causes
+from omegadot.diagnosis.stepping.trace import Trace, trace_causes
+from omegadot.diagnosis.stepping.vanishing_steps import jump_cause, vanishing_steps
+from omegadot.diagnosis.wording.digits import factor, number
+from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.case import Case
-from omegadot.gates.equation import random_acceleration, random_states
-from omegadot.gates.vanishing_step import DOUBLE, Probe
+from omegadot.gates.states.equation import random_acceleration, random_states
+from omegadot.gates.steps.vanishing_step import DOUBLE, Probe
 from omegadot.harness.arguments import case_of
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia

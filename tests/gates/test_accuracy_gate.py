@@ -13,7 +13,10 @@ import numpy as np
 import pytest
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.accuracy import (
+from omegadot.gates.case import Sweep
+from omegadot.gates.errors.measured_run import CHANNELS
+from omegadot.gates.errors.verdicts import Finding
+from omegadot.gates.steps.accuracy import (
     AccuracyRun,
     finest_of,
     fixed,
@@ -22,10 +25,7 @@ from omegadot.gates.accuracy import (
     tolerated_by,
     usual_for,
 )
-from omegadot.gates.accuracy_followed import findings_of, rows
-from omegadot.gates.case import Sweep
-from omegadot.gates.measured_run import CHANNELS
-from omegadot.gates.verdicts import Finding
+from omegadot.gates.steps.accuracy_followed import findings_of, rows
 from omegadot.reference_impl.schemes.scheme import every_channel
 
 TIMES = np.linspace(0.0, 1.0, 21)

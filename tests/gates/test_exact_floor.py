@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from omegadot.gates.exact import UNITS, floor_rows, floors, slopes
-from omegadot.gates.measures import Yardstick
-from omegadot.gates.scales import EPS
+from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.bounds.scales import EPS
+from omegadot.gates.runs.exact import UNITS, floor_rows, floors, slopes
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.system import Body, Load, State, System

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from omegadot.gates.equation import (
+from omegadot.gates.bounds.scales import EPS, body_scale, linear_size, norm, torque_size
+from omegadot.gates.states.equation import (
     BOUND,
     forward_rows,
     inverse_rows,
@@ -13,7 +14,6 @@ from omegadot.gates.equation import (
     random_states,
     reported_rows,
 )
-from omegadot.gates.scales import EPS, body_scale, linear_size, norm, torque_size
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import (
     center_of_mass_acceleration,

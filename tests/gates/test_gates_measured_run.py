@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.gates.bounds.measures import Yardstick
 from omegadot.gates.case import Sweep
-from omegadot.gates.measured_run import (
+from omegadot.gates.errors.measured_run import (
     CHANNELS,
     Declared,
     MeasuredRun,
@@ -16,7 +17,6 @@ from omegadot.gates.measured_run import (
     measure,
     orders_for,
 )
-from omegadot.gates.measures import Yardstick
 from omegadot.gates.truth import Companion, SchemeKey, Truth, scheme_key
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, Body, Load, State, System

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS, Yardstick
-from omegadot.gates.scales import EPS, angular_size
+from omegadot.gates.bounds.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS, Yardstick
+from omegadot.gates.bounds.scales import EPS, angular_size
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, Body, Load, State, System

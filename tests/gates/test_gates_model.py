@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from omegadot.gates.model import body_rows, state_rows
+from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import EPS
+from omegadot.gates.states.model import body_rows, state_rows
 from omegadot.reference_impl.system import Body, State, System
 
 BODY = Body(np.array(2.0), np.array([0.0, 0.0, 4.0]), np.diag([1.0, 2.0, 2.5]))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from omegadot.gates.orders import (
+from omegadot.gates.errors.orders import (
     LARGEST_RISE,
     NEAR_ROUNDING,
     ORDER_TOLERANCE,

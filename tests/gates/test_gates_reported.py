@@ -15,11 +15,11 @@ from in_process import judged
 from omegadot.adapters.protocol import Integrator, Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.prepared import Pool, Prepared
+from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
-from omegadot.gates.measured_run import CHANNELS, MeasuredRun
+from omegadot.gates.errors.measured_run import CHANNELS, MeasuredRun
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import EPS
-from omegadot.gates.trajectory import _length, _start
+from omegadot.gates.runs.trajectory import _length, _start
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, State
 

@@ -14,8 +14,8 @@ import pytest
 from omegadot.adapters.protocol import Integrator
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.case import Sweep
-from omegadot.gates.restart import refused, restart_of, row
 from omegadot.gates.rows import Row
+from omegadot.gates.steps.restart import refused, restart_of, row
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.scheme import every_channel

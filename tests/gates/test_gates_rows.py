@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from omegadot import gates
-from omegadot.gates import invariants, trajectory
+from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
-from omegadot.gates.measured_run import CHANNELS, MeasuredRun
-from omegadot.gates.scales import EPS
-from omegadot.gates.verdicts import Finding
+from omegadot.gates.errors.measured_run import CHANNELS, MeasuredRun
+from omegadot.gates.errors.verdicts import Finding
+from omegadot.gates.runs import invariants, trajectory
 
 TIMES = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
 ERROR = np.array([0.0, 1.0, 5.0, 3.0, 4.0])

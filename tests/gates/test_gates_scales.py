@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from omegadot.gates.scales import (
+from omegadot.gates.bounds.scales import (
     EPS,
     ROUNDINGS_PER_EVALUATION,
     ROUNDINGS_PER_STEP,

@@ -13,8 +13,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from omegadot.gates.scales import EPS
-from omegadot.gates.vanishing_step import (
+from omegadot.gates.bounds.scales import EPS
+from omegadot.gates.steps.vanishing_step import (
     DOUBLE,
     Limit,
     Probe,

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from omegadot.gates.orders import ORDER_TOLERANCE, SATURATE, VANISHED, ObservedOrder
-from omegadot.gates.verdicts import Evidence, Finding, judge
+from omegadot.gates.errors.orders import ORDER_TOLERANCE, SATURATE, VANISHED, ObservedOrder
+from omegadot.gates.errors.verdicts import Evidence, Finding, judge
 
 BOUND = np.array([1e-15, 1e-12, 1e-11])
 SLOW = ObservedOrder(0.1, True)

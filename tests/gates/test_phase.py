@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from in_process import builtin, truth_of
 
-from omegadot.gates import phase
-from omegadot.gates.interpolation import Hermite, error_factor, zero_crossings
-from omegadot.gates.measured_run import measure
+from omegadot.gates.errors.measured_run import measure
+from omegadot.gates.runs import phase
+from omegadot.gates.runs.interpolation import Hermite, error_factor, zero_crossings
 from omegadot.reference_impl.closed_forms import problem_of
 from omegadot.reference_impl.closed_forms.digits import many_digits
 from omegadot.reference_impl.closed_forms.euler_poinsot import constants_of

@@ -8,11 +8,11 @@ from command_line import WRONG
 from in_process import builtin, declared, judged, truth_of
 
 from omegadot.adapters.registry import build_adapter
+from omegadot.gates.bounds.likeness import likeness, share_of
 from omegadot.gates.case import Sweep
-from omegadot.gates.likeness import likeness, share_of
-from omegadot.gates.measured_run import Declared, MeasuredRun
+from omegadot.gates.errors.measured_run import Declared, MeasuredRun
 from omegadot.gates.rows import worst
-from omegadot.gates.scheme import comparison_keys, order_rows, orders_seen
+from omegadot.gates.steps.scheme import comparison_keys, order_rows, orders_seen
 from omegadot.gates.truth import SchemeKey
 from omegadot.reference_impl.schemes import SCHEMES
 

@@ -12,16 +12,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from omegadot.gates import equation, model, phase, trajectory, vanishing_step
+from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.bounds.scales import EPS, eps_of
 from omegadot.gates.case import Sweep
-from omegadot.gates.exact import floors
-from omegadot.gates.measured_run import CHANNELS, Declared, MeasuredRun
-from omegadot.gates.measures import Yardstick
-from omegadot.gates.rounding_step import rows as rounding_rows
+from omegadot.gates.errors.measured_run import CHANNELS, Declared, MeasuredRun
+from omegadot.gates.errors.rounding_step import rows as rounding_rows
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import EPS, eps_of
+from omegadot.gates.runs import phase, trajectory
+from omegadot.gates.runs.exact import floors
+from omegadot.gates.states import equation, model
+from omegadot.gates.steps import vanishing_step
+from omegadot.gates.steps.vanishing_step import DOUBLE, SINGLE, Probe, ladder_of, probe_of
 from omegadot.gates.truth import Truth
-from omegadot.gates.vanishing_step import DOUBLE, SINGLE, Probe, ladder_of, probe_of
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from omegadot.gates.orders import ObservedOrder, observed_order
-from omegadot.gates.verdicts import Evidence, judge
+from omegadot.gates.errors.orders import ObservedOrder, observed_order
+from omegadot.gates.errors.verdicts import Evidence, judge
 
 BOUND = np.full(3, 1e-12)
 LARGE = np.array([0.0, 1e-3, 1e-2])

@@ -31,7 +31,7 @@ from harness.error_controlled import (
 from omegadot.adapters.exact.adapter import ExactAdapter
 from omegadot.adapters.protocol import Adapter
 from omegadot.gates.case import ACCURACIES, Case
-from omegadot.gates.equation import EvaluationStates, evaluation_states_of
+from omegadot.gates.states.equation import EvaluationStates, evaluation_states_of
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
 from omegadot.harness.in_process import driver_of

@@ -26,8 +26,8 @@ from single_engines import (
 
 from omegadot.commands.faults.detect import Judgement, judge
 from omegadot.commands.faults.prepared import Pool, Prepared
-from omegadot.gates.equation import evaluation_states_of
-from omegadot.gates.scales import eps_of
+from omegadot.gates.bounds.scales import eps_of
+from omegadot.gates.states.equation import evaluation_states_of
 from omegadot.harness.arguments import case_of
 from omegadot.harness.collect import trajectories_of_run
 from omegadot.harness.outcome import EngineCase, JudgedCase, Outcome

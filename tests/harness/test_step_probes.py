@@ -18,7 +18,7 @@ from omegadot.commands.faults.catalogue import FAULTS
 from omegadot.commands.faults.detect import Judgement, Nameless, judge, without_scheme
 from omegadot.commands.faults.prepared import Pool
 from omegadot.gates.case import Sweep
-from omegadot.gates.restart import restart_of
+from omegadot.gates.steps.restart import restart_of
 from omegadot.reference_impl.coordinates import from_coordinates
 from omegadot.reference_impl.energy import rotational_kinetic_energy
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Adapter
-from omegadot.gates.measured_run import CHANNELS
-from omegadot.gates.measures import Yardstick
-from omegadot.gates.scales import (
+from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.bounds.scales import (
     EPS,
     ROUNDINGS_PER_EVALUATION,
     body_scale,
@@ -17,6 +16,7 @@ from omegadot.gates.scales import (
     norm,
     torque_size,
 )
+from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import SchemeKey, scheme_key
 from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.inertia import inertia_of_moments

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from random_motions import STEPS, Motion, Wanted, random_motion, timestep_of, trajectory
 from test_metamorphic_equation import engine
 
-from omegadot.gates.measures import Yardstick
-from omegadot.gates.scales import EPS
+from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.rotations import attitude_angle

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from random_motions import ROUNDINGS, Motion, Wanted, random_motion
 
-from omegadot.gates.scales import EPS, body_scale, norm, torque_size
+from omegadot.gates.bounds.scales import EPS, body_scale, norm, torque_size
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State
 

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from omegadot.reference_impl.precision import DOUBLE_DOUBLE, LONG_DOUBLE, VARIABLE, extended_type
+from omegadot.reference_impl.arithmetic.precision import (
+    DOUBLE_DOUBLE,
+    LONG_DOUBLE,
+    VARIABLE,
+    extended_type,
+)
 
 
 @pytest.fixture(params=[LONG_DOUBLE, DOUBLE_DOUBLE])

@@ -12,7 +12,7 @@ from decimal import Decimal
 import mpmath as mp
 import numpy as np
 
-from omegadot.reference_impl.precision import from_decimals
+from omegadot.reference_impl.arithmetic.precision import from_decimals
 from omegadot.reference_impl.system import Array, State, System
 
 DIGITS, ORDER = 40, 46

@@ -11,8 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from omegadot.reference_impl.double_double import DoubleDouble
-from omegadot.reference_impl.double_words import fast_two_sum, split, two_product, two_sum
+from omegadot.reference_impl.arithmetic.double_double import DoubleDouble
+from omegadot.reference_impl.arithmetic.double_words import (
+    fast_two_sum,
+    split,
+    two_product,
+    two_sum,
+)
 
 U = Fraction(1, 2**53)
 

@@ -27,6 +27,7 @@ from reference_cases import (
     vectors,
 )
 
+from omegadot.reference_impl.arithmetic.precision import extended, to_double
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import (
@@ -45,7 +46,6 @@ from omegadot.reference_impl.motion import (
     torque_for,
     torque_free_angular_acceleration,
 )
-from omegadot.reference_impl.precision import extended, to_double
 from omegadot.reference_impl.rotations import rotate, rotate_inverse, turn_in_body
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System

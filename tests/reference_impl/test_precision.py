@@ -9,11 +9,8 @@ import numpy as np
 import pytest
 from reference_cases import EPS, start, turned
 
-from omegadot.reference_impl import precision
-from omegadot.reference_impl.exact_solution import ExactSolution, exact_solution
-from omegadot.reference_impl.from_scenario import initial_state_of, system_of
-from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
-from omegadot.reference_impl.precision import (
+from omegadot.reference_impl.arithmetic import precision
+from omegadot.reference_impl.arithmetic.precision import (
     DOUBLE_DOUBLE,
     LONG_DOUBLE,
     VARIABLE,
@@ -23,6 +20,9 @@ from omegadot.reference_impl.precision import (
     in_doubles,
     to_double,
 )
+from omegadot.reference_impl.exact_solution import ExactSolution, exact_solution
+from omegadot.reference_impl.from_scenario import initial_state_of, system_of
+from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.series import solve_series
 from omegadot.reference_impl.symmetric import inverse
 from omegadot.reference_impl.system import Acceleration, Body, Load, State, System

@@ -8,11 +8,11 @@ from many_digits import exact_states
 from reference_cases import DAMPED, DRIVEN, EPS, FREE, TOP, rows, start, system, turned
 
 from omegadot.reference_impl import series
+from omegadot.reference_impl.arithmetic.precision import extended, to_double, to_extended
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.momentum import angular_momentum
-from omegadot.reference_impl.precision import extended, to_double, to_extended
 from omegadot.reference_impl.rotations import (
     attitude_angle,
     exp_quaternion,

@@ -9,7 +9,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Description, Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
-from omegadot.diagnosis.restep import step_again
+from omegadot.diagnosis.stepping.restep import step_again
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import acceleration_of

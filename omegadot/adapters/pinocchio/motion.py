@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from omegadot.reference_impl.arithmetic.components import rotated
 from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL
-from omegadot.reference_impl.components import rotated
 from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.system import Array, Load
 

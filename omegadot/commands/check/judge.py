@@ -15,10 +15,10 @@ from omegadot.commands.check.result import (
     error,
     skipped,
 )
-from omegadot.gates import repeats
 from omegadot.gates.case import knobs_of
-from omegadot.gates.exact import exact_rows
 from omegadot.gates.rows import Row, worst
+from omegadot.gates.runs import repeats
+from omegadot.gates.runs.exact import exact_rows
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
 from omegadot.reports.text.numbers import listed, short

@@ -16,8 +16,8 @@ from omegadot.commands.check.result import GATES_OF_A_RUN, GATES_OF_A_SCENARIO, 
 from omegadot.commands.check.simpler import SIMPLER
 from omegadot.commands.check.tables import Tables, ingredients, tables_of
 from omegadot.gates.case import Case
+from omegadot.gates.errors.verdicts import UNDECIDED
 from omegadot.gates.rows import Row
-from omegadot.gates.verdicts import UNDECIDED
 from omegadot.harness.arguments import case_of
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import EngineChoice

@@ -10,8 +10,8 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.commands.choose.ruler import CHANNELS, NoTruthError, Ruler
 from omegadot.commands.choose.search import Edge, Search, Trials, edge_of, order_between
 from omegadot.commands.choose.trial import Row, Trial
-from omegadot.gates.accuracy import finest_of, order_of, steps_per_radian
 from omegadot.gates.case import Sweep
+from omegadot.gates.steps.accuracy import finest_of, order_of, steps_per_radian
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import State

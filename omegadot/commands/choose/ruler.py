@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from omegadot.commands.choose.trial import Measured
+from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.interpolation import Hermite, error_factor, zero_crossings
-from omegadot.gates.measures import Yardstick
-from omegadot.gates.phase import middle_axis
-from omegadot.gates.scales import EPS, norm
+from omegadot.gates.runs.interpolation import Hermite, error_factor, zero_crossings
+from omegadot.gates.runs.phase import middle_axis
 from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State, System

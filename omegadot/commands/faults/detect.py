@@ -16,8 +16,8 @@ from omegadot.adapters.protocol import Adapter, Description, Integrator
 from omegadot.commands.faults.fault import OtherSystem, Spoiled
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.commands.faults.restepped import Accelerated
+from omegadot.gates.errors.verdicts import UNDECIDED
 from omegadot.gates.rows import Row
-from omegadot.gates.verdicts import UNDECIDED
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.harness.in_process import driver_of
 from omegadot.harness.judge import JudgedRun, judge_case

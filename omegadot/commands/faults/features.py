@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case
-from omegadot.gates.scales import norm
 from omegadot.harness.random_cases import features_of as common_features
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.symmetric import apply

@@ -13,7 +13,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.features import features_of
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.equation import EvaluationStates, evaluation_states_of
+from omegadot.gates.states.equation import EvaluationStates, evaluation_states_of
 from omegadot.gates.truth import Truth, scheme_key
 from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.drive import Driver

@@ -7,7 +7,7 @@ from numpy.random import Generator
 
 from omegadot.adapters.protocol import Adapter, Integrator
 from omegadot.commands.faults.published import NONE, Published, attitude, free_body, see
-from omegadot.gates.scales import EPS, norm
+from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.exact_solution import exact_states
 from omegadot.reference_impl.motion import forward_dynamics

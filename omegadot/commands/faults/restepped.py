@@ -5,7 +5,7 @@ from __future__ import annotations
 from omegadot.adapters.protocol import Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.fault import Spoiled
-from omegadot.diagnosis.restep import on_rows, step_again
+from omegadot.diagnosis.stepping.restep import on_rows, step_again
 from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.motion import AccelerationOf, acceleration_of

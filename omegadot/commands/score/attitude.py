@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import Table, TraceError
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import conjugate, quaternion_product
 from omegadot.reference_impl.system import Array
 

@@ -9,7 +9,7 @@ from omegadot.commands.score.attitude import wxyz
 from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.own_units import factor_of
 from omegadot.commands.score.world import Shifted, Turned, origin_given
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
 
 

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from omegadot.commands.score.measured import Measured, distance, filled
-from omegadot.diagnosis import trace as diagnosis
-from omegadot.diagnosis.tensors import mistaken_inertias
-from omegadot.gates.scales import norm
+from omegadot.diagnosis.models.tensors import mistaken_inertias
+from omegadot.diagnosis.stepping import trace as diagnosis
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.cross_product import cross

@@ -14,7 +14,7 @@ from omegadot.commands.score.stamps import EXACT, instant, plain
 from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import Trace
 from omegadot.commands.units import UNITS
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import attitude_angle, normalize
 from omegadot.reference_impl.system import Array
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from omegadot.commands.score.trace import Trace
-from omegadot.gates.scales import EPS
+from omegadot.gates.bounds.scales import EPS
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.euler_angles import Angles
 from omegadot.reference_impl.flight_schemes import FLIGHT_SCHEMES

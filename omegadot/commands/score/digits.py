@@ -14,7 +14,7 @@ from math import gcd
 
 import numpy as np
 
-from omegadot.gates.scales import EPS
+from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.system import Array
 
 # Enough to have met the longest number of a column, few enough to look at one by one.

@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.commands.score.trace import Trace
-from omegadot.gates.measures import Yardstick
-from omegadot.gates.scales import ROUNDINGS_PER_EVALUATION, ROUNDINGS_PER_STEP, norm
+from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION, ROUNDINGS_PER_STEP, norm
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.closed_forms import closed_form_of
 from omegadot.reference_impl.energy import total_energy

@@ -26,11 +26,11 @@ from omegadot.commands.score.steps import (
 )
 from omegadot.commands.score.trace import trace_of
 from omegadot.commands.score.world import Shifted, Turned, shifted_world, turned_world
+from omegadot.gates.bounds.measures import INVARIANT_CHANNELS
 from omegadot.gates.case import Case
-from omegadot.gates.measured_run import CHANNELS
-from omegadot.gates.measures import INVARIANT_CHANNELS
+from omegadot.gates.errors.measured_run import CHANNELS
+from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
-from omegadot.gates.verdicts import Finding
 from omegadot.reference_impl.euler_angles import Angles
 from omegadot.reference_impl.system import Array
 

@@ -13,13 +13,13 @@ from omegadot.commands.score.exact_trajectory import (
     exact_trajectory,
 )
 from omegadot.commands.score.trace import Trace
+from omegadot.gates.bounds.measures import INVARIANT_CHANNELS
+from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case
-from omegadot.gates.interpolation import Hermite
-from omegadot.gates.measured_run import CHANNELS
-from omegadot.gates.measures import INVARIANT_CHANNELS
-from omegadot.gates.phase import flip_rows
+from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import norm
+from omegadot.gates.runs.interpolation import Hermite
+from omegadot.gates.runs.phase import flip_rows
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.system import Array, State, System

@@ -15,7 +15,7 @@ from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import trace_of
 from omegadot.commands.units import UNITS
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 
 # The motion has moved by then, and an error of the simulator's has not grown large.
 FIRST = 0.25

@@ -12,12 +12,12 @@ from omegadot.commands.score.judged import GATES, Judged
 from omegadot.commands.score.own_units import factor_of
 from omegadot.commands.score.require import Requirement, requirement_row
 from omegadot.commands.score.steps import Comparison
-from omegadot.gates.equation import forward_rows
-from omegadot.gates.invariants import HORIZONS
-from omegadot.gates.likeness import Likeness
-from omegadot.gates.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
+from omegadot.gates.bounds.likeness import Likeness
+from omegadot.gates.bounds.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
+from omegadot.gates.bounds.scales import norm, torque_size
 from omegadot.gates.rows import Row
-from omegadot.gates.scales import norm, torque_size
+from omegadot.gates.runs.invariants import HORIZONS
+from omegadot.gates.states.equation import forward_rows
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.system import Acceleration
 

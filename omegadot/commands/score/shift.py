@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.commands.score.measured import Measured
-from omegadot.gates.phase import FARTHEST, MOST_ITERATIONS
-from omegadot.gates.scales import EPS, norm
+from omegadot.gates.bounds.scales import EPS, norm
+from omegadot.gates.runs.phase import FARTHEST, MOST_ITERATIONS
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, normalize, rotation_between
 from omegadot.reference_impl.system import Array

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from omegadot.commands.score.dates import as_date, is_date, seconds_of
 from omegadot.commands.score.digits import is_single, open_time, printed_whole
 from omegadot.commands.score.table import Table, TraceError
-from omegadot.gates.scales import EPS
+from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.system import Array
 
 # Stamps this much larger than what they span are differences of large numbers: epochs are.

@@ -12,7 +12,7 @@ import numpy as np
 from omegadot.commands.score.declared import KNOWN, Declared
 from omegadot.commands.score.exact_trajectory import Rounding, joined, part_of
 from omegadot.commands.score.measured import Measured, distance, filled
-from omegadot.gates.likeness import Likeness, likeness, share_of
+from omegadot.gates.bounds.likeness import Likeness, likeness, share_of
 from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.coordinates import Coordinates, distinct
 from omegadot.reference_impl.flight_schemes import FLIGHT_SCHEMES, step_flight

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from omegadot.commands.score.dates import decimal_seconds
 from omegadot.commands.score.digits import DECIMAL_COMMA, NOT_FINITE, NUMBER, open_of, open_time
-from omegadot.gates.scales import EPS
+from omegadot.gates.bounds.scales import EPS
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
 

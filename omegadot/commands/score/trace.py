@@ -11,7 +11,7 @@ from omegadot.commands.score.attitude import attitude_of, world_turn
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.stamps import check_rising
 from omegadot.commands.score.table import TraceError
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, System

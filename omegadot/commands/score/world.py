@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from omegadot.commands.score.measured import Measured, partial
 from omegadot.commands.score.shift import Shift
-from omegadot.gates.scales import EPS, norm
+from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array
 

@@ -12,10 +12,10 @@ import numpy as np
 from omegadot.adapters.protocol import Description
 from omegadot.commands.versions.metric import RATIO, Name
 from omegadot.diagnosis.scheme_study.probes import PROBES
+from omegadot.gates.bounds.measures import Yardstick
 from omegadot.gates.case import Case, Sweep
-from omegadot.gates.equation import random_acceleration, random_states
-from omegadot.gates.measured_run import CHANNELS
-from omegadot.gates.measures import Yardstick
+from omegadot.gates.errors.measured_run import CHANNELS
+from omegadot.gates.states.equation import random_acceleration, random_states
 from omegadot.harness.arguments import case_of
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.exact_solution import exact_states

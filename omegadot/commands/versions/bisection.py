@@ -13,7 +13,7 @@ from omegadot.commands.versions.figures import Wanted
 from omegadot.commands.versions.gallery import Gallery
 from omegadot.commands.versions.metric import KINDS, Name, matching, terms_of, title, unknown_metric
 from omegadot.diagnosis.scheme_study.probes import PROBES
-from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.harness.usage import UsageError, nearest
 
 Look = Callable[[str], Portrait]

@@ -17,8 +17,8 @@ from omegadot.commands.versions.measure import Sitting
 from omegadot.commands.versions.metric import Name
 from omegadot.commands.versions.release import Product, version_of
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load
-from omegadot.gates.accuracy import usual_for
 from omegadot.gates.case import Case
+from omegadot.gates.steps.accuracy import usual_for
 from omegadot.harness.arguments import API
 from omegadot.harness.engines import outcome_of
 from omegadot.workers.harness_end.process import WorkerProcess

@@ -23,9 +23,9 @@ from omegadot.commands.versions.metric import Figure, Name
 from omegadot.diagnosis.scheme_study.probes import PROBES, Probe
 from omegadot.diagnosis.scheme_study.study import IntegratorStudy, ProbeStudy
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, load, one_of, stepper_of
-from omegadot.gates.accuracy import usual_for
 from omegadot.gates.case import Case
-from omegadot.gates.model import of_read_body
+from omegadot.gates.states.model import of_read_body
+from omegadot.gates.steps.accuracy import usual_for
 from omegadot.reference_impl.system import System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of

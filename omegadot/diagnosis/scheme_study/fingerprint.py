@@ -11,7 +11,7 @@ import numpy as np
 
 from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
 from omegadot.diagnosis.scheme_study.subject import Stepper
-from omegadot.gates.measured_run import CHANNELS
+from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import SchemeKey
 from omegadot.harness.judge import is_finite
 from omegadot.reference_impl.companion import CompanionRun, Steps, companion

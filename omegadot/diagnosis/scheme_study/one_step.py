@@ -18,8 +18,8 @@ from omegadot.diagnosis.scheme_study.orders import (
 )
 from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
 from omegadot.diagnosis.scheme_study.subject import Stepper
-from omegadot.gates.measured_run import CHANNELS
-from omegadot.gates.measures import Yardstick
+from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.harness.judge import is_finite
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.series import solve_series

@@ -12,7 +12,7 @@ from functools import cache
 
 import numpy as np
 
-from omegadot.gates.measures import Yardstick
+from omegadot.gates.bounds.measures import Yardstick
 from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import normalize

@@ -10,9 +10,9 @@ from decimal import Decimal
 
 import numpy as np
 
+from omegadot.reference_impl.arithmetic.double_words import SPLITTER
 from omegadot.reference_impl.closed_forms.digits import TWO, cos_sin, fewer_digits, pi
 from omegadot.reference_impl.closed_forms.times import Grid, Times
-from omegadot.reference_impl.double_words import SPLITTER
 from omegadot.reference_impl.system import Array
 
 ARCS = 4096  # to a turn; half of one to the fifth power, over 5!, is below eps/100

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from omegadot.reference_impl.double_words import split
+from omegadot.reference_impl.arithmetic.double_words import split
 from omegadot.reference_impl.system import Array
 
 COLUMNS = 512

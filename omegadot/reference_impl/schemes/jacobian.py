@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from omegadot.reference_impl.components import in_lanes
+from omegadot.reference_impl.arithmetic.components import in_lanes
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.schemes.motion import Motion, Velocity
 from omegadot.reference_impl.system import Array

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import lru_cache
 
-from omegadot.reference_impl.components import formulas_of
+from omegadot.reference_impl.arithmetic.components import formulas_of
 from omegadot.reference_impl.schemes.motion import Motion, Velocity
 from omegadot.reference_impl.schemes.runge_kutta import joined, step_coupled
 from omegadot.reference_impl.schemes.scheme import Scheme, every_channel

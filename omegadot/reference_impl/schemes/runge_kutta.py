@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from omegadot.reference_impl.components import Numbers, formulas_of, in_components
+from omegadot.reference_impl.arithmetic.components import Numbers, formulas_of, in_components
 from omegadot.reference_impl.schemes.motion import Motion, Velocity
 from omegadot.reference_impl.system import Array
 

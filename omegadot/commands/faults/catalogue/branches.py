@@ -10,7 +10,7 @@ import numpy as np
 from omegadot.commands.faults.catalogue.load import other_load, pushed
 from omegadot.commands.faults.fault import fault_by
 from omegadot.commands.faults.restepped import Accelerated
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
 from omegadot.reference_impl.loads import applied_torque, damping_torque

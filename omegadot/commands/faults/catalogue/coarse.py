@@ -14,7 +14,7 @@ from omegadot.commands.faults.catalogue.stepping import StepEnds, step_end
 from omegadot.commands.faults.fault import fault, fault_by
 from omegadot.commands.faults.features import LONG_STEP
 from omegadot.commands.faults.restepped import Restepped
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import damping_torque

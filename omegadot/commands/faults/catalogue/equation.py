@@ -8,8 +8,8 @@ import numpy as np
 
 from omegadot.commands.faults.catalogue.load import extra_torque
 from omegadot.commands.faults.fault import Spoiled, fault_by
-from omegadot.diagnosis.restep import on_rows, step_again
-from omegadot.gates.scales import norm
+from omegadot.diagnosis.stepping.restep import on_rows, step_again
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.rotations import rotate

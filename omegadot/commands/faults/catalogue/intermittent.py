@@ -11,7 +11,7 @@ from omegadot.commands.faults.catalogue.equation import gyroscopic_term, inverse
 from omegadot.commands.faults.catalogue.load import extra_torque, other_load, pushed
 from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.commands.faults.restepped import Restepped
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.loads import applied_torque, gravity_torque, torque
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme

@@ -14,8 +14,8 @@ from omegadot.commands.faults.catalogue.model import UnseenBody
 from omegadot.commands.faults.catalogue.stepping import step_end
 from omegadot.commands.faults.fault import fault_by
 from omegadot.commands.faults.features import HEAVY, LIGHT, SMALL_INERTIA
-from omegadot.diagnosis import step_ends
-from omegadot.gates.scales import norm
+from omegadot.diagnosis.stepping import step_ends
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.loads import applied_torque
 from omegadot.reference_impl.rotations import rotation_between, turn_in_body
 from omegadot.reference_impl.system import Array, Body, Load, State, System

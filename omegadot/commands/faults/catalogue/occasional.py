@@ -17,7 +17,7 @@ from omegadot.commands.faults.catalogue.stepping import SecretTorque, StepEnds
 from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.commands.faults.features import DROWSY
 from omegadot.commands.faults.restepped import Accelerated
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System

@@ -13,7 +13,7 @@ from omegadot.commands.faults.catalogue.load import other_load
 from omegadot.commands.faults.catalogue.model import UnseenBody, other_body
 from omegadot.commands.faults.fault import Spoiled, fault_by, logged
 from omegadot.commands.faults.features import NEAR
-from omegadot.diagnosis.step_ends import single_precision
+from omegadot.diagnosis.stepping.step_ends import single_precision
 from omegadot.reference_impl.system import Array, Body, Load
 
 SINGLE = ("single precision", "digits")

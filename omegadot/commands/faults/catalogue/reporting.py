@@ -10,8 +10,8 @@ from omegadot.adapters.protocol import Trajectory
 from omegadot.commands.faults.catalogue.logging import Run, other_run, rows
 from omegadot.commands.faults.catalogue.stepping import long_step_end, step_end
 from omegadot.commands.faults.fault import Spoiled, fault, logged
-from omegadot.diagnosis import step_ends
-from omegadot.gates.scales import norm
+from omegadot.diagnosis.stepping import step_ends
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import normalize, turn_in_body
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 

@@ -14,8 +14,8 @@ from omegadot.commands.faults.catalogue.load import ExtraTorque
 from omegadot.commands.faults.catalogue.logging import Run, other_run
 from omegadot.commands.faults.fault import Spoiled, fault_by, logged
 from omegadot.commands.faults.restepped import Restepped
-from omegadot.diagnosis import step_ends
-from omegadot.gates.scales import norm
+from omegadot.diagnosis.stepping import step_ends
+from omegadot.gates.bounds.scales import norm
 from omegadot.harness.random_cases import FASTEST, SLEEPY
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.momentum import angular_momentum

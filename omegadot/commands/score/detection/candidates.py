@@ -18,7 +18,7 @@ from omegadot.commands.score.detection.numbers import (
     stacked,
 )
 from omegadot.commands.units import UNITS
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import (
     attitude_angle,
     conjugate,

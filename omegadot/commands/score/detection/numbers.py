@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from omegadot.commands.score.attitude import MOST_OFF, off_rotation, wxyz
 from omegadot.commands.units import UNITS
-from omegadot.gates.scales import norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import attitude_angle, normalize
 from omegadot.reference_impl.system import Array
 

@@ -1,0 +1,1 @@
+"""Causes of wrong accelerations and torques: wrong equations, with and without numbers."""

@@ -1,0 +1,113 @@
+"""What an engine did at known states of one scenario, and how far a hypothesis is from it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.diagnosis.equations.equation_form import Form, accelerations, stacked
+from omegadot.gates.bounds.scales import body_scale, linear_size, norm, torque_size
+from omegadot.gates.states.equation import BOUND
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+# A fitted number has rounding of its own, of about as many terms as there are components.
+SLACK = 4.0
+SCREENED = 10  # states at which every hypothesis is tried; only what fits there is tried at all
+LANES = 512
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Accelerations of one engine at states (n,) of a system.
+
+    source: where they come from, "forward" for forward dynamics, "steps" for steps that vanish.
+    angular_bound and linear_bound: (n,) rad/s^2 and m/s^2, what rounding may account for.
+    """
+
+    source: str
+    system: System
+    states: State
+    found: Acceleration
+    angular_bound: Array
+    linear_bound: Array
+
+    @cached_property
+    def true(self) -> Acceleration:
+        """The right accelerations."""
+        return forward_dynamics(self.system, self.states)
+
+    @cached_property
+    def sound(self) -> NDArray[np.bool_]:
+        """(n,): the states at which the engine is right."""
+        return self.shares(self.true) <= 1.0
+
+    def shares(self, candidate: Acceleration) -> Array:
+        """(..., n): the distance of a candidate (..., n, 3) from the engine's, in bounds."""
+        angular = _share(norm(self.found.angular - candidate.angular), self.angular_bound)
+        linear = _share(norm(self.found.linear - candidate.linear), self.linear_bound)
+        return np.maximum(angular, linear)
+
+    def fits(self, candidate: Acceleration, slack: float = SLACK) -> bool:
+        """Whether a candidate is the engine's at every state."""
+        return bool(np.all(self.shares(candidate) <= slack))
+
+    def visible(self, candidate: Acceleration) -> bool:
+        """Whether a candidate differs from the right equation beyond rounding."""
+        return not Evidence.fits(self._with(self.true), candidate)
+
+    def _with(self, found: Acceleration) -> Evidence:
+        rest = (self.angular_bound, self.linear_bound)
+        return Evidence(self.source, self.system, self.states, found, *rest)
+
+    def fitting(self, forms: Sequence[Form | None]) -> list[int]:
+        """The numbers of the forms that are the engine's at every state."""
+        few = self.at(np.linspace(0, len(self.angular_bound) - 1, SCREENED).round().astype(int))
+        if len(few.angular_bound) == 0:
+            return []
+        known = [k for k, form in enumerate(forms) if form is not None]
+        kept: list[int] = []
+        for begin in range(0, len(known), LANES):
+            lanes = known[begin : begin + LANES]
+            tried = accelerations(stacked([f for k in lanes if (f := forms[k])]), few.states)
+            close = np.all(few.shares(tried) <= SLACK, axis=-1)
+            kept += [k for k, one in zip(lanes, close, strict=True) if one]
+        return [k for k in kept if (f := forms[k]) and self.fits(accelerations(f, self.states))]
+
+    def at(self, places: NDArray[np.intp]) -> Evidence:
+        """The evidence of these states alone."""
+        found = Acceleration(self.found.angular[places], self.found.linear[places])
+        bounds = (self.angular_bound[places], self.linear_bound[places])
+        return Evidence(self.source, self.system, self.states[places], found, *bounds)
+
+    def weighted(self, one: Acceleration, other: Acceleration) -> Array:
+        """All components of a difference in one row, each state's in parts of its bound."""
+        angular = (one.angular - other.angular) / self.angular_bound[:, None]
+        linear = (one.linear - other.linear) / self.linear_bound[:, None]
+        row = np.concatenate([np.ravel(angular), np.ravel(linear)])
+        return np.where(np.isfinite(row), row, 0.0)
+
+
+def _share(apart: Array, bound: Array) -> Array:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(apart == 0.0, 0.0, apart / bound)
+    return np.where(np.isnan(share), np.inf, share)
+
+
+def of_forward_dynamics(system: System, states: State, found: Acceleration) -> Evidence:
+    """Forward dynamics at states, within the equation gate's bounds."""
+    true, smallest = forward_dynamics(system, states), body_scale(system).smallest
+    sizes = [torque_size(system, states, one) for one in (true, _finite(found, true))]
+    linear = [linear_size(system, states, one) for one in (true, _finite(found, true))]
+    bounds = (BOUND * np.maximum(*sizes) / smallest, BOUND * np.maximum(*linear))
+    return Evidence("forward", system, states, found, *bounds)
+
+
+def _finite(found: Acceleration, true: Acceleration) -> Acceleration:
+    """An engine's own terms may be larger than the right ones, and then round more."""
+    pairs = zip(vars(found).values(), vars(true).values(), strict=True)
+    return Acceleration(*(np.where(np.isfinite(one), one, two) for one, two in pairs))

@@ -1,0 +1,79 @@
+"""What engines make of a body's numbers, and of what they report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from omegadot.diagnosis.equations.hypotheses.hypothesis import (
+    Hypothesis,
+    applied,
+    given,
+    of_body,
+    of_form,
+    of_load,
+    single,
+)
+
+
+def center_hypotheses() -> Iterator[Hypothesis]:
+    """Each of them."""
+    yield of_body(
+        "the centre of mass is ignored",
+        "center",
+        lambda body, s: {"center_of_mass": 0 * body.center_of_mass},
+    )
+    yield of_body(
+        "the centre of mass has the wrong sign",
+        "center",
+        lambda body, s: {"center_of_mass": -body.center_of_mass},
+    )
+
+
+def report_hypotheses() -> Iterator[Hypothesis]:
+    """Each of them."""
+    yield of_form(
+        "the linear acceleration looks like that of the body's origin",
+        "report",
+        lambda f, s: {"offset": f.offset - s.body.center_of_mass},
+    )
+    yield of_form(
+        "the linear acceleration is the spatial one: omega x v is left out of it",
+        "report",
+        lambda f, s: {"spatial": np.asarray(-1.0)},
+    )
+    yield of_form(
+        "the linear acceleration counts omega x v twice",
+        "report",
+        lambda f, s: {"spatial": np.asarray(1.0)},
+    )
+
+
+def precision_hypotheses() -> Iterator[Hypothesis]:
+    """Each of them."""
+    kept = "is kept in single precision"
+    yield of_body(f"the mass {kept}", "precision", lambda body, s: {"mass": single(body.mass)})
+    yield of_body(
+        f"the inertia {kept}", "precision", lambda body, s: {"inertia": single(body.inertia)}
+    )
+    yield of_body(
+        f"the centre of mass {kept}",
+        "precision",
+        lambda body, s: {"center_of_mass": single(body.center_of_mass)},
+    )
+    yield of_body(
+        "mass, centre of mass and inertia are kept in single precision",
+        "precision",
+        lambda body, s: {name: single(value) for name, value in vars(body).items()},
+    )
+    for name in ("gravity", "damping", "pivot"):
+        yield of_load(
+            f"the {name} {kept}".replace("the gravity", "gravity"),
+            "precision",
+            given(
+                name,
+                lambda k, one: {k: None if getattr(one, k) is None else single(getattr(one, k))},
+            ),
+        )
+    yield of_load(f"the applied torque {kept}", "precision", lambda one: applied(one, single))

@@ -1,0 +1,127 @@
+"""What engines make of the inertia, where omega-dot is solved for and in the gyroscopic term."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from omegadot.diagnosis.equations.equation_form import form_of
+from omegadot.diagnosis.equations.hypotheses.hypothesis import (
+    Hypothesis,
+    diagonal,
+    given,
+    moved,
+    of_body,
+    of_form,
+    own_inertia,
+)
+from omegadot.diagnosis.models.tensors import other_tensors
+from omegadot.reference_impl.system import Array, System
+
+
+def spin_hypotheses() -> Iterator[Hypothesis]:
+    """Each of them."""
+    for text, factor in (("is missing", 0), ("has the wrong sign", -1), ("counts twice", 2)):
+        yield of_form(
+            f"the gyroscopic term {text}",
+            "spin",
+            given(factor, lambda k, f, s: {"spin": k * f.spin}),
+        )
+    yield of_form(
+        "the gyroscopic term is formed with the inertia's diagonal alone",
+        "spin",
+        lambda f, s: {"spin": diagonal(f.spin)},
+    )
+    yield of_form(
+        "the gyroscopic term is formed with the inertia about the centre of mass, "
+        "not about the pivot",
+        "spin",
+        lambda f, s: {"spin": own_inertia(s)},
+    )
+    yield of_form(
+        "the gyroscopic term is formed with the inertia about the body's origin",
+        "spin",
+        lambda f, s: {"spin": own_inertia(s) + moved(s)},
+    )
+
+
+def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
+    """Of one system: its tensor, in the solve, in the gyroscopic term or in both."""
+    own, names = own_inertia(system), other_tensors(system)
+    about = form_of(system).spin - own
+    for text, tensor in names.items():
+        if not np.linalg.eigvalsh(tensor)[0] > 0.0 or np.array_equal(tensor, own):
+            continue
+        yield of_body(
+            f"in the dynamics, {text}",
+            f"inertia:{text}",
+            given(text, lambda t, b, s: _named(s, t)),
+        )
+        yield of_form(
+            f"where omega-dot is solved for, {text}",
+            f"inertia:{text}",
+            given(text, lambda t, f, s: {"solve": np.linalg.inv(_about(s) + _tensor(s, t))}),
+        )
+        yield of_form(
+            f"in the gyroscopic term, {text}",
+            f"inertia:{text}",
+            given(text, lambda t, f, s: {"spin": _about(s) + _tensor(s, t)}),
+        )
+    yield of_form(
+        "where omega-dot is solved for, only the diagonal of the whole inertia is used",
+        "inertia",
+        lambda f, s: {"solve": np.diag(1.0 / np.diag(f.spin))},
+    )
+    yield of_form(
+        "in the dynamics, only the diagonal of the whole inertia is used",
+        "inertia",
+        lambda f, s: _both(diagonal(f.spin)),
+    )
+    if np.any(about):
+        own_alone = "the inertia about the centre of mass is taken, not that about the pivot"
+        yield of_form(
+            f"where omega-dot is solved for, {own_alone}",
+            "inertia",
+            lambda f, s: {"solve": np.linalg.inv(own_inertia(s))},
+        )
+        yield of_form(
+            f"in the dynamics, {own_alone}",
+            "inertia",
+            lambda f, s: {"solve": np.linalg.inv(own_inertia(s)), "spin": own_inertia(s)},
+        )
+        yield of_form(
+            "the parallel-axis theorem has the lever squared on the diagonal alone",
+            "inertia",
+            lambda f, s: _both(own_inertia(s) + _squared(s)),
+        )
+        yield of_form(
+            "the parallel-axis theorem is applied twice",
+            "inertia",
+            lambda f, s: _both(2.0 * f.spin - own_inertia(s)),
+        )
+
+
+def _tensor(system: System, text: str) -> Array:
+    return other_tensors(system).get(text, own_inertia(system))
+
+
+def _named(system: System, text: str) -> dict[str, Any]:
+    tensor = _tensor(system, text)
+    if not np.linalg.eigvalsh(tensor)[0] > 0.0:
+        raise ValueError(text)
+    return {"inertia": tensor}
+
+
+def _about(system: System) -> Array:
+    return form_of(system).spin - own_inertia(system)
+
+
+def _squared(system: System) -> Array:
+    r = form_of(system).offset
+    return float(system.body.mass) * float(r @ r) * np.eye(3)
+
+
+def _both(tensor: Array) -> dict[str, Any]:
+    return {"solve": np.linalg.inv(tensor), "spin": tensor}

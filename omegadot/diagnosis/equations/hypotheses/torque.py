@@ -1,0 +1,116 @@
+"""What engines make of an applied torque."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import permutations
+from typing import Any
+
+import numpy as np
+
+from omegadot.diagnosis.equations.equation_form import Form
+from omegadot.diagnosis.equations.hypotheses.hypothesis import (
+    AXES,
+    Hypothesis,
+    applied,
+    given,
+    moved,
+    of_form,
+    of_load,
+    over_diagonal,
+    own_inertia,
+)
+from omegadot.reference_impl.system import Array, System
+
+
+def torque_hypotheses() -> Iterator[Hypothesis]:
+    """Each of them."""
+    for text, factor in (("is missing", 0), ("has the wrong sign", -1), ("counts twice", 2)):
+        yield of_load(
+            f"the applied torque {text}",
+            "torque",
+            given(factor, lambda k, one: applied(one, lambda t: k * t)),
+        )
+    yield of_load(
+        "the applied torque is taken in the wrong frame",
+        "torque",
+        lambda one: {"torque_body": one.torque_world, "torque_world": one.torque_body},
+    )
+    yield of_load(
+        "the torque in world axes is taken for one in body axes",
+        "torque",
+        lambda one: {
+            "torque_body": one.torque_body + one.torque_world,
+            "torque_world": 0 * one.torque_world,
+        },
+    )
+    yield of_load(
+        "the torque in body axes is taken for one in world axes",
+        "torque",
+        lambda one: {
+            "torque_world": one.torque_body + one.torque_world,
+            "torque_body": 0 * one.torque_body,
+        },
+    )
+    for frame in ("body", "world"):
+        yield of_load(
+            f"the torque in {frame} axes is missing",
+            "torque",
+            given(f"torque_{frame}", lambda k, one: {k: 0 * getattr(one, k)}),
+        )
+    for axis in range(3):
+        for what, sign in (("has the wrong sign", -1.0), ("is missing", 0.0)):
+            signs = np.where(np.arange(3) == axis, sign, 1.0)
+            yield of_load(
+                f"the {AXES[axis]} component of the applied torque {what}",
+                "torque",
+                given(signs, lambda k, one: applied(one, lambda t: k * t)),
+            )
+    for order in permutations(range(3)):
+        if order != (0, 1, 2):
+            names = ", ".join(AXES[k] for k in order)
+            yield of_load(
+                f"the applied torque's components are permuted: x, y, z hold those of {names}",
+                "torque",
+                given(order, lambda k, one: applied(one, lambda t: t[list(k)])),
+            )
+    for what, power in (("divided", -1), ("multiplied", 1)):
+        yield of_form(
+            f"all loads have a wrong torque: it is {what} by the mass",
+            "loads",
+            given(power, lambda k, f, s: _loads_scaled(f, float(s.body.mass) ** k)),
+        )
+    through: dict[str, Callable[[Form, System], Array]] = {
+        "is not divided by the inertia": lambda f, s: np.eye(3),
+        "is divided by the inertia's diagonal alone": lambda f, s: over_diagonal(f),
+        "is divided by the mass": lambda f, s: f.solve / float(s.body.mass),
+        "is multiplied by the mass": lambda f, s: f.solve * float(s.body.mass),
+        "meets the inertia about the body's origin": lambda f, s: np.linalg.inv(
+            own_inertia(s) + moved(s)
+        ),
+        "meets the inertia about the centre of mass": lambda f, s: np.linalg.inv(own_inertia(s)),
+    }
+    for text, matrix in through.items():
+
+        def change(form: Form, system: System, made: Any = matrix) -> dict[str, Any]:
+            ratio = np.linalg.inv(form.solve) @ made(form, system)
+            return {"torque_body": ratio @ form.torque_body, "turned": ratio}
+
+        yield of_form(f"the applied torque {text}", "torque", change)
+    for text, sign in (("", 1.0), ("", -1.0)):
+        yield of_form(
+            "the applied torque turns the body about its origin, so that it moves the centre of "
+            "mass" + text,
+            "report",
+            given(
+                sign,
+                lambda k, f, s: (
+                    {"couple_offset": k * s.body.center_of_mass} if s.load.pivot is None else {}
+                ),
+            ),
+        )
+
+
+def _loads_scaled(form: Form, k: float) -> dict[str, Any]:
+    parts = ("torque_body", "torque_world", "weight", "damping")
+    return {name: k * getattr(form, name) for name in parts}

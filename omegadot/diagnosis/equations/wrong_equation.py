@@ -1,0 +1,182 @@
+"""Causes of a wrong equation: what the engine's accelerations and torques match instead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from omegadot.diagnosis.equations.across import Across, Scene
+from omegadot.diagnosis.equations.describe import description, scenarios_in_common
+from omegadot.diagnosis.equations.evidence import SLACK, Evidence, of_forward_dynamics
+from omegadot.diagnosis.equations.quotient import difference_quotient
+from omegadot.diagnosis.wording.digits import factor
+from omegadot.diagnosis.wording.features import features_of
+from omegadot.gates.bounds.scales import norm, torque_size
+from omegadot.gates.case import Case
+from omegadot.gates.states.equation import BOUND, EvaluationStates
+from omegadot.harness.drive import CaseResult
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
+from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
+from omegadot.reference_impl.rotations import rotate
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.workers.wire import body_from
+
+FORWARD, ALONG = "forward", "along the trajectory"
+
+
+def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> Scene:
+    """What is kept of one scenario's forward dynamics."""
+    evidence = {
+        source: of_forward_dynamics(case.system, states, Acceleration(**answer.result))
+        for source, answer, states in (
+            (FORWARD, result.forward, evaluation_states.random),
+            (ALONG, result.path, evaluation_states.path),
+        )
+        if answer.ok
+    }
+    held = body_from(result.model.result["bodies"][0]) if result.model.ok else None
+    return Scene(case.name, case.system, features_of(case.system, case.initial), evidence, held)
+
+
+def equation_causes(across: Across, name: str, source: str) -> list[str]:
+    """Of one scenario; what is known of the difference, where nothing fits."""
+    evidence = across.scenes[name].evidence[source]
+    found = evidence.found
+    for what, values in {
+        "omega-dot": found.angular,
+        "the linear acceleration": found.linear,
+    }.items():
+        finite = int(np.count_nonzero(np.isfinite(values).all(-1)))
+        if finite < len(values):
+            return [f"{what} is not finite at {len(values) - finite} of {len(values)} states"]
+    single = _single(evidence)
+    if single:
+        return [single]
+    text = across.cause(name, source)
+    if not text and source in (FORWARD, ALONG):
+        text = _constant(evidence) or difference_quotient(evidence)
+    return [text] if text else known_difference(across, name, source)
+
+
+def _single(evidence: Evidence) -> str:
+    """omega-dot in numbers of single precision, which the right ones are not."""
+    rounded = [
+        np.array_equal(a.angular, a.angular.astype(np.float32).astype(float))
+        for a in (evidence.found, evidence.true)
+    ]
+    moves = bool(np.any(evidence.found.angular))
+    return "omega-dot is worked out in single precision" * (moves and rounded == [True, False])
+
+
+def _constant(evidence: Evidence) -> str:
+    moves = [bool(np.any(np.diff(a.angular, axis=0))) for a in (evidence.found, evidence.true)]
+    return "omega-dot is the same at every state" if moves == [False, True] else ""
+
+
+def known_difference(across: Across, name: str, source: str) -> list[str]:
+    """What is known where no cause fits."""
+    scenes = [scene for scene in across.scenes.values() if source in scene.evidence]
+    sound = [bool(np.all(scene.evidence[source].sound)) for scene in scenes]
+    failing = [scene.features for scene, right in zip(scenes, sound, strict=True) if not right]
+    passing = [scene.features for scene, right in zip(scenes, sound, strict=True) if right]
+    texts = (
+        description(across.scenes[name].evidence[source]),
+        scenarios_in_common(failing, passing),
+    )
+    known = "; ".join(text for text in texts if text)
+    return [f"none is known; {known}"] if known else []
+
+
+def inverse_causes(
+    system: System, states: State, requested: Acceleration, torque: Array
+) -> list[str]:
+    """What the torque of inverse dynamics leaves out or counts, forward dynamics being sound."""
+    true, w = inverse_dynamics(system, states, requested), states.angular_velocity
+    bound = BOUND * torque_size(system, states, requested)
+    inertia = moving_inertia(system)
+    terms: dict[str, Array] = {
+        "the gyroscopic term": cross(w, apply(inertia, w)),
+        "gravity": -gravity_torque(system, states),
+        "the inertia times omega-dot": apply(inertia, requested.angular),
+    }
+    loads: dict[str, Array] = {
+        "damping": damping_torque(system, states),
+        "the applied torque": applied_torque(system, states),
+    }
+
+    def fits(candidate: Array) -> bool:
+        return bool(np.all(norm(torque - candidate) <= SLACK * bound))
+
+    found = []
+    if fits(rotate(states.orientation, true)):
+        found.append("inverse dynamics report the torque in world axes")
+    if fits(-true):
+        found.append("inverse dynamics have the wrong sign")
+    if all(np.any(one) for one in loads.values()) and fits(true - sum(loads.values())):
+        found.append("inverse dynamics leave out the loads that act: damping and torque")
+    for what, term in terms.items():
+        k = _share(torque - true, term, bound)
+        if k is not None and fits(true + k * term):
+            found.append(_worded(what, 1.0 + k))
+    for what, term in loads.items():
+        k = _share(torque - true, term, bound)
+        if k is not None and fits(true + k * term):
+            found.append(_load_worded(what, k))
+    bodies = _other_bodies(system, states, requested)
+    found += [text for text, made in bodies.items() if not fits(true) and fits(made())]
+    return ["either " + ", or ".join(found)] if 1 < len(found) <= 3 else found[:1]
+
+
+def _share(rest: Array, term: Array, bound: Array) -> float | None:
+    line, off = np.ravel(term / bound[:, None]), np.ravel(rest / bound[:, None])
+    size = float(line @ line)
+    return float(off @ line) / size if size > 0.0 and np.isfinite(size) else None
+
+
+def _worded(what: str, k: float) -> str:
+    known = {0: f"leave out {what}", -1: f"have {what}'s sign wrong", 2: f"count {what} twice"}
+    if abs(k - round(k)) < 1e-9 and round(k) in known:
+        return f"inverse dynamics {known[round(k)]}"
+    return f"inverse dynamics have {what} scaled by {factor(k)}"
+
+
+def _load_worded(what: str, k: float) -> str:
+    """Of a load that belongs to what is found, k times the torque that it exerts added to it."""
+    if abs(k + 1.0) < 1e-9:
+        return f"inverse dynamics leave out what {what} takes up: it is counted among what is given"
+    if abs(k - 1.0) < 1e-9:
+        return f"inverse dynamics count {what} on top of the torque that is found"
+    if abs(k + 2.0) < 1e-9:
+        return f"inverse dynamics count {what} twice among what is given"
+    return f"inverse dynamics have {factor(k)} times {what} in them"
+
+
+def _other_bodies(
+    system: System, states: State, requested: Acceleration
+) -> dict[str, Callable[[], Array]]:
+    """The torque by another inertia."""
+    inertia, w = np.asarray(moving_inertia(system), dtype=float), states.angular_velocity
+    gravity, body = gravity_torque(system, states), system.body.inertia
+    diagonal = np.diag(np.diag(inertia))
+
+    def by(mass: Array, spin: Array) -> Callable[[], Array]:
+        return lambda: apply(mass, requested.angular) + cross(w, apply(spin, w)) - gravity
+
+    return {
+        "inverse dynamics use the inertia's diagonal alone": by(diagonal, diagonal),
+        "inverse dynamics use the inertia's diagonal alone for omega-dot": by(diagonal, inertia),
+        "inverse dynamics use the inertia's diagonal alone in the gyroscopic term": by(
+            inertia, diagonal
+        ),
+        "inverse dynamics use the inertia about the centre of mass, not about the pivot": by(
+            np.asarray(body), np.asarray(body)
+        ),
+        "inverse dynamics invert the inertia": by(np.asarray(inverse(inertia)), inertia),
+        "inverse dynamics give the torque of the acceleration that the loads cause": lambda: (
+            inverse_dynamics(system, states, forward_dynamics(system, states))
+        ),
+    }

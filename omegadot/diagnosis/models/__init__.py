@@ -1,0 +1,1 @@
+"""Causes of a model that does not read back: tensors and conventions."""

@@ -1,0 +1,1 @@
+"""Causes in what is reported of sound steps: frames, orders, clocks and samples."""

@@ -1,0 +1,167 @@
+"""One run as it was reported, next to the same run stepped by the reference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.errors.measured_run import CHANNELS
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.judge import JudgedRun
+from omegadot.reference_impl.body_motion import body_motion
+from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.schemes import SCHEMES, Scheme
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import Array, State, System
+
+LEAST_SAMPLES = 6
+MOST_GUESSES = 3
+# In parts of what rounding may do: a fitted number is then good to six digits.
+DISTINCT = 1e6
+
+
+@dataclass(frozen=True)
+class ReportedRun:
+    """time and state as reported; own: the reference's run of the declared scheme at the samples.
+
+    growth: (n,), how far rounding may have grown along it.  is_declared: False where the scheme is
+    a guess, and one of the nearest.
+    """
+
+    case: Case
+    truth: Truth
+    integrator: Integrator
+    sweep: Sweep
+    time: Array
+    state: State
+    own: State
+    growth: Array
+    is_declared: bool = True
+
+    @property
+    def declared(self) -> Scheme:
+        """The scheme that is declared."""
+        return SCHEMES[self.integrator.scheme or ""]
+
+    @property
+    def bounds(self) -> dict[str, Array]:
+        """(n,) per channel: what rounding may account for."""
+        step, numbers = self.sweep.timestep, self.sweep.sample_steps
+        return self.truth.yardstick.round_off(step, numbers, self.growth)
+
+    def agrees(
+        self, state: State, other: State, samples: slice = slice(None), slack: float = 1.0
+    ) -> bool:
+        """Whether two trajectories are the same within rounding, at these samples."""
+        bounds, yardstick = self.bounds, self.truth.yardstick
+        return all(
+            bool(np.all(yardstick.distance(c, state, other) <= slack * bounds[c][samples]))
+            for c in CHANNELS
+        )
+
+    @property
+    def is_own(self) -> bool:
+        """Whether the whole run is the reference's."""
+        return len(self.time) == len(self.own.position) and self.agrees(self.state, self.own)
+
+    @property
+    def distance_at_first(self) -> float:
+        """How far the run is from the reference's in its first samples, in parts of the bound."""
+        bounds, first = self.bounds, slice(1, LEAST_SAMPLES)
+        shares = [
+            self.truth.yardstick.distance(c, self.state[first], self.own[first]) / bounds[c][first]
+            for c in CHANNELS
+        ]
+        return float(np.nan_to_num(np.median(np.max(shares, axis=0)), nan=np.inf))
+
+    def stepped(
+        self,
+        scheme: Scheme | None = None,
+        system: System | None = None,
+        initial: State | None = None,
+        timestep: float | None = None,
+        every_step: bool = False,
+    ) -> State:
+        """The reference's run with something else in it; the declared where nothing is given."""
+        wanted, sweep = system or self.case.system, self.sweep
+        exact = body_motion(wanted, self.integrator.coordinates)
+        plan = (timestep or sweep.timestep, sweep.steps, 1 if every_step else sweep.every)
+
+        def acceleration(q: Array, v: Array) -> Array:  # a wrong end may leave q too long
+            return exact.acceleration(exact.normalize(q), v)
+
+        how = (*plan, self.integrator.coordinates, replace(exact, acceleration=acceleration))
+        return step_body(scheme or self.declared, wanted, initial or self.case.initial, *how)[1]
+
+    def stepped_on(self, states: State) -> State:
+        """Where the declared scheme leads from each of (m,) states to the next sample."""
+        plan = (self.sweep.timestep, self.sweep.every, self.sweep.every)
+        unit = replace(states, orientation=normalize(states.orientation))
+        how = (*plan, self.integrator.coordinates)
+        return step_body(self.declared, self.case.system, unit, *how)[1][-1]
+
+
+def reported_run(
+    case: Case, truth: Truth, result: CaseResult, run: JudgedRun
+) -> ReportedRun | None:
+    """The run that was judged; None where it failed or no scheme is declared for it."""
+    integrator, sweep = run.integrator, run.sweep
+    answer = result.runs.get((integrator.name, sweep.timestep))
+    own = truth.companion(integrator, sweep)
+    if answer is None or not answer.ok or own is None or integrator.scheme not in SCHEMES:
+        return None
+    time, state = answer.result["time"], State(**answer.result["state"])
+    whole = ReportedRun(case, truth, integrator, sweep, time, state, own.state, own.growth)
+    return _until_it_shows(whole) if len(time) == len(sweep.times) else whole
+
+
+def reported_run_guesses(
+    case: Case, truth: Truth, result: CaseResult, run: JudgedRun
+) -> list[ReportedRun]:
+    """The run next to the nearest schemes of the reference, of an engine that declares none.
+
+    Which are nearest is seen in the first samples, before a fault has spoiled the rest.
+    """
+    integrator, sweep = run.integrator, run.sweep
+    answer = result.runs.get((integrator.name, sweep.timestep))
+    if answer is None or not answer.ok or integrator.scheme in SCHEMES:
+        return []
+    time, state = answer.result["time"], State(**answer.result["state"])
+    ranked = list[tuple[float, ReportedRun]]()
+    for (key, timestep), own in truth.companions.items():
+        if timestep != sweep.timestep:
+            continue
+        guess = replace(integrator, scheme=key.scheme, coordinates=key.coordinates)
+        one = ReportedRun(case, truth, guess, sweep, time, state, own.state, own.growth, False)
+        if len(time) != len(sweep.times):
+            return [one]
+        ranked.append((one.distance_at_first, one))
+    ranked.sort(key=lambda pair: pair[0])
+    return [_until_it_shows(one) for _, one in ranked[:MOST_GUESSES]]
+
+
+def _until_it_shows(reported: ReportedRun) -> ReportedRun:
+    """The beginning of a run, until it has departed from the reference's beyond any doubt.
+
+    Causes are tried by stepping again: a short trajectory is quicker, and followed more surely
+    where the motion magnifies what is not quite right yet.
+    """
+    numbers, bounds = reported.sweep.sample_steps, reported.bounds
+    distances = {
+        c: reported.truth.yardstick.distance(c, reported.state, reported.own) for c in CHANNELS
+    }
+    apart = np.any([~(distances[c] <= DISTINCT * bounds[c]) for c in CHANNELS], axis=0)
+    first = int(np.argmax(apart)) if apart.any() else len(numbers)
+    count = min(max(2 * first, LEAST_SAMPLES), len(numbers))
+    return replace(
+        reported,
+        sweep=replace(reported.sweep, steps=int(numbers[count - 1])),
+        time=reported.time[:count],
+        state=reported.state[:count],
+        own=reported.own[:count],
+        growth=reported.growth[:count],
+    )

@@ -1,0 +1,163 @@
+"""Causes in the samples of a run: rounded to digits, of half a step before, or wrong in places.
+
+The last resort, where no single cause explains a whole run, is where it is sound: sample to sample,
+and quantity by quantity. Every sample is stepped on by the declared scheme to the next, so that
+what is wrong at one place does not spoil the rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.wording.conditions import only_where
+from omegadot.gates.bounds.scales import angular_size, norm
+from omegadot.gates.case import Case
+from omegadot.gates.errors.measured_run import CHANNELS
+from omegadot.gates.states.equation import BOUND
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.judge import JudgedRun
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import rotate, turn_in_body
+from omegadot.reference_impl.system import State
+
+EPS_SINGLE = float(np.finfo(np.float32).eps)
+LEAST_CHANGES = 3
+MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
+# One interval's rounding is within the bound of its end; its start is rounded, too.
+SLACK = 2.0
+ALONE = {
+    "the attitude": ("orientation",),
+    "omega": ("angular_velocity",),
+    "the position": ("position",),
+    "the linear velocity": ("linear_velocity",),
+    "the linear velocity, with the position,": ("linear_velocity", "position"),
+}
+
+
+def not_unit(reported: ReportedRun) -> str:
+    """The turning is sound but for the quaternion's length, which may move the places, too."""
+    length = norm(reported.state.orientation)[:, None]
+    off = float(np.max(np.abs(length - 1.0)))
+    places = {"position": reported.own.position, "linear_velocity": reported.own.linear_velocity}
+    longer = replace(reported.state, **places)
+    unit = replace(longer, orientation=reported.state.orientation / length)
+    if reported.agrees(longer, reported.own) or not reported.agrees(unit, reported.own):
+        return ""
+    return f"the quaternion is not of unit length in the run: it is off by up to {off:.1e}"
+
+
+def digits_reported(reported: ReportedRun) -> str:
+    """Every number of the run is one of a few decimal digits; all are finite."""
+    digits = _digits(reported.state)
+    if digits > MOST_DIGITS or _digits(reported.own) <= digits:
+        return ""
+    return f"the numbers of the run have {digits} digits: they went through text"
+
+
+def _digits(state: State) -> int:
+    """How many significant digits determine all numbers of these states."""
+    numbers, needed = np.concatenate([np.ravel(values) for values in vars(state).values()]), 1
+    for number in numbers.tolist():
+        while needed < MOST_DIGITS + 2 and float(f"{number:.{needed}g}") != number:
+            needed += 1
+    return needed
+
+
+def half_step(reported: ReportedRun) -> str:
+    """Attitude or omega, but for the start, are those of half a step before or after."""
+    h = reported.sweep.timestep
+    q, w = reported.own.orientation, reported.own.angular_velocity
+    w_dot = forward_dynamics(reported.case.system, reported.own).angular
+    for sign, when in ((-0.5, "before"), (0.5, "after")):
+        turned = np.concatenate((q[:1], turn_in_body(q, w, sign * h)[1:]))
+        if reported.agrees(reported.state, replace(reported.own, orientation=turned)):
+            return f"the attitude reported is that of half a step {when}"
+        moved = np.concatenate((w[:1], (w + sign * h * w_dot)[1:]))
+        if reported.agrees(reported.state, replace(reported.own, angular_velocity=moved)):
+            return f"omega is reported as of half a step {when}"
+    return ""
+
+
+def omega_dot_late(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> str:
+    """What the omega-dot reported along a run is: of another sample, in world axes, of one term.
+
+    Of another sample the ends have none.
+    """
+    answer = result.runs.get((run.integrator.name, run.sweep.timestep))
+    if answer is None or not answer.ok:
+        return ""
+    omega_dot, state = answer.result["omega_dot"], State(**answer.result["state"])
+    system, inner = case.system, slice(1, -1)
+    true = forward_dynamics(system, state)
+    bound = BOUND * angular_size(system, state, true)
+    for shift, when in ((1, "before"), (-1, "after")):
+        apart = norm(np.roll(true.angular, shift, axis=0) - omega_dot)
+        if np.all(apart[inner] <= np.maximum(bound, np.roll(bound, shift))[inner]):
+            return f"the omega-dot reported along the run is that of the sample {when}"
+    others = {
+        "looks like world axes: it matches after R^T": rotate(state.orientation, true.angular),
+        "has the wrong sign": -true.angular,
+        "is zero": 0 * true.angular,
+        "is kept in single precision": true.angular.astype(np.float32).astype(float),
+    }
+    for text, other in others.items():
+        if np.all(
+            norm(other - omega_dot)
+            <= bound + 2.0 * EPS_SINGLE * norm(true.angular) * ("single" in text)
+        ):
+            return f"the omega-dot reported along the run {text}"
+    return ""
+
+
+def _sound_intervals(reported: ReportedRun) -> NDArray[np.bool_]:
+    """(n - 1,): whether the declared scheme leads from each sample to the next."""
+    numbers = reported.sweep.sample_steps
+    count = int(np.count_nonzero(np.diff(numbers) == reported.sweep.every))
+    ends = reported.stepped_on(reported.state[:count])
+    then, bounds = reported.state[1 : count + 1], reported.bounds
+    sound = np.ones(count, bool)
+    for channel in CHANNELS:
+        apart = reported.truth.yardstick.distance(channel, then, ends)
+        sound &= apart <= SLACK * bounds[channel][1 : count + 1]
+    return sound
+
+
+def one_field(reported: ReportedRun) -> str:
+    """All but one quantity are sound, and so they are stepped with the right one."""
+    for text, names in ALONE.items():
+        if not reported.is_declared and text == "the attitude":
+            continue  # schemes that are no guess here have the same omega and another attitude
+        right = {name: getattr(reported.own, name) for name in names}
+        if reported.agrees(replace(reported.state, **right), reported.own):
+            own = right[names[0]]
+            off = float(np.max(np.abs(getattr(reported.state, names[0]) - own)))
+            part = off / float(np.max(np.abs(own)))
+            return f"{text} alone is wrong in the run, by up to {part:.1e} of it"
+    return ""
+
+
+def intervals(reported: ReportedRun) -> str:
+    """From which sample to which the steps are wrong."""
+    sound = _sound_intervals(reported)
+    wrong = np.flatnonzero(~sound)
+    if len(sound) < 3 or not len(wrong) or not sound.any():
+        return ""
+    time, first, last = reported.time, int(wrong[0]), int(wrong[-1])
+    if len(wrong) == 1 and first == 0:
+        return f"only the first steps are wrong: from t = {time[1]:.4g} s on, the run is sound"
+    if len(wrong) <= 2 and last - first <= 1 and last + 1 < len(sound):
+        pairs = (values[last] == values[last - 1] for values in vars(reported.state).values())
+        twice = last > 0 and all(bool(np.all(pair)) for pair in pairs)
+        what = "is the one before, reported twice" if twice else "alone does not belong to the run"
+        return f"the sample at t = {time[last]:.4g} s {what}"
+    if first > 0 and len(wrong) == len(sound) - first:
+        return f"the run is sound until t = {time[first]:.4g} s, and every step after it is wrong"
+    if np.count_nonzero(np.diff(sound.astype(int))) < LEAST_CHANGES:
+        return ""  # what changes once goes with the time as well as with anything that grows
+    where = only_where([(reported.case.system, reported.state[: len(sound)], sound)])
+    return f"steps are wrong only where {where}" if where else ""

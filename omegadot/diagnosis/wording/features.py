@@ -1,0 +1,125 @@
+"""What the scenarios that show a fault have in common, and the others lack."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import comb
+
+import numpy as np
+
+from omegadot.diagnosis.wording.digits import limits
+from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.system import State, System
+
+# How unlikely chance must be to sort the scenarios so: one in so many ways to sort them.
+SORTED_BY_KIND, SORTED_BY_SIZE = 6, 200
+FOLLOWS = {
+    "the body is pivoted": ("the pivot lies off the origin", "the body does not move at the start"),
+    "the body is free": ("the pivot lies at the origin", "the body moves at the start"),
+    "a torque acts": ("a torque in body axes acts", "a torque in world axes acts"),
+    "no torque acts": ("no torque in body axes acts", "no torque in world axes acts"),
+}
+
+
+@dataclass(frozen=True)
+class Features:
+    """kinds: sentences that hold for a scenario, or do not.  sizes: numbers of it, with units."""
+
+    kinds: dict[str, bool]
+    sizes: dict[str, tuple[float, str]]
+
+
+def features_of(system: System, initial: State) -> Features:
+    """Those of one scenario."""
+    body, load = system.body, system.load
+    tensor, gravity = np.asarray(body.inertia, dtype=float), np.asarray(load.gravity, dtype=float)
+    pivoted, pulled = load.pivot is not None, bool(np.any(gravity))
+    driven = bool(np.any(load.torque_body)), bool(np.any(load.torque_world))
+    products = bool(np.any(np.abs(tensor - np.diag(np.diag(tensor))) > 1e-12 * np.max(tensor)))
+    kinds = {
+        "the body is pivoted": pivoted,
+        "the body is damped": bool(np.any(load.damping)),
+        "a torque acts": any(driven),
+        "a torque in body axes acts": driven[0],
+        "a torque in world axes acts": driven[1],
+        "gravity acts": pulled,
+        "gravity points elsewhere than along -z": pulled
+        and not (gravity[2] < 0.0 and np.all(gravity[:2] == 0.0)),
+        "the centre of mass lies off the origin": bool(np.any(body.center_of_mass)),
+        "the inertia has products": products,
+        "the pivot lies off the origin": pivoted and bool(np.any(load.pivot)),
+        "the first attitude is not the identity": bool(abs(initial.orientation[0]) < 1.0 - 1e-12),
+        "the scalar part of the first quaternion is negative": bool(initial.orientation[0] < 0.0),
+        "the body moves at the start": bool(np.any(initial.linear_velocity)),
+    }
+    mass, moments = float(body.mass), np.linalg.eigvalsh(tensor)
+    sizes = {
+        "the mass": (mass, "kg"),
+        "the body's radius of gyration": (float(np.sqrt(np.trace(tensor) / mass)), "m"),
+        "the least moment of inertia": (float(moments[0]), "kg m^2"),
+        "the ratio of the largest moment of inertia to the least": (
+            float(moments[-1] / moments[0]),
+            "",
+        ),
+        "|omega| at the start": (float(norm(initial.angular_velocity)), "rad/s"),
+        "the speed at the start": (float(norm(initial.linear_velocity)), "m/s"),
+        "the size of gravity": (float(norm(gravity)), "m/s^2"),
+        "the damping": (float(load.damping), "N m s/rad"),
+        "the size of the torque": (
+            float(norm(load.torque_body) + norm(load.torque_world)),
+            "N m",
+        ),
+    }
+    return Features(kinds, sizes)
+
+
+def in_common(shown: Sequence[Features], others: Sequence[Features]) -> list[str]:
+    """Conditions that hold for all that show a fault and for none of the others, kinds first.
+
+    None where so few scenarios are sorted by chance.
+    """
+    if not shown or not others:
+        return []
+    ways = comb(len(shown) + len(others), len(shown))
+    found = list[str]()
+    if ways >= SORTED_BY_KIND:
+        for text in shown[0].kinds:
+            here, there = ({one.kinds[text] for one in group} for group in (shown, others))
+            if here == {True} and there == {False}:
+                found.append(text)
+            elif here == {False} and there == {True}:
+                found.append(_negated(text))
+    if found or ways < SORTED_BY_SIZE:
+        return _plainest(found)
+    for name, (_, unit) in shown[0].sizes.items():
+        low, high = ([one.sizes[name][0] for one in group] for group in (others, shown))
+        if max(low) < min(high):
+            found.append(f"{name} is above a limit between {limits(max(low), min(high), unit)}")
+        elif max(high) < min(low):
+            found.append(f"{name} is below a limit between {limits(max(high), min(low), unit)}")
+    return found
+
+
+def _plainest(found: list[str]) -> list[str]:
+    """Without what goes with a plainer condition anyhow: only free bodies move at the start."""
+    for text, follow in FOLLOWS.items():
+        if text in found:
+            found = [one for one in found if one not in follow]
+    return found
+
+
+def _negated(text: str) -> str:
+    known = {
+        "the body is pivoted": "the body is free",
+        "the body is damped": "nothing damps the body",
+        "gravity points elsewhere than along -z": "gravity is zero or points along -z",
+        "the inertia has products": "the inertia has no products",
+        "the centre of mass lies off the origin": "the centre of mass lies at the origin",
+        "the pivot lies off the origin": "the pivot lies at the origin",
+        "the body moves at the start": "the body does not move at the start",
+        "the first attitude is not the identity": "the first attitude is the identity",
+    }
+    if text.endswith(" acts") or " acts" in text:
+        return "no " + text.removeprefix("a ")
+    return known.get(text, f"it does not hold that {text}")

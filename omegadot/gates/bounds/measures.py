@@ -1,0 +1,152 @@
+"""How far two motions are apart, channel by channel, and how far rounding alone may take them."""
+
+from __future__ import annotations
+
+from copy import copy
+
+import numpy as np
+
+from omegadot.gates.bounds.scales import (
+    EPS,
+    ROUNDINGS_PER_STEP,
+    BodyScale,
+    angular_size,
+    body_scale,
+    norm,
+)
+from omegadot.reference_impl.energy import kinetic_energy, total_energy
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.symmetric import apply
+from omegadot.reference_impl.system import Array, State, System
+
+TRAJECTORY_UNITS = {"omega": "1", "attitude": "rad", "position": "m"}
+INVARIANT_CHANNELS = ("energy", "angular_momentum", "linear_momentum")
+
+
+class Yardstick:
+    """The sizes of one exact motion, against which its imitations are measured.
+
+    rate: rad/s, the greatest |omega|; where the body never turns, the rate that its greatest
+    omega-dot would reach over the motion.  eps: that of the precision which the imitations are
+    computed in.  per_rounding: by how much omega turns, relative, where what is stepped is off by
+    one part.
+    """
+
+    def __init__(self, system: System, times: Array, exact: State) -> None:
+        self.system, self.eps, self.per_rounding = system, EPS, 1.0
+        self.scale: BodyScale = body_scale(system)
+        acceleration = forward_dynamics(system, exact)
+        self.acceleration = float(np.max(angular_size(system, exact, acceleration)))
+        duration = float(times[-1])
+        self.rate = float(np.max(norm(exact.angular_velocity))) or self.acceleration * duration
+        self.rate = self.rate or 1.0 / duration
+        self.speed = float(np.max(norm(exact.linear_velocity))) + self.rate * self.scale.lever
+        self.reach = float(np.max(norm(exact.position))) + self.scale.lever
+        self.gravity = float(norm(system.load.gravity))
+        kinetic = float(np.max(kinetic_energy(system, exact)))
+        turning = float(np.max(norm(angular_momentum(system, exact))))
+        moving = float(np.max(norm(linear_momentum(system, exact))))
+        smallest, mass = self.scale.smallest, self.scale.mass
+        spin = norm(apply(moving_inertia(system), exact.angular_velocity))
+        self._momentum = max(1.0, float(np.max(spin)) / (smallest * self.rate))
+        gyration = float(np.sqrt(float(np.trace(system.body.inertia)) / mass))
+        self.sizes = {
+            "energy": kinetic or 0.5 * smallest * self.rate**2,
+            "angular_momentum": turning or smallest * self.rate,
+            # a body that stays in place has that of its turning
+            "linear_momentum": moving or mass * self.rate * gyration,
+        }
+
+    def with_eps(self, eps: float) -> Yardstick:
+        """The same sizes for imitations in another precision.
+
+        In single precision the rounding of every step shows, and what is stepped may be the angular
+        momentum: omega is then off by ``|J omega| / lambda``, lambda J's least eigenvalue.
+        """
+        other = copy(self)
+        other.eps, other.per_rounding = eps, self._momentum if eps > EPS else 1.0
+        return other
+
+    def distance(self, channel: str, one: State, other: State) -> Array:
+        """(n,): |one - other| in this channel.
+
+        omega: over the rate.  attitude: rad, or how much longer a quaternion is, whichever is more.
+        position: m.  energy, momenta: over their sizes.
+        """
+        # An engine that has gone astray may be where squares overflow: that far away is infinite.
+        with np.errstate(over="ignore", invalid="ignore"):
+            if channel == "omega":
+                return np.asarray(norm(one.angular_velocity - other.angular_velocity) / self.rate)
+            if channel == "attitude":
+                length = np.abs(norm(one.orientation) - norm(other.orientation))
+                return np.maximum(attitude_angle(one.orientation, other.orientation), length)
+            if channel == "position":
+                return norm(one.position - other.position)
+            if channel == "energy":
+                gap = np.abs(total_energy(self.system, one) - total_energy(self.system, other))
+            else:
+                momentum = angular_momentum if channel == "angular_momentum" else linear_momentum
+                gap = norm(momentum(self.system, one) - momentum(self.system, other))
+            return np.asarray(gap / self.sizes[channel])
+
+    def faster(self, state: State) -> Array:
+        """(n,): how many times faster than in the exact motion the body has been, at least one."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            times: Array = norm(state.linear_velocity) / (self.speed or np.inf)
+        times = np.where(np.isfinite(times), times, np.inf)
+        return np.maximum.accumulate(np.maximum(times, 1.0))
+
+    def round_off(
+        self,
+        timestep: float | Array,
+        steps: Array,
+        growth: Array,
+        faster: Array | float = 1.0,
+    ) -> dict[str, Array]:
+        """(n,) per channel: how far rounding may take a sound engine after so many steps.
+
+        Each step adds ``c eps (k + h A / rate)`` (k is `per_rounding`, and A the greatest size of
+        omega-dot, so that an ill-conditioned inertia counts), and what was added earlier grows by
+        at most `growth`: ``theta = c eps (n + 1) (k + h A / rate) growth``, for attitude in rad and
+        for omega / rate alike. The others follow from it to first order; a velocity that is kept in
+        body axes is turned by theta, as far as steps do not turn it back: ``h rate`` of it a
+        radian. faster: of a scheme whose velocity grows beyond the exact one,
+        and rounding with it, see `faster`; ``m |v|^2`` may be among the terms of omega-dot.
+        """
+        amount = ROUNDINGS_PER_STEP * self.eps * (steps + 1.0)
+        turning = timestep * self.acceleration * faster**2 / self.rate
+        theta = amount * (self.per_rounding + turning) * growth
+        time = timestep * steps
+        swift = self.speed * faster
+        speed = amount * (swift + self.gravity * time) + theta * self.rate * self.scale.lever
+        speed = speed + theta * swift * np.minimum(1.0, timestep * self.rate**2 * time)
+        reach = amount * self.reach + time * speed + theta * self.scale.lever
+        return {
+            "omega": theta,
+            "attitude": theta,
+            "position": reach,
+            **self.invariant_round_off(theta, speed, reach, swift),
+        }
+
+    def invariant_round_off(
+        self, theta: Array, speed: Array, reach: Array, swift: Array | float | None = None
+    ) -> dict[str, Array]:
+        """(n,) per invariant: how far it is off where omega and attitude are off by theta, the
+        velocity by speed in m/s and the position by reach in m, to first order.
+
+        swift: m/s, the body's own greatest speed, if it is not that of the exact motion.
+        """
+        own = self.speed if swift is None else swift
+        mass, spin = self.scale.mass, self.scale.largest * self.rate
+        turning = 2.0 * spin * theta  # |I d_omega| + |d_theta x I omega|
+        moving = mass * own * speed + mass * self.gravity * reach
+        lever = mass * (self.scale.lever * speed + own * reach)
+        pivoted = 0.0 if self.system.load.pivot is None else lever
+        return {
+            "energy": (turning * self.rate + moving) / self.sizes["energy"],
+            "angular_momentum": (turning + pivoted) / self.sizes["angular_momentum"],
+            "linear_momentum": mass * speed / self.sizes["linear_momentum"],
+        }

@@ -1,0 +1,1 @@
+"""The errors of a run: measured, and whether rounding, the scheme or an order explains them."""

@@ -1,0 +1,125 @@
+"""A run measured in each channel: its distance from the exact solution and from its scheme."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates.bounds.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
+from omegadot.gates.case import Sweep
+from omegadot.gates.errors.orders import FEWEST_STEPS, Errors, ObservedOrder, excess_of, order_of
+from omegadot.gates.errors.verdicts import Evidence, Finding, judge
+from omegadot.gates.truth import Companion, Truth, scheme_key
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import Array, State, System
+
+CHANNELS = (*TRAJECTORY_UNITS, *INVARIANT_CHANNELS)
+ROTATION = ("omega", "attitude")
+SATURATING = (*ROTATION, "linear_momentum")
+# The state; energy and angular momentum follow from it, and their errors cancel now and then.
+STATE = (*ROTATION, "position", "linear_momentum")
+
+
+@dataclass(frozen=True)
+class MeasuredRun:
+    """One engine's run, measured. All arrays are (n,) at the sample times, by channel."""
+
+    sweep: Sweep
+    error: dict[str, Array]
+    round_off: dict[str, Array]
+    against_scheme: dict[str, Array] = field(default_factory=dict)
+    floor: dict[str, Array] = field(default_factory=dict)
+
+    @property
+    def saturating_error(self) -> Array:
+        """(n,), the largest error of those that saturate where they are as large as the motion."""
+        worst: Array = np.maximum.reduce([self.error[channel] for channel in SATURATING])
+        return worst
+
+
+def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> MeasuredRun:
+    """Distances of `state` from the exact trajectory and, where there is one, the scheme's own.
+
+    What is not a number is infinitely far off, and where the scheme's own state is none there is
+    no bound.
+    """
+    yardstick, rows, exact = truth.yardstick, truth.rows(sweep), truth.at(sweep)
+
+    def apart(other: State) -> dict[str, Array]:
+        return {c: _sizes(yardstick.distance(c, state, other)) for c in CHANNELS}
+
+    growth = own.growth if own else truth.growth[rows]
+    faster = yardstick.faster(own.state) if own else 1.0
+    bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth, faster)
+    return MeasuredRun(
+        sweep=sweep,
+        error=apart(exact),
+        round_off={channel: _sizes(bound) for channel, bound in bounds.items()},
+        against_scheme=apart(own.state) if own else {},
+        floor={channel: values[rows] for channel, values in truth.floor.items()},
+    )
+
+
+def _sizes(values: Array) -> Array:
+    return np.where(np.isnan(values), np.inf, values)
+
+
+def errors_of(run: MeasuredRun, channel: str, *, left: bool = False) -> Errors | None:
+    """A run's errors in a channel, or what is left of them after the declared scheme."""
+    if left and not run.against_scheme:
+        return None
+    size = run.against_scheme[channel] if left else run.error[channel]
+    bound = np.maximum(run.round_off[channel], run.floor.get(channel, 0.0))
+    largest, saturates = run.saturating_error, channel in SATURATING
+    return Errors(run.sweep.timestep, run.sweep.times, size, bound, largest, saturates)
+
+
+def evidence_of(
+    measured: MeasuredRun,
+    measured_runs: list[MeasuredRun],
+    channel: str,
+    declared: int | None = None,
+) -> Evidence:
+    """What one run and the others of its sweep show in a channel. declared: its order."""
+    left = measured.against_scheme.get(channel)
+    orders: list[ObservedOrder | None] = []
+    excess, finer = 0.0, sum(r.sweep.timestep < measured.sweep.timestep for r in measured_runs)
+    for part in (False,) if left is None else (False, True):
+        errors = [errors_of(run, channel, left=part) for run in measured_runs]
+        known = [one for one in errors if one is not None]
+        orders.append(order_of(known))
+        if channel in STATE and declared is not None:
+            own = next(one for one in known if one.timestep == measured.sweep.timestep)
+            excess = max(excess, excess_of(own, known, declared + part))
+    bound, floor = measured.round_off[channel], measured.floor.get(channel)
+    settled = finer >= FEWEST_STEPS
+    return Evidence(measured.error[channel], bound, left, tuple(orders), floor, excess, settled)
+
+
+@dataclass(frozen=True)
+class Declared:
+    """What an integrator is judged by: its scheme, and its order per channel (None: conserved)."""
+
+    scheme: str | None
+    orders: dict[str, int | None]
+
+
+def orders_for(integrator: Integrator, system: System) -> dict[str, int | None]:
+    """The declared orders; those of a known scheme are higher where the system is simple."""
+    key = scheme_key(integrator, system)
+    if key is None or key.scheme not in SCHEMES:
+        return {c: integrator.orders.get(c) for c in CHANNELS}
+    scheme = SCHEMES[key.scheme]
+    return {c: scheme.order(c, system, key.coordinates) for c in CHANNELS}
+
+
+def findings_of(
+    measured: MeasuredRun, declared: Declared, measured_runs: list[MeasuredRun]
+) -> dict[str, Finding]:
+    """Judge every channel of one run; the other runs of its sweep show the orders."""
+    return {
+        c: judge(evidence_of(measured, measured_runs, c, order), declared.scheme, order)
+        for c, order in declared.orders.items()
+    }

@@ -1,0 +1,127 @@
+"""Why an error may stand: it is rounding, it is the scheme's own, or it shrinks as declared.
+
+A drift of the declared scheme is not a fault. An error passes where it is
+*round-off* (within what rounding may grow to), *explained* (the engine's trajectory equals, to
+round-off growth, that of the reference stepping the declared scheme), or *consistent* (it shrinks
+with the step at the declared order). Otherwise it fails.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.gates.errors.orders import ORDER_TOLERANCE, ObservedOrder, is_whole
+from omegadot.reference_impl.system import Array
+
+ONE_STEP = "one step size cannot show an order"
+UNSETTLED = "the sweep does not resolve the order"
+NOT_FINITE = "not finite"
+UNDECIDED = (ONE_STEP, UNSETTLED)
+"""How the notes begin of failures that a finer step could lift."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One channel of one run, judged.
+
+    kind: "round-off", "explained", "consistent", "beyond" (there is nothing to judge by),
+    "unresolved" (the order is hidden), "unsettled" (it is not, and there is none) or "unexplained".
+    note: the reason as text.
+    """
+
+    kind: str
+    note: str
+
+    @property
+    def verdict(self) -> str:
+        """The verdict on the error: pass, fail, or info where it cannot be judged."""
+        if self.kind in ("beyond", "unresolved"):
+            return "info"
+        return "pass" if self.kind in ("round-off", "explained", "consistent") else "fail"
+
+    @property
+    def open(self) -> bool:
+        """Whether a finer step could still decide."""
+        return self.kind in ("unresolved", "unsettled")
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What is known of one channel of one run.
+
+    error: (n,), the distance from the exact trajectory.  round_off: (n,), what rounding may grow
+    to.
+    left: (n,), the distance from the reference stepping the declared scheme, where there is one.
+    orders: the observed orders of `error` and, where there is one, of `left`.
+    floor: (n,), how far a perfect answer may be off, where that is known.
+    excess: how many times larger the error is than those at finer steps let it be.
+    settled: there are so many finer steps that more would not change that.
+    """
+
+    error: Array
+    round_off: Array
+    left: Array | None
+    orders: tuple[ObservedOrder | None, ...]
+    floor: Array | None = None
+    excess: float = 0.0
+    settled: bool = True
+
+
+def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Finding:
+    """The reason why an error is accepted, or that there is none.
+
+    An error that is not explained must shrink at the declared order, and so must what is left of
+    it after the declared scheme: two schemes of an order differ by a term of that order, a fault
+    does not. A declared order of None means conserved: only rounding or the scheme can account
+    for an error then.
+    """
+    # From where the scheme itself blows up there is no bound, and nothing to be held against.
+    bounded = np.isfinite(evidence.round_off)
+    if not bounded[1:].any():
+        return Finding("beyond", "not judged: the scheme itself blows up at so large a step")
+    if np.all(evidence.error <= evidence.round_off) and bounded.all():
+        return Finding("round-off", "within round-off")
+    known = bool(np.all(np.isfinite(evidence.error[bounded])))
+    if known and evidence.left is not None and np.all(evidence.left <= evidence.round_off):
+        largest = float(np.max(evidence.left[bounded]))
+        until = "" if bounded.all() else ", until the scheme blows up"
+        return Finding("explained", f"explained by {scheme}, to {largest:.1e}{until}")
+    if evidence.floor is not None and np.all(evidence.error <= evidence.round_off + evidence.floor):
+        return Finding("beyond", "not judged: below the resolvable floor of this motion")
+    finite = bool(np.all(np.isfinite(evidence.error)))
+    if declared is None:
+        return Finding("unexplained", "declared conserved, and it drifts" if finite else NOT_FINITE)
+    found = _by_order(evidence, declared)
+    if finite:
+        return found
+    if found.kind == "consistent":
+        return Finding("beyond", "not judged: it blows up at so large a step")
+    return Finding("unsettled" if found.open else "unexplained", NOT_FINITE)
+
+
+def _by_order(evidence: Evidence, declared: int) -> Finding:
+    seen = [order for order in evidence.orders if order is not None]
+    if len(seen) < len(evidence.orders):
+        return Finding("unresolved", ONE_STEP)
+    lowest = min(seen, key=lambda order: order.value)
+    least = declared - ORDER_TOLERANCE
+    text = f"observed order {lowest.value:.2f}, declared {declared}"
+    if not all(order.resolved for order in seen):
+        shown = [order for order in seen if not order.resolved and not order.hidden]
+        # Clear errors that do not even begin to shrink as they should.
+        falls = any(o.value < declared - 0.5 and o.rise <= ORDER_TOLERANCE for o in shown)
+        return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
+    if lowest.value < least:
+        if lowest.value + lowest.rise >= least or not is_whole(lowest.value):
+            falls = lowest.value < declared - 0.5 and lowest.rise <= ORDER_TOLERANCE
+            return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
+        return Finding("unexplained", text)
+    if evidence.excess > 1.0:
+        times = f"{evidence.excess:.1e} times what the errors at finer steps let it be"
+        note = f"at this step the error is {times}"
+        if evidence.settled:
+            return Finding("unexplained", note)
+        return Finding("unsettled", f"{UNSETTLED}: {note}")
+    return Finding("consistent", f"consistent: {text}")

@@ -1,0 +1,110 @@
+"""Gate 5, trajectory: omega, attitude and position against the exact solution.
+
+A run also reports what the contract requires, whatever the scheme and its order: it begins at the
+state that it was given, its quaternions are of unit length, and an engine that works in double
+precision reports numbers of double precision. No step size excuses any of these.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.gates.bounds.measures import TRAJECTORY_UNITS
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_STEP, norm
+from omegadot.gates.case import Sweep
+from omegadot.gates.errors.measured_run import MeasuredRun
+from omegadot.gates.errors.verdicts import Finding
+from omegadot.gates.rows import Row, within
+from omegadot.gates.states import equation
+from omegadot.gates.truth import Truth
+from omegadot.reference_impl.system import Array, State, System
+
+GATE = "trajectory"
+
+
+def time_row(sweep: Sweep, times: Array, eps: float = EPS) -> Row:
+    """Whether the samples stand at the engine's own steps: n times the step, none missing.
+
+    The step is rounded to the engine's numbers, and so is its product with n: an eps of the time.
+    """
+    expected = sweep.times
+    if len(times) != len(expected):
+        note = f"{len(times)} samples came back, {len(expected)} were requested"
+        return Row(GATE, "time", "sample_times", float("inf"), "s", 0.0, "fail", note)
+    late = float(np.max(np.abs(times - expected)))
+    return within(GATE, "time", "sample_times", late, "s", 2 * eps * float(expected[-1]))
+
+
+def rows(measured: MeasuredRun, findings: dict[str, Finding]) -> list[Row]:
+    """The largest error per channel, and what is left of it after the declared scheme."""
+    found = []
+    for channel, unit in TRAJECTORY_UNITS.items():
+        finding, bound = findings[channel], float(np.max(measured.round_off[channel]))
+        error = float(np.max(measured.error[channel]))
+        verdict = finding.verdict
+        found.append(Row(GATE, channel, "error_max", error, unit, bound, verdict, finding.note))
+        end = float(measured.error[channel][-1])
+        found.append(Row(GATE, channel, "error_end", end, unit))
+        if channel in measured.against_scheme:
+            left = float(np.max(measured.against_scheme[channel]))
+            found.append(Row(GATE, channel, "unexplained_max", left, unit, bound))
+    return found
+
+
+def reported_rows(truth: Truth, measured: MeasuredRun, state: State, precision: str) -> list[Row]:
+    """The start, the quaternion's length and, where it is found, single precision."""
+    found = [_start(measured), _length(measured.sweep, state, truth.yardstick.eps)]
+    if precision == "float64" and _is_single(state, truth.at(measured.sweep)):
+        note = "the state is kept in single precision, and double is declared"
+        eps = float(np.finfo(np.float32).eps)
+        found.append(Row(GATE, "attitude", "precision", eps, "1", EPS, "fail", note))
+    return found
+
+
+def omega_dot_rows(system: System, state: State, omega_dot: Array, eps: float = EPS) -> list[Row]:
+    """The omega-dot reported along a run, held to the equation's bound at the states it reports."""
+    rows_of = equation.reported_rows(system, state, omega_dot, eps)
+    found = [replace(row, gate=GATE) for row in rows_of]
+    note = "the omega-dot reported along the run is not that of its states"
+    return [replace(row, note=note) if row.verdict == "fail" else row for row in found]
+
+
+def _start(measured: MeasuredRun) -> Row:
+    """The first sample's distance from the state given, in parts of rounding in and out."""
+    shares = {}
+    for channel in TRAJECTORY_UNITS:
+        allowed = measured.round_off[channel][0] + measured.floor.get(channel, np.zeros(1))[0]
+        error = float(measured.error[channel][0])
+        shares[channel] = error / allowed if error else 0.0
+    worst = max(shares, key=lambda channel: shares[channel])
+    note = "the run does not begin at the state that it is given"
+    return within(GATE, worst, "start", float(shares[worst]), "1", 1.0, note)
+
+
+def _length(sweep: Sweep, state: State, eps: float) -> Row:
+    """How far a quaternion is from unit length; each step may round it by ``16 eps``."""
+    off = np.abs(norm(state.orientation) - 1.0)
+    allowed = ROUNDINGS_PER_STEP * eps * (sweep.sample_steps + 1.0)
+    place = int(np.argmax(off / allowed))
+    worst, bound = float(off[place]), float(allowed[place])
+    note = f"the quaternion is not of unit length: it is off by {worst:.1e}"
+    return within(GATE, "attitude", "unit_length", worst, "1", bound, note)
+
+
+def _is_single(state: State, exact: State) -> bool:
+    """Whether attitude or omega move, and every value after the start is a single's number."""
+    pairs = (
+        (state.orientation[1:], exact.orientation[1:]),
+        (state.angular_velocity[1:], exact.angular_velocity[1:]),
+    )
+    return any(
+        _singles(reported) and not _singles(true) and np.ptp(reported, 0).any()
+        for reported, true in pairs
+    )
+
+
+def _singles(values: Array) -> bool:
+    with np.errstate(over="ignore"):
+        return bool(np.array_equal(values, values.astype(np.float32).astype(float)))

@@ -1,0 +1,171 @@
+"""Gate 2, equation: omega-dot, acceleration and torque of the engine at identical states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from omegadot.gates.bounds.scales import (
+    EPS,
+    ROUNDINGS_PER_EVALUATION,
+    body_scale,
+    linear_size,
+    norm,
+    torque_size,
+)
+from omegadot.gates.case import Case
+from omegadot.gates.rows import Row, within
+from omegadot.gates.truth import Truth
+from omegadot.reference_impl.arithmetic.precision import extended, in_doubles, to_double
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.motion import (
+    center_of_mass_acceleration,
+    forward_dynamics,
+    inverse_dynamics,
+)
+from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+GATE = "equation"
+BOUND = ROUNDINGS_PER_EVALUATION * EPS  # in double, of a well-conditioned body
+RANDOM_STATES = 200
+PATH_STATES = 200
+NOTES = {
+    "residual_alone": "one state by itself",
+    "residual_reloaded": "after another system was loaded in between",
+}
+
+
+@dataclass(frozen=True)
+class EvaluationStates:
+    """Where an engine's equations are evaluated: at random, and along the exact trajectory.
+
+    path: spread evenly, both ends among them.  acceleration: at the random states, for inverse
+    dynamics.
+    """
+
+    random: State
+    path: State
+    acceleration: Acceleration
+
+
+def evaluation_states_of(case: Case, truth: Truth, seed: int) -> EvaluationStates:
+    """The states of a case, the same for every engine and every run."""
+    own = [seed, *case.name.encode()]
+    states = random_states(case, RANDOM_STATES, own)
+    along = np.unique(np.linspace(0, len(truth.times) - 1, PATH_STATES).round().astype(int))
+    path = truth.state[along]
+    return EvaluationStates(states, path, random_acceleration(case.system, states, own))
+
+
+def random_states(case: Case, count: int, seed: Sequence[int]) -> State:
+    """`count` states: any attitude, rates over two decades about the scenario's own."""
+    random = np.random.default_rng(seed)
+    orientation = random.standard_normal((count, 4))
+    orientation /= np.linalg.norm(orientation, axis=-1, keepdims=True)
+    body, initial = case.system.body, case.initial
+    gyration = np.sqrt(float(np.trace(body.inertia)) / float(body.mass))
+    rate = float(norm(initial.angular_velocity)) or 1.0
+    speed = float(norm(initial.linear_velocity)) or rate * gyration
+    reach = float(norm(initial.position)) or gyration
+    spread = 10.0 ** random.uniform(-1.0, 1.0, (count, 1))
+    state = State(
+        orientation=orientation,
+        angular_velocity=rate * spread * random.standard_normal((count, 3)),
+        position=reach * random.standard_normal((count, 3)),
+        linear_velocity=speed * random.standard_normal((count, 3)),
+    )
+    return place_on_pivot(case.system, state)
+
+
+def random_acceleration(system: System, states: State, seed: Sequence[int]) -> Acceleration:
+    """An acceleration at which inverse dynamics is evaluated: not the one that the loads give."""
+    random = np.random.default_rng(seed)
+    free = forward_dynamics(system, states)
+    rate = norm(states.angular_velocity)[..., None]
+    angular = free.angular + rate**2 * random.standard_normal(free.angular.shape)
+    if system.load.pivot is not None:  # the pivot, not the caller, sets the linear part
+        return Acceleration(angular, center_of_mass_acceleration(system, states, angular))
+    linear = free.linear + rate**2 * random.standard_normal(free.linear.shape)
+    return Acceleration(angular, linear)
+
+
+def _apart(found: Array, true: Array) -> Array:
+    """``|found - true|`` of doubles and the truth, taken before any digit is dropped.
+
+    By hypot, which has no square to lose: where nothing acts, the least that moves is a fault.
+    """
+    length: Array = np.hypot.reduce(to_double(found - true), -1)
+    return length
+
+
+def _row(channel: str, metric: str, residual: Array, size: Array, bound: float) -> Row:
+    """The state with the largest residual, relative to `size`, against its bound.
+
+    Where the size is zero there is nothing to be wrong about: any residual there is infinite.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value = np.where(residual == 0.0, 0.0, residual / size)
+    largest = float(np.max(value)) if np.all(np.isfinite(residual)) else float("nan")
+    return within(GATE, channel, metric, largest, "1", bound, NOTES.get(metric, ""))
+
+
+def forward_rows(
+    system: System, states: State, found: Acceleration, metric: str, eps: float = EPS
+) -> list[Row]:
+    """Forward dynamics against equation (8).
+
+    omega_dot: ``J |omega_dot - reference| / S``, S the terms of (8) by size (`torque_size`) and J
+    the largest inertia among them, within ``64 eps cond``, ``cond = J / smallest``: an engine that
+    inverts the inertia cannot do better.
+    linear_momentum: the centre of mass's acceleration, relative to its terms by size.
+    """
+    true = forward_dynamics(extended(system), extended(states))
+    linear, size = _apart(found.linear, true.linear), linear_size(system, states, in_doubles(true))
+    return [
+        _omega_dot_row(system, states, found.angular, true, metric, eps),
+        _row("linear_momentum", metric, linear, size, ROUNDINGS_PER_EVALUATION * eps),
+    ]
+
+
+def _omega_dot_row(
+    system: System, states: State, omega_dot: Array, true: Acceleration, metric: str, eps: float
+) -> Row:
+    scale = body_scale(system)
+    size = torque_size(system, states, in_doubles(true)) / scale.largest
+    apart = _apart(omega_dot, true.angular)
+    bound = ROUNDINGS_PER_EVALUATION * eps * (scale.largest / scale.smallest)
+    return _row("omega_dot", metric, apart, size, bound)
+
+
+def reported_rows(system: System, states: State, omega_dot: Array, eps: float = EPS) -> list[Row]:
+    """The omega-dot reported along a run, against equation (8) at the very states that it reports.
+
+    States that are not finite, or whose squares overflow, have no omega-dot to be held against.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        rate = norm(states.angular_velocity) ** 2
+    kept = np.isfinite(rate) & np.isfinite(norm(states.orientation)) & np.isfinite(norm(omega_dot))
+    if not kept.any():
+        return []
+    sound = states[kept]
+    unit = replace(sound, orientation=normalize(sound.orientation))
+    true = forward_dynamics(extended(system), extended(unit))
+    return [_omega_dot_row(system, unit, omega_dot[kept], true, "residual_in_run", eps)]
+
+
+def inverse_rows(
+    system: System,
+    states: State,
+    requested: Acceleration,
+    torque: Array,
+    metric: str = "residual",
+    eps: float = EPS,
+) -> list[Row]:
+    """Inverse dynamics: ``|tau - reference|`` relative to the terms of equation (8) by size."""
+    true = inverse_dynamics(extended(system), extended(states), extended(requested))
+    size = torque_size(system, states, requested)
+    bound = ROUNDINGS_PER_EVALUATION * eps
+    return [_row("torque", metric, _apart(torque, true), size, bound)]

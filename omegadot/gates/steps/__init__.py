@@ -1,0 +1,1 @@
+"""Gate 3, over steps: the declared scheme, its order, vanishing steps, restarts, accuracies."""

@@ -1,0 +1,112 @@
+"""Gates 3 to 5 for an error-controlled integrator: its error must follow the accuracy requested.
+
+Such an integrator takes steps h of its own, so that an estimate of the local error stays within a
+tolerance t. Where that estimate is of the order ``h^(p+1)``, h is proportional to ``t^(1/(p+1))``,
+and the error of the run to ``t^(p/(p+1))``, or to t where the better of two solutions is kept or
+the error per unit of time is held (Hairer, Norsett and Wanner, "Solving Ordinary Differential
+Equations I", II.4; Shampine 1977). The exponent is 1/2 at least (p = 1), and 2 at most (the last
+two together). Two things interrupt this: rounding, and steps that are shorter than the tolerance
+requires, for they end at a sample. The error of those shrinks with the spacing of the samples. That
+of a fault shrinks with neither.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates.case import ACCURACIES, Sweep
+from omegadot.gates.errors.measured_run import ROTATION, MeasuredRun, measure
+from omegadot.gates.errors.verdicts import Finding
+from omegadot.gates.rows import Row
+from omegadot.gates.steps.vanishing_step import Tolerated
+from omegadot.gates.truth import Truth
+from omegadot.reference_impl.system import Array, State
+
+GATE = "scheme"
+FIXED = "not judged: its accuracy cannot be set through this adapter"
+FINEST = 1e-13  # 450 roundings of a double; an estimate of the error rounds as well
+
+
+def finest_of(integrator: Integrator) -> float:
+    """The finest accuracy that is requested of an integrator."""
+    return max(FINEST, integrator.finest_accuracy)
+
+
+def usual_for(integrator: Integrator) -> float | None:
+    """The accuracy of an integrator that is run at one alone; None where it is run in steps."""
+    if integrator.knob != "accuracy":
+        return None
+    return max(ACCURACIES[-1], integrator.finest_accuracy)
+
+
+def tolerated_by(integrator: Integrator) -> Tolerated:
+    """What steps of the finest accuracy may be off; nothing where there is no accuracy."""
+    known = integrator.knob == "accuracy" or integrator.finest_accuracy
+    if integrator.knob == "timestep" or not known:
+        return Tolerated()
+    accuracy = finest_of(integrator)
+    return Tolerated(accuracy, accuracy * steps_per_radian(integrator, accuracy))
+
+
+@dataclass(frozen=True)
+class AccuracyRun(MeasuredRun):
+    """A measured run of an error-controlled integrator.
+
+    kept: (n,) by channel, what is off where each radian of the motion adds the accuracy requested.
+    """
+
+    kept: dict[str, Array] = field(default_factory=dict)
+
+
+def order_of(integrator: Integrator) -> int:
+    """The least order p that an integrator declares for the turning, 1 without one."""
+    declared = (integrator.orders.get(channel) for channel in ROTATION)
+    return max(1, min((order for order in declared if order), default=1))
+
+
+def pace(truth: Truth) -> float:
+    """1/s: the radians that a motion makes in a second, or the rate at which its omega changes."""
+    return truth.yardstick.rate + truth.yardstick.acceleration / truth.yardstick.rate
+
+
+def steps_per_radian(integrator: Integrator, accuracy: float) -> float:
+    """About how many steps of its own an integrator takes: ``t^(-1/(p+1))``."""
+    return math.exp(-math.log(accuracy) / (order_of(integrator) + 1))
+
+
+def measure_accuracy(
+    truth: Truth, integrator: Integrator, sweep: Sweep, state: State
+) -> AccuracyRun:
+    """As `measure`, with the rounding of the integrator's own steps."""
+    measured = measure(truth, sweep, state, None)
+    assert sweep.accuracy is not None
+    yardstick, growth = truth.yardstick, truth.growth[truth.rows(sweep)]
+    radians = pace(truth) * sweep.times
+    between = pace(truth) * sweep.timestep * steps_per_radian(integrator, sweep.accuracy)
+    within = max(1.0, between)
+    bound = yardstick.round_off(sweep.timestep / within, within * sweep.sample_steps, growth)
+    rounding = yardstick.round_off(0.0, np.zeros(1), np.ones(1))["omega"][0]
+    roundings = sweep.accuracy * (1.0 + radians) / rounding
+    kept = yardstick.round_off(sweep.times / roundings, roundings, growth)
+    own = {**vars(measured), "round_off": bound}
+    return AccuracyRun(**own, kept=kept)
+
+
+def fixed(findings: dict[str, Finding]) -> dict[str, Finding]:
+    """The findings where the accuracy cannot be set, so that no error shows a fault."""
+    return {channel: _fixed(finding) for channel, finding in findings.items()}
+
+
+def _fixed(finding: Finding) -> Finding:
+    judged = finding.kind in ("round-off", "explained", "consistent", "beyond")
+    return finding if judged or finding.note == "not finite" else Finding("beyond", FIXED)
+
+
+def fixed_orders(found: Sequence[Row]) -> list[Row]:
+    """The rows of observed orders where the accuracy cannot be set: a step shows no order then."""
+    return [replace(r, verdict="info", note=FIXED) if r.verdict == "fail" else r for r in found]

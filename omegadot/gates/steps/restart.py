@@ -1,0 +1,75 @@
+"""Gate 3 for an unknown scheme: a run restarted at one of its samples must repeat the rest.
+
+The motion is that of an autonomous system, so a step depends on the state alone: not on the clock,
+nor on how the state was reached. A run from the state reported at one sample then reports the same
+samples after it. It does not where a sample is not the state that was stepped (reported late, or
+made up afterwards), where something acts for a while only, and where there is noise.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates.bounds.likeness import Likeness, likeness
+from omegadot.gates.case import Sweep
+from omegadot.gates.errors.measured_run import CHANNELS
+from omegadot.gates.rows import Row
+from omegadot.gates.truth import Truth
+from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.system import Array, State
+
+GATE = "scheme"
+METRIC = "restarted"
+
+
+def restart_of(sweep: Sweep) -> tuple[int, Sweep] | None:
+    """The sample in the middle and what is left of a sweep from there on; None without any."""
+    kept = sweep.sample_steps
+    sample = (len(kept) - 1) // 2
+    if sample == 0:
+        return None
+    left = Sweep(sweep.timestep, int(sweep.steps - kept[sample]), sweep.every)
+    return sample, left
+
+
+def refused(reason: str) -> Row:
+    """A run that cannot be restarted where it has been."""
+    note = f"a run cannot be restarted at its own sample: {reason}"
+    return Row(GATE, "omega", METRIC, float("inf"), "1", 1.0, "fail", note)
+
+
+def row(
+    truth: Truth, integrator: Integrator, sweep: Sweep, state: State, sample: int, restarted: State
+) -> Row:
+    """The largest distance between the two runs, in parts of what rounding allows.
+
+    Each lies within the round-off bound of one trajectory, so that they differ by twice that at
+    most.
+    """
+    yardstick = truth.yardstick
+    rest = state[sample:]
+    apart = {c: yardstick.distance(c, rest, restarted) for c in CHANNELS}
+
+    def alike(growth: Array) -> Likeness:
+        faster = yardstick.faster(state)
+        bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth, faster)
+        return likeness(apart, {c: 2.0 * bounds[c][sample:] for c in CHANNELS})
+
+    found = alike(np.ones(len(sweep.times)))
+    if not found.agree:  # most agree to the bit, and growth takes long to work out
+        found = alike(growth_along(yardstick.system, sweep.times, state, yardstick.rate))
+    start = (found.channel, METRIC, found.share, "1", 1.0)
+    if np.isnan(found.share):
+        return Row(GATE, *start, "info", "not judged: the run blows up")
+    if found.agree:
+        return Row(GATE, *start, "pass")
+    if integrator.knob == "fixed-accuracy":
+        return Row(
+            GATE, *start, "info", "not judged: its steps are its own, and so is its accuracy"
+        )
+    if not integrator.one_step:
+        return Row(GATE, *start, "info", "steps use earlier ones, as is declared")
+    when = f"t = {sweep.times[sample]:.4g} s"
+    note = f"a run restarted at its own sample at {when} gives other samples: they are not the"
+    return Row(GATE, *start, "fail", f"{note} state that is stepped, or steps depend on the past")

@@ -1,0 +1,169 @@
+"""Gate 3, scheme: an engine's steps against those it declares, and the order of its errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.gates.bounds.likeness import Likeness, like_schemes, likeness
+from omegadot.gates.errors.measured_run import (
+    CHANNELS,
+    Declared,
+    MeasuredRun,
+    errors_of,
+    evidence_of,
+)
+from omegadot.gates.errors.orders import (
+    ORDER_TOLERANCE,
+    VANISHED,
+    ObservedOrder,
+    is_whole,
+    order_of,
+)
+from omegadot.gates.rows import Row
+from omegadot.gates.truth import SchemeKey, Truth, scheme_key
+from omegadot.reference_impl.coordinates import canonical
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import State, System
+
+GATE = "scheme"
+BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
+NOTHING = Likeness(float("nan"), "omega", float("nan"))
+
+
+def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, ObservedOrder]:
+    """The order of every channel with an error above rounding, from all runs of one sweep."""
+    found = {}
+    for channel in CHANNELS:
+        errors = [errors_of(run, channel) for run in measured_runs]
+        order = order_of([one for one in errors if one is not None])
+        if order is not None:
+            found[channel] = order
+    return found
+
+
+def order_rows(
+    seen: Mapping[str, ObservedOrder], declared: Declared, measured: MeasuredRun
+) -> list[Row]:
+    """The orders that one integrator's sweep shows, against those that it declares.
+
+    A channel in which the engine equals its declared scheme is not held to an order that the
+    scheme does not show here either.
+    """
+    found = []
+    for channel, shown in seen.items():
+        limit, left = declared.orders[channel], measured.against_scheme.get(channel)
+        hidden = f": {shown.hidden}" if shown.hidden else ""
+        verdict, note = "info", f"not resolved by this sweep{hidden}"
+        if shown is VANISHED:
+            verdict, note = "info", "the error falls into rounding"
+        elif shown.resolved:
+            explained = left is not None and bool(np.all(left <= measured.round_off[channel]))
+            verdict, note = _held_to(shown, limit, explained)
+        bound = None if limit is None else float(limit)
+        found.append(Row(GATE, channel, "observed_order", shown.value, "1", bound, verdict, note))
+    return found
+
+
+def _held_to(order: ObservedOrder, declared: int | None, explained: bool) -> tuple[str, str]:
+    if declared is None:
+        return "info", "no order is declared"
+    if order.value >= declared - ORDER_TOLERANCE:
+        return "pass", ""
+    if order.value + order.rise >= declared - ORDER_TOLERANCE:
+        limit = order.value + order.rise
+        return "info", f"not settled: the slopes are heading for {limit:.2f}"
+    if not is_whole(order.value):
+        return "info", f"not settled: observed order {order.value:.2f}, declared {declared}"
+    if explained:
+        return "info", "below the declared order, as the scheme itself is on this motion"
+    return "fail", f"observed order {order.value:.2f}, declared {declared}"
+
+
+def comparison_keys(integrator: Integrator, system: System) -> list[SchemeKey]:
+    """The reference's runs to hold an integrator against: every scheme's if it declares none.
+
+    None of them for an error-controlled integrator, whose steps are its own.
+    """
+    if integrator.knob != "timestep":
+        return []
+    declared = scheme_key(integrator, system)
+    if declared is not None:
+        return [declared]
+    coordinates = canonical(system, integrator.coordinates)
+    return [
+        SchemeKey(name, coordinates)
+        for name, scheme in SCHEMES.items()
+        if coordinates in scheme.coordinates
+    ]
+
+
+def match_row(
+    truth: Truth,
+    integrator: Integrator,
+    measured: MeasuredRun,
+    state: State,
+    measured_runs: list[MeasuredRun],
+) -> Row:
+    """The largest distance from the declared scheme, in parts of its round-off bound.
+
+    An engine that declares a scheme and steps another fails, even where its error shrinks as it
+    should: its declaration is wrong. A remaining distance passes where it shrinks faster than the
+    scheme's own error by an order at least: that is the same scheme, less finely computed.
+    For an engine that declares none, the row names the schemes that it equals.
+    """
+    if measured.against_scheme:
+        found = likeness(measured.against_scheme, measured.round_off)
+        row = _declared_row(truth, integrator, measured, state, found)
+        if row.verdict == "fail" and _left_is_of_higher_order(measured, measured_runs, integrator):
+            note = f"equals {integrator.scheme} but for terms that vanish faster than its error"
+            return _row(found, "info", note)
+        return row
+    if integrator.scheme is not None:
+        note = f"the reference has no run of {integrator.scheme} to hold this against"
+        return _row(NOTHING, "info", note)
+    alike = like_schemes(truth, measured.sweep, state)
+    nearest = min(alike.values(), key=lambda one: (np.isnan(one.share), one.share), default=None)
+    if nearest is None:
+        return _row(NOTHING, "info", "declares no scheme, and none was stepped for comparison")
+    equals = _equalled(alike) or "none known"
+    return _row(nearest, "info", f"declares no scheme, and equals {equals}")
+
+
+def _equalled(alike: Mapping[SchemeKey, Likeness]) -> str:
+    return " and ".join(dict.fromkeys(key.scheme for key, one in alike.items() if one.agree))
+
+
+def _left_is_of_higher_order(
+    measured: MeasuredRun, measured_runs: list[MeasuredRun], integrator: Integrator
+) -> bool:
+    """Whether, in every channel, what is left of the scheme is rounding or of a higher order."""
+    for channel in CHANNELS:
+        evidence = evidence_of(measured, measured_runs, channel, integrator.orders.get(channel))
+        if evidence.left is None or np.all(evidence.left <= evidence.round_off):
+            continue
+        left, declared = evidence.orders[-1], integrator.orders.get(channel)
+        if left is None or declared is None or not left.resolved or evidence.excess > 1.0:
+            return False
+        if left.value < declared + 1 - ORDER_TOLERANCE:
+            return False
+    return True
+
+
+def _row(found: Likeness, verdict: str, note: str) -> Row:
+    return Row(GATE, found.channel, "match", found.share, "1", 1.0, verdict, note)
+
+
+def _declared_row(
+    truth: Truth, integrator: Integrator, measured: MeasuredRun, state: State, found: Likeness
+) -> Row:
+    if np.isnan(found.share):
+        return _row(found, "info", BLOWN_UP)
+    if found.agree:
+        return _row(found, "pass", f"equals {integrator.scheme}, to {found.distance:.1e}")
+    others = _equalled(like_schemes(truth, measured.sweep, state))
+    instead = f"equals {others}" if others else "steps otherwise"
+    text = f"declares {integrator.scheme}, but {instead}: {found.channel} diverges from it"
+    return _row(found, "fail", f"{text} {found.share:.0e} times as far as rounding can")

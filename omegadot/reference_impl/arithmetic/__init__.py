@@ -1,0 +1,1 @@
+"""Numbers with more digits than a double, and vectors as their components."""
