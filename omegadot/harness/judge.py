@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -28,6 +30,8 @@ from omegadot.harness.repeats import rows_again
 from omegadot.harness.step_probes import rows_of_probes
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
+
+Run = TypeVar("Run", bound=MeasuredRun)
 
 
 @dataclass(frozen=True)
@@ -68,16 +72,14 @@ def _why(findings: dict[str, Finding]) -> str:
 
 
 def _measured_runs(
-    truth: Truth, integrator: Integrator, answers: Iterable[tuple[Sweep, Answer]]
-) -> dict[float, MeasuredRun]:
+    measured: Callable[[Sweep, State], Run], answers: Iterable[tuple[Sweep, Answer]]
+) -> dict[Sweep, Run]:
     """The runs of one integrator that can be measured: those with the samples requested."""
-    measured_runs = {}
-    for sweep, answer in answers:
-        if answer.ok and len(answer.result["time"]) == len(sweep.times):
-            own = truth.companion(integrator, sweep)
-            state = State(**answer.result["state"])
-            measured_runs[sweep.timestep] = measure(truth, sweep, state, own)
-    return measured_runs
+    return {
+        sweep: measured(sweep, State(**answer.result["state"]))
+        for sweep, answer in answers
+        if answer.ok and len(answer.result["time"]) == len(sweep.times)
+    }
 
 
 def _diverged(
@@ -123,13 +125,17 @@ def _judge_integrator(
 ) -> Iterator[JudgedRun]:
     """Judge every step size of one integrator; finer ones only serve to see its order."""
     answers = [(sweep, result.runs[integrator.name, sweep.knob]) for sweep in sweeps]
-    measured_runs = _measured_runs(truth, integrator, [*answers, *finer])
+
+    def next_to_its_scheme(sweep: Sweep, state: State) -> MeasuredRun:
+        return measure(truth, sweep, state, truth.companion(integrator, sweep))
+
+    measured_runs = _measured_runs(next_to_its_scheme, [*answers, *finer])
     system, eps = truth.yardstick.system, truth.yardstick.eps
     declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
     seen, grows = scheme.orders_seen(known), rounding_step.rows(known, declared, eps)
     for sweep, answer in answers:
-        measured = measured_runs.get(sweep.timestep)
+        measured = measured_runs.get(sweep)
         if measured is None:
             yield _failed(integrator, sweep, answer, eps)
             continue
@@ -184,11 +190,8 @@ def _judge_accuracies(
 ) -> Iterator[JudgedRun]:
     """Judge every accuracy of one integrator; finer ones serve to see whether its error follows."""
     answers = [(sweep, result.runs[integrator.name, sweep.knob]) for sweep in sweeps]
-    eps, measured_runs = truth.yardstick.eps, {}
-    for sweep, answer in (*answers, *finer):
-        if answer.ok and len(answer.result["time"]) == len(sweep.times):
-            state = State(**answer.result["state"])
-            measured_runs[sweep] = accuracy.measure_accuracy(truth, integrator, sweep, state)
+    eps, measure_one = truth.yardstick.eps, partial(accuracy.measure_accuracy, truth, integrator)
+    measured_runs = _measured_runs(measure_one, [*answers, *finer])
     known = list(measured_runs.values())
     further = accuracy_followed.finer_sweep(truth, integrator, known) if known else None
     for sweep, answer in answers:
