@@ -34,7 +34,7 @@ class Cluster:
 
     scheme: the reference's that they equal, None where they equal none.  also: others that they
     equal too, where the motion does not distinguish schemes; `scheme` is then the one that most
-    members declare.
+    members declare.  exact: they equal the exact solution: this is no sign of a common scheme.
     """
 
     scenario: str
@@ -42,6 +42,7 @@ class Cluster:
     scheme: str | None
     members: tuple[str, ...]
     also: tuple[str, ...] = ()
+    exact: bool = False
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,10 @@ def _clusters(judged: JudgedCase) -> Iterator[Cluster]:
         return
     for sweep in judged.case.sweeps:
         schemes, rate = _schemes(truth, sweep), truth.yardstick.rate
+        bound = _bound(truth, sweep, truth.growth[truth.rows(sweep)])
+        solution = _MeasuredRun("exact", None, truth.at(sweep), bound)
         for group in _grouped(_runs(truth, judged.engines, sweep), rate):
             names, equal = tuple(run.name for run in group), _named(group, schemes, rate)
             scheme, also = next(iter(equal), None), tuple(equal[1:])
-            yield Cluster(judged.case.name, sweep.timestep, scheme, names, also)
+            exact = all(_alike(solution, group, rate))
+            yield Cluster(judged.case.name, sweep.timestep, scheme, names, also, exact)

@@ -84,6 +84,12 @@ def test_a_motion_that_distinguishes_nothing_lists_which_it_may_be():
     (found,) = clusters_of(sphere, truth, [engine_case(sphere, truth, "one", *mine)])
     assert found.members == ("one:a", "one:b", "one:c")
     assert (found.scheme, found.also) == (RK4, (EULER,))
+    assert found.exact
+
+
+def test_errors_of_a_scheme_are_no_exact_solution(case, truth):
+    mine = engine_case(case, truth, "one", (declared("a", EULER), EULER))
+    assert not any(cluster.exact for cluster in clusters_of(case, truth, [mine]))
 
 
 def test_a_difference_beyond_rounding_parts_two_runs(case, truth):
@@ -114,5 +120,5 @@ def test_a_run_records_its_clusters(tmp_path: Path) -> None:
     assert finest["members"] == [
         *("mujoco:Euler", "pinocchio:aba+semi-implicit-euler", "dart:semi-implicit")
     ]
-    assert "produce identical trajectories (all step semi-implicit-euler)" in result.out
+    assert "produce identical trajectories (all step semi-implicit-euler" in result.out
     assert np.unique([c["timestep"] for c in run["clusters"]]).tolist() == [0.005, 0.01, 0.02]

@@ -48,7 +48,7 @@ def test_identical_trajectories_are_not_independent_evidence():
         "x Euler, y step and z aba+euler produce identical trajectories (all step euler), "
         "so their agreement is not independent evidence."
     )
-    assert extent(found) == "On 1 scenario."
+    assert extent(found) == "On 1 scenario that distinguishes schemes."
     assert found.engines == 3
 
 
@@ -56,11 +56,16 @@ def test_an_exception_does_not_split_a_cluster_and_is_named():
     same = [cluster(name, "x:a y:b") for name in ("one", "two", "three")]
     apart = [cluster("four", "x:a", "other"), cluster("four", "y:b")]
     (found,) = clusters_over_scenarios(of(*same, *apart))
-    assert found.scheme == "euler"
-    assert extent(found) == "On 3 of 4 scenarios; the trajectories differ on four."
+    assert found.schemes == ("euler",)
+    assert extent(found) == (
+        "On 3 of 4 scenarios that distinguish schemes; the trajectories differ on four."
+    )
     many = [cluster(n, m) for n in "pqrst" for m in ("x:a", "y:b")]
     (found,) = clusters_over_scenarios(of(*same, *[cluster(n, "x:a y:b") for n in "klmno"], *many))
-    assert extent(found) == "On 8 of 13 scenarios; the trajectories differ on p, q, r and 2 more."
+    assert extent(found) == (
+        "On 8 of 13 scenarios that distinguish schemes; "
+        "the trajectories differ on p, q, r and 2 more."
+    )
 
 
 def test_a_motion_on_which_all_schemes_agree_makes_no_cluster():
@@ -69,6 +74,26 @@ def test_a_motion_on_which_all_schemes_agree_makes_no_cluster():
     assert [found.members for found in clusters_over_scenarios(of(simple, *listing))] == [
         ("x:a", "y:b")
     ]
+
+
+def test_agreement_on_the_exact_solution_is_not_counted():
+    """The sphere is solved exactly by every scheme: that makes no copies of each other."""
+    sphere = cluster("sphere", "x:a y:b x:c", "rk4") | {"exact": True, "also": ["euler"]}
+    assert clusters_over_scenarios(of(sphere)) == []
+    more = [cluster("top", "x:a y:b"), cluster("top", "x:c", "rk4")]
+    (found,) = clusters_over_scenarios(of(sphere, sphere | {"scenario": "spin"}, *more))
+    assert (found.members, found.schemes) == (("x:a", "y:b"), ("euler",))
+    assert extent(found) == "On 1 scenario that distinguishes schemes."
+
+
+def test_schemes_that_no_scenario_distinguishes_are_all_named():
+    both = [cluster(name, "x:a y:b") | {"also": ["short-turns"]} for name in ("one", "two")]
+    (found,) = clusters_over_scenarios(of(*both))
+    expected = "(both step euler or short-turns, which no scenario here distinguishes)"
+    assert expected in sentence(found)
+    told = cluster("three", "x:a y:b")
+    (found,) = clusters_over_scenarios(of(told, told | {"scenario": "four"}, *both))
+    assert found.schemes == ("euler",)
 
 
 def test_together_means_at_every_step():

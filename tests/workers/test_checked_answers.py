@@ -157,6 +157,9 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ({"integrators": (replace(EULER, finest_accuracy=2),)}, "is 2; give a number from 0 to 1"),
         ({"integrators": (replace(EULER, finest_accuracy="x"),)}, "the finest accuracy of euler"),
         ({"integrators": (replace(EULER, scheme=1),)}, "the scheme of euler"),
+        ({"integrators": (replace(EULER, scheme="mine"),)}, "'mine', which the reference lacks"),
+        ({"integrators": (replace(EULER, orders={"omega": -3}),)}, "in omega is -3; give a whole"),
+        ({"integrators": (replace(EULER, orders={"omega": 0}),)}, "in omega is 0; give a whole"),
         (
             {"integrators": (replace(EULER, coordinates="body"),)},
             "of euler are 'body'; give one of",

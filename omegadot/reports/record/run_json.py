@@ -76,6 +76,8 @@ def _check_clusters(clusters: object, where: str) -> None:
             isinstance(entry.get("scenario"), str)
             and isinstance(entry.get("timestep"), int | float)
             and isinstance(scheme, str | None)
+            and isinstance(entry.get("exact", False), bool)
+            and all(isinstance(name, str) for name in entry.get("also") or ())
             and isinstance(members, list | tuple)
             and all(isinstance(member, str) for member in members)
         )

@@ -17,12 +17,13 @@ _SCENARIOS_NAMED = 3
 class Cluster:
     """Members whose trajectories are identical, to rounding, on most scenarios.
 
-    members: as ``engine:integrator``.  scheme: None where no scheme of the reference equals them.
+    members: as ``engine:integrator``.  schemes: those of the reference that they equal on each
+    scenario that shows it; more than one where no motion tells these apart.
     together and apart: the scenarios on which all of them agree, and on which some do not.
     """
 
     members: tuple[str, ...]
-    scheme: str | None
+    schemes: tuple[str, ...]
     together: tuple[str, ...]
     apart: tuple[str, ...]
 
@@ -47,25 +48,32 @@ def _homes(clusters: Iterable[Mapping[str, Any]]) -> dict[str, dict[str, dict[fl
     return homes
 
 
-def _agree(one: Mapping[float, int], other: Mapping[float, int]) -> bool | None:
-    """Whether two members are together at every step that both ran; None where there is none."""
+def _agree(one: Mapping[float, int], other: Mapping[float, int], exact: set[int]) -> bool | None:
+    """Whether two members are together at every step that both ran.
+
+    None where there is none, or where they are together because both are exact.
+    """
     shared = one.keys() & other.keys()
-    return all(one[step] == other[step] for step in shared) if shared else None
+    if any(one[step] != other[step] for step in shared):
+        return False
+    return True if any(one[step] not in exact for step in shared) else None
 
 
 def clusters_over_scenarios(run: Mapping[str, Any]) -> list[Cluster]:
     """Clusters of two or more over all scenarios, from those of ``run.json``; the largest first.
 
-    Each two members agree on more than half of the scenarios that both ran: simple motions do not
-    distinguish schemes, and a special load may separate schemes that are otherwise equal.
+    Each two members agree on more than half of the scenarios that both ran: a special load may
+    separate schemes that are otherwise equal. A motion that both follow exactly does not count, as
+    it distinguishes no schemes.
     """
     clusters = run.get("clusters") or []
     homes = _homes(clusters)
+    exact = {number for number, cluster in enumerate(clusters) if cluster.get("exact")}
     members = list(dict.fromkeys(member for home in homes.values() for member in home))
     agreed: dict[frozenset[str], dict[str, bool]] = {}
     for scenario, home in homes.items():
         for one, other in combinations(home, 2):
-            same = _agree(home[one], home[other])
+            same = _agree(home[one], home[other], exact)
             if same is not None:
                 agreed.setdefault(frozenset((one, other)), {})[scenario] = same
     groups: list[list[str]] = []
@@ -93,20 +101,27 @@ def _cluster(
     scenarios = list(dict.fromkeys(scenario for pair in pairs for scenario in pair))
     apart = tuple(s for s in scenarios if not all(pair.get(s, True) for pair in pairs))
     together = tuple(s for s in scenarios if s not in apart)
-    names = Counter(
-        cluster["scheme"]
+    equal = [
+        {cluster["scheme"], *cluster.get("also", ())} - {None}
         for cluster in clusters
-        if cluster["scenario"] in together and set(group) & set(cluster["members"])
-    )
-    scheme = names.most_common(1)[0][0] if names else None
-    return Cluster(tuple(group), scheme, together, apart)
+        if cluster["scenario"] in together
+        and not cluster.get("exact")
+        and set(group) <= set(cluster["members"])
+    ]
+    count = Counter(name for names in equal for name in names)
+    schemes = tuple(n for n, seen in count.most_common() if seen > 0.5 * len(equal))
+    return Cluster(tuple(group), schemes, together, apart)
 
 
 def sentence(cluster: Cluster) -> str:
     """Which members are identical, and what follows."""
     members = listed([label(member) for member in cluster.members])
     count = "both" if len(cluster.members) == 2 else "all"
-    scheme = f"{count} step {cluster.scheme}" if cluster.scheme else "no scheme of the reference"
+    scheme = (
+        f"{count} step {cluster.schemes[0]}" if cluster.schemes else "no scheme of the reference"
+    )
+    if len(cluster.schemes) > 1:
+        scheme += f" or {' or '.join(cluster.schemes[1:])}, which no scenario here distinguishes"
     return (
         f"{members} produce identical trajectories ({scheme}), so their agreement is not "
         "independent evidence."
@@ -114,16 +129,19 @@ def sentence(cluster: Cluster) -> str:
 
 
 def extent(cluster: Cluster) -> str:
-    """On how many scenarios that holds, and the first ones on which it does not."""
+    """On how many scenarios that holds, and the first ones on which it does not.
+
+    Scenarios that all members follow exactly distinguish no schemes, and are not counted.
+    """
     total = len(cluster.together) + len(cluster.apart)
+    if total == 1:
+        return "On 1 scenario that distinguishes schemes."
+    counted = f"{total} scenarios that distinguish schemes"
     if not cluster.apart:
-        return f"On all {total} scenarios." if total > 1 else "On 1 scenario."
+        return f"On all {counted}."
     several = len(cluster.apart) > _SCENARIOS_NAMED
     shown = first(cluster.apart, _SCENARIOS_NAMED) if several else listed(cluster.apart)
-    return (
-        f"On {len(cluster.together)} of {times(total, 'scenario')}; "
-        f"the trajectories differ on {shown}."
-    )
+    return f"On {len(cluster.together)} of {counted}; the trajectories differ on {shown}."
 
 
 def on_scenario(run: Mapping[str, Any], scenario: str) -> str:

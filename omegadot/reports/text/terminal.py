@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.summary.clusters import clusters_over_scenarios, sentence
+from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.summary import Cell, Missing, Summary, summarise
@@ -45,7 +45,7 @@ def print_summary(record: Record, console: Console | None = None) -> None:
     for line in _extremes(summary):
         console.print(Text(line))
     for cluster in clusters_over_scenarios(record.run)[:1]:  # the largest; the page names all
-        console.print(Text(sentence(cluster)))
+        console.print(Text(f"{sentence(cluster)} {extent(cluster)}"))
     for missing in summary.missing:
         console.print(Text(_missing_line(missing), style=_NOT_RUN))
     console.print(Text(_counts(summary)))

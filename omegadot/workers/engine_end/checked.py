@@ -18,6 +18,7 @@ from omegadot.adapters.protocol import (
     Trajectory,
 )
 from omegadot.reference_impl.coordinates import COORDINATES
+from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, Array, Body, State
 
 Shape = tuple[int, ...]
@@ -174,6 +175,11 @@ def _check_integrator(integrator: Integrator) -> None:
         )
     if integrator.scheme is not None:
         _expect(f"the scheme of {integrator.name}", integrator.scheme, str)
+        if integrator.scheme not in SCHEMES:
+            raise AnswerError(
+                f"the scheme of {integrator.name} is {integrator.scheme!r}, which the reference "
+                f"lacks; give None for a scheme of your own, or one of {', '.join(SCHEMES)}"
+            )
     if integrator.coordinates not in COORDINATES:
         raise AnswerError(
             f"the coordinates of {integrator.name} are {integrator.coordinates!r}; "
@@ -187,3 +193,8 @@ def _check_integrator(integrator: Integrator) -> None:
             )
         if order is not None:
             _expect(f"the order of {integrator.name} in {channel}", order, int)
+            if order < 1:
+                raise AnswerError(
+                    f"the order of {integrator.name} in {channel} is {order}; give a whole number "
+                    "above zero, or None where the channel is conserved"
+                )
