@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import signal
 import sys
 from typing import Annotated
 
@@ -73,6 +74,7 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a pipe on Windows has no letter for omega
             stream.reconfigure(errors="replace")
+    received = _end_like_ctrl_c()
     try:
         code = app(standalone_mode=False)
     except (typer.Abort, KeyboardInterrupt):
@@ -85,7 +87,26 @@ def main() -> None:
         sys.exit(3 if _is_our_own(error) else 2)
     if code == INTERRUPTED:  # the parser makes this number of Ctrl-C, and prints nothing
         print("omegadot: interrupted.", file=sys.stderr)
+        code = 128 + received[0] if received else INTERRUPTED
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _end_like_ctrl_c() -> list[int]:
+    """Take SIGTERM and SIGHUP as Ctrl-C is taken, so that what there is gets written.
+
+    The list receives the signal's number. One that is ignored, as under nohup, stays so.
+    """
+    received: list[int] = []
+
+    def interrupt(number: int, _: object) -> None:
+        received.append(number)
+        raise KeyboardInterrupt
+
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, interrupt)
+    return received
 
 
 def _is_our_own(error: Exception) -> bool:

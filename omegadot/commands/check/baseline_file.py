@@ -111,7 +111,7 @@ def write_baseline(folder: Path, engine: str, baseline: Mapping[str, ScenarioFig
     """Write an engine's figures, whole or not at all. Raises RecordError."""
     path = path_of(folder, engine)
     make_folder(folder)
-    return write_whole(path, to_text(engine, baseline))
+    return write_whole(path, to_text(engine, baseline), HEAD)
 
 
 def _figures(table: dict[str, Any]) -> Figures:

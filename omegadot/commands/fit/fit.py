@@ -14,13 +14,13 @@ from omegadot.commands.fit.models import Terms, compare_models
 from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.samples import samples_of
 from omegadot.commands.fit.scale import known_of, scale_of, torque_of
-from omegadot.commands.fit.scenario_file import scenario_of_fit, text_of
+from omegadot.commands.fit.scenario_file import MARK, scenario_of_fit, text_of
 from omegadot.commands.fit.sentences import sentences
 from omegadot.commands.fit.spread import spread_of
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.settings import GivenColumns, Reading, reading_of, settings_of
 from omegadot.harness.usage import UsageError, check_number
-from omegadot.reports.record.whole_file import write_whole
+from omegadot.reports.record.whole_file import check_target, write_whole
 from omegadot.scenarios import scenario
 
 
@@ -68,6 +68,8 @@ def fit(
         check_number("--mass", mass, 0.0)
     if name is not None:
         scenario("sphere", name=name)  # refuses what is no name, before the work
+    if out is not None:
+        check_target(Path(out), MARK)
     mapped = Path(map_file) if map_file else None
     reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
     samples = samples_of(reading)
@@ -79,7 +81,7 @@ def fit(
     found_out = sentences(samples, compared, spread, own, scale, terms)
     found = scenario_of_fit(samples, own, load, mass or 1.0, name)
     if out is not None:
-        write_whole(Path(out), text_of(found, found_out))
+        write_whole(Path(out), text_of(found, found_out), MARK)
     return FitResult(
         samples,
         own,

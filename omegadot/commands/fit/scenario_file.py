@@ -15,6 +15,7 @@ from omegadot.commands.fit.samples import Samples
 from omegadot.reference_impl.system import Array
 from omegadot.scenarios import Scenario, scenario
 
+MARK = "# Fitted to a log by omegadot fit."
 STEPS = (1.0, 0.5, 0.25)  # of the samples' interval
 
 
@@ -57,7 +58,7 @@ def _printable(text: str) -> str:
 
 def text_of(found: Scenario, comments: list[str]) -> str:
     """The file: comments, then every key."""
-    lines = [f"# {_printable(' '.join(comment.split()))}" for comment in comments]
+    lines = [MARK] + [f"# {_printable(' '.join(comment.split()))}" for comment in comments]
     return "\n".join([*lines, *_table(found.to_dict(), "")]) + "\n"
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from omegadot.commands.compare.compare import compare
 from omegadot.reports.charts.chart_library import packed_library
-from omegadot.reports.record.whole_file import write_whole
+from omegadot.reports.record.whole_file import PAGE_MARK, check_target, write_whole
 
 TWO_RUNS = Path("two-runs.html")
 PathLike = str | os.PathLike[str]
@@ -25,7 +25,8 @@ def report(run: PathLike, other: PathLike | None = None, *, out: PathLike | None
         return redraw(Path(run), file)
     from omegadot.reports.two_runs.page import draw_two_runs
 
-    return write_whole(file or TWO_RUNS, draw_two_runs(compare(run, other)))
+    check_target(file or TWO_RUNS, PAGE_MARK)
+    return write_whole(file or TWO_RUNS, draw_two_runs(compare(run, other)), PAGE_MARK)
 
 
 def redraw(folder: Path, out: Path | None = None) -> Path:
@@ -42,8 +43,9 @@ def redraw(folder: Path, out: Path | None = None) -> Path:
         from omegadot.reports.page.page import draw_page
         from omegadot.reports.record.record import PAGE, read_record
 
+        check_target(out or folder / PAGE, PAGE_MARK)
         page = draw_page(read_record(folder), read_choice(folder))
-        return write_whole(out or folder / PAGE, page)
+        return write_whole(out or folder / PAGE, page, PAGE_MARK)
     finally:
         if collecting:
             gc.enable()

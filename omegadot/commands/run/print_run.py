@@ -32,6 +32,8 @@ def print_text(result: RunResult) -> None:
         typer.echo(f"Declared exception: {problem}")
     if result.folder is not None:
         typer.echo(f"Report: {result.folder / PAGE}")
+    if result.kept is not None:
+        typer.echo(f"The earlier record in {result.kept} is kept: this run was interrupted.")
 
 
 def print_json(result: RunResult) -> None:

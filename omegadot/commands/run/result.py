@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from omegadot.harness.plan import EngineChoice
+from omegadot.reports.record.record import unfinished_name
 from omegadot.reports.run_record import RunRecord, TaskResult
 
 
@@ -16,11 +17,13 @@ class RunResult:
     """A run. record: its tables and its page.  folder: where it was written, if anywhere.
 
     required: engines that were given by name; one of these that is missing counts against the run.
+    kept: the folder of an earlier record, where an interrupted run did not replace it.
     """
 
     record: RunRecord
     folder: Path | None = None
     required: frozenset[str] = frozenset()
+    kept: Path | None = None
 
     @property
     def complete(self) -> bool:
@@ -76,6 +79,13 @@ class RunInterrupted(KeyboardInterrupt):
 def result_of(
     record: RunRecord, choices: Sequence[EngineChoice], out: str | os.PathLike[str] | None
 ) -> RunResult:
-    """The result of a record, which is written where a folder is given. Raises RecordError."""
-    folder = None if out is None else record.save(out)
-    return RunResult(record, folder, frozenset(c.name for c in choices if c.required))
+    """The result of a record, which is written where a folder is given. Raises RecordError.
+
+    An interrupted run does not replace an earlier record: it is written beside it.
+    """
+    folder, kept = None, None
+    if out is not None:
+        requested = Path(out)
+        target = requested if record.run["complete"] else unfinished_name(requested)
+        folder, kept = record.save(target), requested if target != requested else None
+    return RunResult(record, folder, frozenset(c.name for c in choices if c.required), kept)

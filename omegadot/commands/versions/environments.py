@@ -118,5 +118,6 @@ class Environments:
         except BaseException:
             shutil.rmtree(folder, ignore_errors=True)
             raise
-        write_whole(marker, json.dumps({"folder": folder.name, "requirements": requirements}))
+        text = json.dumps({"folder": folder.name, "requirements": requirements})
+        write_whole(marker, text, mark="")  # the cache holds nothing but omegadot's own
         return python_of(folder)

@@ -15,7 +15,7 @@ from omegadot.reports.choice import sentences, tables
 from omegadot.reports.page.templating import asset, environment
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.record.schema import RecordError
-from omegadot.reports.record.whole_file import write_whole
+from omegadot.reports.record.whole_file import PAGE_MARK, write_whole
 from omegadot.reports.summary.provenance import command_of
 from omegadot.reports.text.numbers import knob
 
@@ -84,8 +84,8 @@ def read_choice(folder: Path) -> Section | None:
 
 def write_choice(choice: Mapping[str, Any], folder: Path) -> None:
     """Page and JSON, each whole or not at all. Raises RecordError."""
-    write_whole(folder / NAME, dump_json(choice))
-    write_whole(folder / "choice.html", draw_choice(choice))
+    write_whole(folder / NAME, dump_json(choice), '"kind": "choice"')
+    write_whole(folder / "choice.html", draw_choice(choice), PAGE_MARK)
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import secrets
 import shutil
@@ -52,6 +53,14 @@ def check_folder(folder: Path) -> None:
         )
     if names and RUN not in names:
         raise RecordError(f"{folder}: is not empty and holds no {RUN}; name a new folder.")
+
+
+def unfinished_name(folder: Path) -> Path:
+    """Where the record of an interrupted run goes: beside an earlier record in `folder`."""
+    if not (folder / RUN).exists():
+        return folder
+    names = (f"{folder.name}-interrupted{'' if n == 1 else f'-{n}'}" for n in itertools.count(1))
+    return next(path for name in names if not (path := folder.with_name(name)).exists())
 
 
 def write_record(record: Record, folder: Path, page: str) -> None:

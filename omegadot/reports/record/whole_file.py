@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import secrets
 from pathlib import Path
+
+PAGE_MARK = "<title>omegadot"
+_BYTES_OF_A_MARK = 4096
 
 
 def make_folder(folder: Path) -> None:
@@ -20,12 +24,40 @@ def make_folder(folder: Path) -> None:
         raise RecordError(f"{folder}: cannot be written to; give another.")
 
 
-def write_whole(target: Path, text: str) -> Path:
-    """Write a text under another name, then give it its own. Raises RecordError, one sentence."""
+def check_target(target: Path, mark: str) -> None:
+    """Raise RecordError unless `target` is absent, or a file that begins with this mark.
+
+    A link, a device or a FIFO is never replaced, nor a file that omegadot did not write: such a
+    file has no mark in its first 4 kB.
+    """
     from omegadot.reports.record.schema import RecordError
 
     if target.is_dir():
         raise RecordError(f"{target}: is a folder; name a file.")
+    if not os.path.lexists(target):
+        return
+    if target.is_symlink() or not target.is_file():
+        raise RecordError(f"{target}: is a link or a device, and is not replaced; name a file.")
+    try:
+        with target.open("rb") as file:
+            start = file.read(_BYTES_OF_A_MARK)
+    except OSError as error:
+        raise RecordError(f"{target}: cannot be read ({error.strerror}); name another.") from error
+    if mark.encode() not in start:
+        raise RecordError(
+            f"{target}: is no file of this kind that omegadot wrote, and is not replaced; "
+            "name another, or remove it."
+        )
+
+
+def write_whole(target: Path, text: str, mark: str) -> Path:
+    """Write a text under another name, then give it its own. Raises RecordError, one sentence.
+
+    mark: what files of this kind, and no others, have in their first 4 kB.
+    """
+    from omegadot.reports.record.schema import RecordError
+
+    check_target(target, mark)
     fresh = target.with_name(f".{target.name}.{secrets.token_hex(6)}")
     try:
         fresh.write_text(text, encoding="utf-8", errors="replace", newline="\n")
@@ -33,5 +65,6 @@ def write_whole(target: Path, text: str) -> Path:
     except OSError as error:
         raise RecordError(f"{target}: cannot be written ({error.strerror}).") from error
     finally:
-        fresh.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            fresh.unlink(missing_ok=True)
     return target

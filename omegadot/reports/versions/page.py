@@ -11,7 +11,7 @@ from typing import Any
 from omegadot.reports.charts.palette import COLOURS, DASHES
 from omegadot.reports.charts.plot import Frame, LogAxis, Plot, PlotLine
 from omegadot.reports.page.templating import asset, environment
-from omegadot.reports.record.whole_file import write_whole
+from omegadot.reports.record.whole_file import PAGE_MARK, write_whole
 from omegadot.reports.text.numbers import plain, short
 from omegadot.reports.versions.sheet import sheet_of
 
@@ -33,8 +33,8 @@ def draw_versions(record: Record) -> str:
 
 def write_versions(record: Record, folder: Path) -> None:
     """``versions.json`` and ``versions.html``, each whole or not at all. Raises RecordError."""
-    write_whole(folder / "versions.json", json.dumps(record, indent=2) + "\n")
-    write_whole(folder / "versions.html", draw_versions(record))
+    write_whole(folder / "versions.json", json.dumps(record, indent=2) + "\n", '"omegadot":')
+    write_whole(folder / "versions.html", draw_versions(record), PAGE_MARK)
 
 
 def _charts(record: Record) -> list[Plot]:

@@ -8,8 +8,11 @@ on. After running out of memory it states so and leaves, for what is left of it 
 
 from __future__ import annotations
 
+import ctypes
 import os
+import signal
 import sys
+import threading
 import time
 import traceback
 from collections.abc import Callable
@@ -23,6 +26,8 @@ from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
 
+_PR_SET_PDEATHSIG = 1  # linux/prctl.h
+_SECONDS_TO_LOOK = 0.5
 # Given back when memory runs out, so that there is some to report it.
 _reserve = [bytearray(1 << 22)]
 
@@ -108,11 +113,30 @@ def _private_channels() -> tuple[BinaryIO, BinaryIO]:
     return requests, answers
 
 
+def _end_with_parent() -> None:
+    """Have this process killed when its parent ends, however busy it is and however that ends.
+
+    Linux does so by itself. Elsewhere a thread looks for a new parent, as long as the engine lets
+    other threads run.
+    """
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    elif os.name == "posix":
+        threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
+
+
+def _watch(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(_SECONDS_TO_LOOK)
+    os._exit(0)
+
+
 def main() -> None:
     """Serve the adapter that the command line names.
 
     The module of an engine of one's own may stand in the current folder, which comes last.
     """
+    _end_with_parent()
     if sys.argv[1] not in BUILT_IN.values():
         sys.path.append(os.getcwd())
     setup = cast(Setup, sys.argv[2] if len(sys.argv) > 2 else "physics")

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import uuid
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +24,8 @@ from omegadot.workers.wire import one_line
 SECONDS_TO_LEAVE = 2.0
 # Importing an engine takes its time, however short the limit of a request.
 SECONDS_TO_START = 20.0
+# On Linux a worker ends with the thread that started it: this one ends with the harness.
+_starter = ThreadPoolExecutor(1, "start")
 
 
 @dataclass(frozen=True)
@@ -89,14 +92,7 @@ class WorkerProcess:
         self.stop()
         mark = uuid.uuid4().hex
         try:
-            process = subprocess.Popen(
-                self._command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                env=marked(_worker_environment(self._memory), mark),
-                start_new_session=True,  # Ctrl-C is the harness's to handle
-            )
+            process = _starter.submit(self._opened, mark).result()
         except OSError as error:
             return Answer("crashed", f"the worker could not be started: {error}")
         self._pipes = pipes = Pipes(process, mark)
@@ -104,6 +100,16 @@ class WorkerProcess:
         if not answer.ok:
             self.stop()
         return answer
+
+    def _opened(self, mark: str) -> subprocess.Popen[bytes]:
+        return subprocess.Popen(
+            self._command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=marked(_worker_environment(self._memory), mark),
+            start_new_session=True,  # Ctrl-C is the harness's to handle
+        )
 
     def request(self, operation: str, **fields: Any) -> Answer:
         """Put one request and wait for its answer, a death, or the time limit."""

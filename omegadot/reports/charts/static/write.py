@@ -14,6 +14,7 @@ from omegadot.reports.charts.static.charts import Charts, charts_of
 from omegadot.reports.charts.static.style import RC, require_matplotlib
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import RecordError
+from omegadot.reports.record.whole_file import check_target
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,13 +81,16 @@ def _figures(charts: Charts) -> list[tuple[str, Figure]]:
 
 
 def _save(figure: Figure, folder: Path, stem: str) -> list[Path]:
-    """Write both formats under other names, then give them theirs."""
+    """Write both formats under other names, then give them theirs. Raises RecordError."""
     found = []
     for form in FORMATS:
         target = folder / f"{stem}.{form}"
+        check_target(target, "omegadot")
         fresh = folder / f".{stem}.{secrets.token_hex(4)}.{form}"
         # Neither a date nor the library's version: the same record is the same file.
-        nothing = {"Date": None, "Creator": "omegadot"} if form == "svg" else {"Software": None}
+        nothing = (
+            {"Date": None, "Creator": "omegadot"} if form == "svg" else {"Software": "omegadot"}
+        )
         try:
             figure.savefig(fresh, format=form, metadata=nothing)
             os.replace(fresh, target)

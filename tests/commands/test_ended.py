@@ -1,0 +1,80 @@
+"""What a run leaves when it is ended: its record beside an earlier one, and no process."""
+
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+from command_line import PROGRAM, omegadot, quick_scenario
+
+SLOW = """
+from omegadot.adapters.reference import ReferenceAdapter
+
+class Endless(ReferenceAdapter):
+    def run(self, *arguments, **more):
+        open("busy", "w").close()
+        while True:
+            pass
+"""
+COMMAND = [*PROGRAM, "run", "quick.toml", "--engine", "slow.py:Endless", "--out", "out"]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    quick_scenario(tmp_path)
+    (tmp_path / "slow.py").write_text(SLOW)
+    return tmp_path
+
+
+def begun(folder: Path) -> tuple[subprocess.Popen[str], list[psutil.Process]]:
+    """The command, and its workers, once one of them is busy."""
+    running = subprocess.Popen(
+        COMMAND,
+        cwd=folder,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL) and None,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    deadline = time.monotonic() + 60.0
+    while time.monotonic() < deadline:
+        workers = psutil.Process(running.pid).children(recursive=True)
+        busy = [w for w in workers if w.is_running() and "slow.py:Endless" in w.cmdline()]
+        if busy and (folder / "busy").exists():
+            return running, workers
+        time.sleep(0.1)
+    raise AssertionError("no worker became busy")
+
+
+def gone(processes: list[psutil.Process]) -> bool:
+    _, alive = psutil.wait_procs(processes, timeout=10.0)
+    return not alive
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
+def test_a_signal_writes_what_there_is_beside_an_earlier_record(folder: Path, name: str) -> None:
+    first = omegadot("run", "quick.toml", "--engine", "dart", "--out", "out", folder=folder)
+    assert first.code == 0
+    before = (folder / "out" / "run.json").read_bytes()
+    running, workers = begun(folder)
+    number = getattr(signal, name)
+    running.send_signal(number)
+    printed, _ = running.communicate(timeout=30.0)
+    assert running.returncode == 128 + number
+    assert "The earlier record in out is kept: this run was interrupted." in printed
+    assert "Traceback" not in printed
+    assert (folder / "out" / "run.json").read_bytes() == before
+    assert '"complete": false' in (folder / "out-interrupted" / "run.json").read_text()
+    assert gone(workers)
+
+
+def test_workers_die_with_a_harness_that_is_killed(folder: Path) -> None:
+    """Caught: a busy worker, which does not look at its channel, goes on for ever."""
+    running, workers = begun(folder)
+    os.kill(running.pid, signal.SIGKILL)
+    running.wait()
+    assert gone(workers)
+    assert not (folder / "out").exists()

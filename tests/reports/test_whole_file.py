@@ -1,0 +1,74 @@
+"""What is replaced: a file of the same kind that omegadot wrote, and nothing else."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from omegadot.commands.report.report import report
+from omegadot.reports.record.record import FILES, unfinished_name, write_record
+from omegadot.reports.record.schema import RecordError
+from omegadot.reports.record.whole_file import PAGE_MARK, write_whole
+
+PAGE = f"<!doctype html>{PAGE_MARK} report</title>"
+
+
+def refused(target: Path) -> str:
+    with pytest.raises(RecordError) as error:
+        write_whole(target, PAGE, PAGE_MARK)
+    text = str(error.value)
+    assert text.startswith(f"{target}: ")
+    assert text.endswith(".")
+    assert "\n" not in text
+    return text
+
+
+def test_a_page_takes_the_place_of_a_page(tmp_path: Path) -> None:
+    target = tmp_path / "page.html"
+    for text in (PAGE, f"{PAGE} again"):
+        assert write_whole(target, text, PAGE_MARK) == target
+        assert target.read_text() == text
+    assert os.listdir(tmp_path) == ["page.html"]
+
+
+@pytest.mark.parametrize("text", ["", "my notes", '{"schema": 1}', " " * 5000 + PAGE])
+def test_a_file_of_another_kind_stays(tmp_path: Path, text: str) -> None:
+    target = tmp_path / "notes.html"
+    target.write_text(text)
+    assert "not replaced" in refused(target)
+    assert target.read_text() == text
+
+
+def test_links_devices_and_folders_stay(tmp_path: Path) -> None:
+    page, link, gap, pipe = (tmp_path / name for name in ("page.html", "link", "gap", "pipe"))
+    page.write_text(PAGE)
+    link.symlink_to(page)
+    gap.symlink_to(tmp_path / "nothing")
+    os.mkfifo(pipe)
+    for target in (link, gap, pipe, Path(os.devnull)):
+        assert "is a link or a device" in refused(target)
+    assert link.is_symlink()
+    assert gap.is_symlink()
+    assert pipe.is_fifo()
+    assert "is a folder" in refused(tmp_path)
+
+
+def test_a_report_does_not_destroy_its_record(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]
+    folder = tmp_path / "run"
+    write_record(record, folder, PAGE)
+    before = {name: (folder / name).read_bytes() for name in FILES}
+    for name in ("run.json", "metrics.parquet", "trajectories.parquet"):
+        with pytest.raises(RecordError, match="not replaced"):
+            report(folder, out=folder / name)
+        with pytest.raises(RecordError, match="not replaced"):
+            report(folder, folder, out=folder / name)
+    assert {name: (folder / name).read_bytes() for name in FILES} == before
+
+
+def test_an_interrupted_run_has_a_name_of_its_own(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]
+    folder = tmp_path / "run"
+    assert unfinished_name(folder) == folder
+    for name in ("run", "run-interrupted", "run-interrupted-2"):
+        write_record(record, tmp_path / name, PAGE)
+        assert not unfinished_name(folder).exists()
+        assert unfinished_name(folder).name.startswith("run-interrupted")
