@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import io
+import os
 import signal
 import sys
 from typing import Annotated
@@ -71,24 +73,38 @@ def _root(
 
 def main() -> None:
     """Entry point: wrong input is one sentence on standard error and exit code 2."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # it was closed: nothing else may take its place
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a pipe on Windows has no letter for omega
             stream.reconfigure(errors="replace")
     received = _end_like_ctrl_c()
     try:
         code = app(standalone_mode=False)
+        sys.stdout.flush()
     except (typer.Abort, KeyboardInterrupt):
         code = INTERRUPTED
+    except BrokenPipeError:  # what reads it has enough, as head has
+        code = _without_output()
     except Exception as error:
         sentence = _sentence(error)
         if sentence is None:
             raise
+        if isinstance(error, OSError):
+            _without_output()
         print(f"omegadot: {sentence}", file=sys.stderr)
         sys.exit(3 if _is_our_own(error) else 2)
     if code == INTERRUPTED:  # the parser makes this number of Ctrl-C, and prints nothing
         print("omegadot: interrupted.", file=sys.stderr)
         code = 128 + received[0] if received else INTERRUPTED
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _without_output() -> int:
+    """Leave unwritten what Python would try to write as it ends; the exit code of that."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    return 3
 
 
 def _end_like_ctrl_c() -> list[int]:
@@ -110,7 +126,9 @@ def _end_like_ctrl_c() -> list[int]:
 
 
 def _is_our_own(error: Exception) -> bool:
-    """Whether a worker of ours failed to start, rather than the arguments being wrong."""
+    """Whether the system or a worker of ours failed, rather than the arguments being wrong."""
+    if isinstance(error, OSError):
+        return True
     engines = sys.modules.get("omegadot.harness.engines")
     return engines is not None and isinstance(error, engines.NoTruthError)
 
@@ -120,6 +138,11 @@ def _sentence(error: Exception) -> str | None:
     if hasattr(error, "format_message"):  # what the command-line parser raises
         text = " ".join(str(error.format_message()).split())
         return text if text.endswith(".") else f"{text}."
+    if isinstance(error, OSError):
+        if error.errno == errno.ENOENT and error.filename is None:
+            return "the current folder does not exist any more; change to another."
+        where = error.filename or "standard output"
+        return f"{where}: cannot be used ({error.strerror or type(error).__name__})."
     from omegadot.adapters.registry import AdapterError
     from omegadot.harness.usage import UsageError
     from omegadot.reference_impl.arithmetic.precision import ExtendedTypeError

@@ -17,6 +17,7 @@ from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.scenarios import Scenario, ScenarioLike, builtin_names, scenario
+from omegadot.scenarios.model import MOST_STEPS
 
 T = TypeVar("T")
 
@@ -156,6 +157,11 @@ def case_of(
             raise UsageError(
                 f"--timestep {step:g}: longer than the {duration:g} s of {scenario.name}; "
                 "give a shorter one."
+            )
+        if duration / step > MOST_STEPS:
+            raise UsageError(
+                f"--timestep {step:g}: {scenario.name} would take {duration / step:.1g} steps; "
+                f"give one of at least {duration / MOST_STEPS:.1g} s."
             )
     for one in accuracies:
         if not (isinstance(one, Real) and 0.0 < one < 1.0):

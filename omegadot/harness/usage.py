@@ -10,6 +10,8 @@ from typing import get_args
 
 from omegadot.adapters.protocol import Setup
 
+MOST = 1e9
+
 
 class UsageError(ValueError):
     """Arguments that cannot be used; the message is one sentence."""
@@ -32,10 +34,14 @@ def check_setup(setup: object) -> None:
 
 
 def check_number(option: str, value: object, least: float) -> None:
-    """Raise UsageError unless it is a finite number above 0 and from `least` on."""
+    """Raise UsageError unless it is a number above 0, from `least` on, and no larger than 1e9.
+
+    Seconds, GiB and kilograms beyond that are mistyped; the system's clock refuses them as well.
+    """
     number = float(value) if isinstance(value, Real) else math.nan
-    if not (math.isfinite(number) and number >= least and number > 0.0):
+    if not (least <= number <= MOST and number > 0.0):
         limit = f"of at least {least:g}" if least else "above 0"
+        limit += f" and at most {MOST:g}" if number > MOST else ""
         raise UsageError(f"{option} {value}: give a number {limit}.")
 
 

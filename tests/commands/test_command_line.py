@@ -124,7 +124,14 @@ def test_an_earlier_record_gives_way_and_nothing_else_does(tmp_path: Path) -> No
         (("run", "sphere", "--timestep", "0"), "not a positive number"),
         (("run", "sphere", "--timestep", "nan"), "not a positive number"),
         (("run", "sphere", "--timestep", "1e9"), "longer than"),
+        (("run", "sphere", "--timestep", "1e-12"), "would take 5e+12 steps; give one of at least"),
         (("run", "sphere", "--timestep", "soon"), "--timestep"),
+        (("run", "sphere", "--timeout", "1e300"), "at most 1e+09"),
+        (("run", "sphere", "--timeout", "inf"), "at most 1e+09"),
+        (("run", "sphere", "--memory", "1e300"), "at most 1e+09"),
+        (("choose", "sphere", "--attitude", "1deg", "--budget", "1e300"), "at most 1e+09"),
+        (("run", "sphere", "--out", "x" * 300), "cannot be written"),
+        (("run", "sphere", "--out", "/dev/null/x"), "cannot be written"),
         (("run", "sphere", "--setup", "racing"), "racing"),
         (("run", "sphere", "sphere"), "name of its own"),
         (("run", "sphere", "--adapter", "mine"), "no class is named"),
@@ -139,6 +146,39 @@ def test_wrong_usage_is_one_sentence(
 ) -> None:
     assert message in sentence(omegadot(*arguments, folder=tmp_path))
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("arguments", ["scenarios", "run quick.toml --engine dart"])
+def test_an_output_that_is_full_or_closed_is_one_sentence(arguments: str, tmp_path: Path) -> None:
+    quick_scenario(tmp_path)
+    command = [*PROGRAM, *arguments.split()]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 3
+    assert done.stderr == ("omegadot: standard output: cannot be used (No space left on device).\n")
+    shell = ["sh", "-c", '"$@" >&-', "sh", *command]
+    done = subprocess.run(shell, cwd=tmp_path, stderr=subprocess.PIPE, text=True, check=False)
+    assert "Traceback" not in done.stderr
+
+
+def test_a_reader_that_has_enough_is_no_error(tmp_path: Path) -> None:
+    shell = ["sh", "-c", '"$@" | head -1', "sh", *PROGRAM, "scenarios"]
+    done = subprocess.run(shell, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.stdout.startswith("damped-tumble")
+    assert done.stderr == ""
+
+
+def test_a_folder_that_is_gone_is_one_sentence(tmp_path: Path) -> None:
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    shell = ["sh", "-c", 'rmdir ../gone; "$@"', "sh", *PROGRAM, "run", "sphere"]
+    done = subprocess.run(shell, cwd=gone, capture_output=True, text=True, check=False)
+    assert done.returncode == 3
+    assert done.stderr == (
+        "omegadot: the current folder does not exist any more; change to another.\n"
+    )
 
 
 def test_a_malformed_scenario_is_one_sentence(tmp_path: Path) -> None:

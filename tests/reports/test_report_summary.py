@@ -24,6 +24,10 @@ def change(record, place, **more):
     return replace(record, run={**record.run, "tasks": tasks})
 
 
+def edited(record, **entries):
+    return replace(record, run={**record.run, **entries})
+
+
 def first_of(record, engine):
     return next(k for k, entry in enumerate(record.run["tasks"]) if entry["engine"] == engine)
 
@@ -142,6 +146,25 @@ def test_a_body_that_cannot_be_is_named_next_to_the_headline(record):
     remark, _ = remarks(summarise(replace(record, run=run)))
     assert remark.startswith(f"{first['name']}: an impossible inertia, allowed on request")
     assert "(3.5 > 3 kg m^2)" in remark
+
+
+def test_a_process_that_ended_between_requests_is_reported(record):
+    """It is no run's outcome, and the command ends with 3 all the same."""
+    death = {"engine": "mujoco", "how": "ended by signal 9 (SIGKILL)"}
+    found = remarks(summarise(edited(record, worker_deaths=[death])))
+    sentence = "mujoco: its process ended between two requests (ended by signal 9 (SIGKILL))."
+    assert sentence in found
+    crashed = [{**entry, "outcome": "crashed"} for entry in record.run["tasks"]]
+    found = remarks(summarise(edited(record, worker_deaths=[death], tasks=crashed)))
+    assert sentence not in found  # a run of it reports that
+
+
+def test_an_engine_without_integrators_is_named(record):
+    engines = [
+        {**e, "integrators": []} if e["name"] == "mujoco" else e for e in record.run["engines"]
+    ]
+    found = remarks(summarise(edited(record, engines=engines)))
+    assert "mujoco has no integrators: its model and its equations alone are judged." in found
 
 
 def test_the_headline_of_a_failing_run(record):

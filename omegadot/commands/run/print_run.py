@@ -32,8 +32,8 @@ def print_text(result: RunResult) -> None:
         typer.echo(f"Declared exception: {problem}")
     if result.folder is not None:
         typer.echo(f"Report: {result.folder / PAGE}")
-    if result.kept is not None:
-        typer.echo(f"The earlier record in {result.kept} is kept: this run was interrupted.")
+    if result.note:
+        typer.echo(result.note)
 
 
 def print_json(result: RunResult) -> None:
@@ -45,6 +45,7 @@ def print_json(result: RunResult) -> None:
         "exit_code": exit_code(result),
         "complete": result.complete,
         "folder": str(folder),
+        "note": result.note,
         "report": str(folder / PAGE) if folder else None,
         "headline": result.record.headline,
         "outcomes": Counter(task["outcome"] for task in tasks),

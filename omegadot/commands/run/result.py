@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from omegadot.harness.plan import EngineChoice
 from omegadot.reports.record.record import unfinished_name
+from omegadot.reports.record.schema import RecordError
 from omegadot.reports.run_record import RunRecord, TaskResult
 
 
@@ -17,13 +19,13 @@ class RunResult:
     """A run. record: its tables and its page.  folder: where it was written, if anywhere.
 
     required: engines that were given by name; one of these that is missing counts against the run.
-    kept: the folder of an earlier record, where an interrupted run did not replace it.
+    note: why the record is not where it was requested, as a sentence; "" where it is.
     """
 
     record: RunRecord
     folder: Path | None = None
     required: frozenset[str] = frozenset()
-    kept: Path | None = None
+    note: str = ""
 
     @property
     def complete(self) -> bool:
@@ -81,11 +83,20 @@ def result_of(
 ) -> RunResult:
     """The result of a record, which is written where a folder is given. Raises RecordError.
 
-    An interrupted run does not replace an earlier record: it is written beside it.
+    An interrupted run does not replace an earlier record: it is written beside it. What the disk
+    refuses is written to the system's folder for temporary files.
     """
-    folder, kept = None, None
+    folder, note = None, ""
     if out is not None:
         requested = Path(out)
-        target = requested if record.run["complete"] else unfinished_name(requested)
-        folder, kept = record.save(target), requested if target != requested else None
-    return RunResult(record, folder, frozenset(c.name for c in choices if c.required), kept)
+        folder = requested if record.run["complete"] else unfinished_name(requested)
+        if folder != requested:
+            note = f"The earlier record in {requested} is kept: this run was interrupted."
+        try:
+            record.save(folder)
+        except RecordError as error:
+            if not isinstance(error.__cause__, OSError):
+                raise
+            folder = record.save(Path(tempfile.mkdtemp(prefix="omegadot-")) / "run")
+            note = f"{error} It is in {folder}."
+    return RunResult(record, folder, frozenset(c.name for c in choices if c.required), note)

@@ -41,10 +41,13 @@ def check_folder(folder: Path) -> None:
     folder = folder.resolve()
     if Path.cwd().is_relative_to(folder):
         raise RecordError(f"{folder}: is the current directory or holds it; name a new folder.")
+    _try_to_write(folder)
     if not folder.exists():
         return
     if not folder.is_dir():
         raise RecordError(f"{folder}: is a file; name a new folder for the record.")
+    if folder.is_mount():
+        raise RecordError(f"{folder}: is a mount point; name a new folder in it.")
     names = sorted(entry.name for entry in folder.iterdir())
     foreign = [name for name in names if name not in FILES]
     if foreign:
@@ -53,6 +56,17 @@ def check_folder(folder: Path) -> None:
         )
     if names and RUN not in names:
         raise RecordError(f"{folder}: is not empty and holds no {RUN}; name a new folder.")
+
+
+def _try_to_write(folder: Path) -> None:
+    """Make and remove a folder beside this one, as `write_record` will do at the end."""
+    trial = folder.with_name(f".{folder.name}.{secrets.token_hex(6)}.new")
+    try:
+        trial.mkdir(parents=True)
+        trial.rmdir()
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise RecordError(f"{folder}: cannot be written ({reason}); name another.") from error
 
 
 def unfinished_name(folder: Path) -> Path:

@@ -16,7 +16,7 @@ def remarks(summary: Summary) -> list[str]:
     """What belongs with the headline: what is missing, and the range of the attitude errors."""
     message = [] if summary.complete else ["Partial record: the run was interrupted."]
     spread = _spread(_judged_engines(summary))
-    return [*message, *summary.impossible, *([spread] if spread else []), *_remainder(summary)]
+    return [*message, *summary.notes, *([spread] if spread else []), *_remainder(summary)]
 
 
 def truth(summary: Summary) -> list[str]:

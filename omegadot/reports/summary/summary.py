@@ -6,7 +6,7 @@ Pure functions: the terminal's table and the page show the same summary.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -88,8 +88,8 @@ class Missing:
 class Summary:
     """The record at a glance.
 
-    truths: by kind of exact solution, the number of scenarios.  impossible: a sentence on each
-    body whose inertia is impossible.
+    truths: by kind of exact solution, the number of scenarios.  notes: a sentence on each body
+    whose inertia is impossible, each process that ended by itself, each engine without integrators.
     """
 
     complete: bool
@@ -99,7 +99,7 @@ class Summary:
     runs: Counter[str]
     missing: tuple[Missing, ...]
     truths: Counter[str]
-    impossible: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
 def worst(statuses: Iterable[str]) -> str:
@@ -143,8 +143,25 @@ def summarise(record: Record) -> Summary:
         Counter(task_status(task) for task in tasks),
         _missing(record.run),
         _truths(record.trajectories),
-        tuple(impossible_bodies(record.run["scenarios"])),
+        (*impossible_bodies(record.run["scenarios"]), *_ended(record.run), *_unstepped(record.run)),
     )
+
+
+def _ended(run: Mapping[str, Any]) -> Iterator[str]:
+    """The processes that ended between two requests: no run of theirs reports it."""
+    crashed = {task["engine"] for task in run["tasks"] if task["outcome"] == "crashed"}
+    for death in run.get("worker_deaths") or ():
+        if death["engine"] not in crashed:
+            yield f"{death['engine']}: its process ended between two requests ({death['how']})."
+
+
+def _unstepped(run: Mapping[str, Any]) -> Iterator[str]:
+    """The engines without integrators, of which nothing over time is judged."""
+    ran = {t["engine"] for t in run["tasks"] if t["outcome"] == "ok"} - set(YARDSTICKS)
+    for engine in run["engines"]:
+        name = engine["name"]
+        if name in ran and engine.get("integrators") == []:
+            yield f"{name} has no integrators: its model and its equations alone are judged."
 
 
 def _truths(trajectories: pl.DataFrame) -> Counter[str]:
