@@ -101,12 +101,22 @@ def body_from(message: dict[str, Any]) -> Body:
 
 
 def description_of(message: dict[str, Any]) -> Description:
-    """The Description that a packed one holds."""
+    """The Description that a packed one holds, every text of it one printable line."""
+    message = {key: _printable(value) for key, value in message.items()}
     lists = {key: tuple(value) for key, value in message.items() if isinstance(value, list)}
     fields: dict[str, Any] = {**message, **lists}
     fields["integrators"] = tuple(Integrator(**item) for item in message["integrators"])
     fields["features"] = frozenset(message["features"])
     return Description(**fields)
+
+
+def _printable(value: Any) -> Any:
+    """The same, with texts at any depth made printable: they go to terminals as they are."""
+    if isinstance(value, dict):
+        return {key: _printable(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_printable(entry) for entry in value]
+    return one_line(value, 8 * MOST_CHARACTERS) if isinstance(value, str) else value
 
 
 def one_line(text: str, most: int = MOST_CHARACTERS) -> str:

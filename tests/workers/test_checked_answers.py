@@ -153,6 +153,8 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ({"integrators": ("euler",)}, "an item of description.integrators"),
         ({"integrators": (EULER, EULER)}, "has a name twice, of euler, euler"),
         ({"integrators": (replace(EULER, name=1),)}, "an integrator's name"),
+        ({"integrators": (replace(EULER, name=""),)}, "is ''; give one short line"),
+        ({"integrators": (replace(EULER, name="a\x1b[31m"),)}, "that can be printed"),
         ({"integrators": (replace(EULER, knob="step"),)}, "is 'step'; give one of timestep, acc"),
         ({"integrators": (replace(EULER, finest_accuracy=2),)}, "is 2; give a number from 0 to 1"),
         ({"integrators": (replace(EULER, finest_accuracy="x"),)}, "the finest accuracy of euler"),

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
+from omegadot.adapters.protocol import Description, Integrator
 from omegadot.reference_impl.system import Acceleration, Body, Load, State, System
-from omegadot.workers.wire import encode_frame, read_frame, system_from
+from omegadot.workers.wire import description_of, encode_frame, read_frame, system_from
 
 
 def through(message: dict) -> dict:
@@ -51,3 +52,12 @@ def test_a_cut_channel_is_an_end_of_file() -> None:
     for length in (0, 4, 20, len(frame) - 1):
         with pytest.raises(EOFError):
             read_frame(io.BytesIO(frame[:length]))
+
+
+def test_a_description_has_nothing_that_a_terminal_obeys() -> None:
+    euler = Integrator("euler", None, {"omega": 1}, note="slow\x1b[31m")
+    given = Description("engine", "1\x1b]0;title\x07", (euler,), conventions=("x\r\ny",))
+    back = description_of(through(vars(given) | {"integrators": [vars(euler)], "features": []}))
+    assert back.version == "1 ]0;title"
+    assert back.integrators[0].note == "slow [31m"
+    assert back.conventions == ("x y",)

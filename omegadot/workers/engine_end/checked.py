@@ -20,6 +20,7 @@ from omegadot.adapters.protocol import (
 from omegadot.reference_impl.coordinates import COORDINATES
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, Array, Body, State
+from omegadot.workers.wire import one_line
 
 Shape = tuple[int, ...]
 Arrays = TypeVar("Arrays", bound=State | Acceleration | Body)
@@ -164,6 +165,10 @@ def description_of(adapter: Adapter) -> Description:
 
 def _check_integrator(integrator: Integrator) -> None:
     _expect("an integrator's name", integrator.name, str)
+    if not integrator.name or one_line(integrator.name) != integrator.name:
+        raise AnswerError(
+            f"an integrator's name is {integrator.name!r}; give one short line that can be printed"
+        )
     if integrator.knob not in KNOBS:
         raise AnswerError(
             f"the knob of {integrator.name} is {integrator.knob!r}; give one of {', '.join(KNOBS)}"
