@@ -34,6 +34,7 @@ from omegadot.diagnosis.stepping.vanishing_steps import (
     omega_share_cause,
     vanishing_steps,
 )
+from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import (
@@ -64,7 +65,7 @@ class CaseCauses:
     ) -> None:
         self._across, self._case, self._states = across, case, evaluation_states
         self._result: CaseResult | None = result
-        self._truth, self._runs = truth, list(runs)
+        self._truth, self._runs = truth.in_precision(result.precision), list(runs)
         self._answers = replace(result, runs={}, first_steps={}, restarts={})
         self._steps = _steps_of(case, result)
         self._of_runs: dict[str, list[str]] = {}
@@ -160,8 +161,9 @@ def _fails(run: JudgedRun) -> bool:
 
 
 def _steps_of(case: Case, result: CaseResult) -> dict[str, VanishingSteps]:
+    eps = eps_of(result.precision)
     return {
-        name: vanishing_steps(case.system, probe, State(**answer.result))
+        name: vanishing_steps(case.system, probe, State(**answer.result), eps)
         for name, (probe, answer) in result.first_steps.items()
         if answer.ok
     }

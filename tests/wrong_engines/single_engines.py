@@ -57,6 +57,9 @@ class Single:
     order, declared = 4, ""
     gyroscopic = damping = mass = gravity = stretch = 1.0
 
+    def __init__(self, setup: str = "physics") -> None:
+        pass
+
     @property
     def description(self) -> Description:
         own = Integrator("step", self.declared or None, every_channel(self.order))
@@ -176,6 +179,12 @@ class SingleEuler(Single):
         q = unit(times(q, np.concatenate(([np.cos(angle)], part)).astype(self.work)))
         v = v + h * self.g * self.free
         return np.concatenate((q, w, x + h * v * self.free, v))
+
+
+class SingleCoupling(SingleEuler):
+    """The gyroscopic term is a quarter too large, in forward dynamics and in the steps."""
+
+    gyroscopic = 1.25
 
 
 class DeclaredEuler(SingleEuler):
