@@ -65,7 +65,7 @@ class CaseCauses:
     ) -> None:
         self._across, self._case, self._states = across, case, evaluation_states
         self._result: CaseResult | None = result
-        self._truth, self._runs = truth.in_precision(result.precision), list(runs)
+        self._truth, self._runs = truth, list(runs)
         self._answers = replace(result, runs={}, first_steps={}, restarts={})
         self._steps = _steps_of(case, result)
         self._of_runs: dict[str, list[str]] = {}
@@ -146,6 +146,9 @@ class CaseCauses:
         return any(i.name == name and i.scheme in SCHEMES for i in self._answers.integrators)
 
     def _of_trajectories(self, name: str) -> list[str]:
+        # In single precision much fits a run within its rounding, and little is told apart.
+        if self._answers.precision == "float32":
+            return []
         if name not in self._of_runs and self._result is not None:
             runs = [run for run in self._runs if run.integrator.name == name]
             self._of_runs[name] = run_causes(self._case, self._truth, self._result, runs)

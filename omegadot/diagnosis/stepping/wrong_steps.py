@@ -20,7 +20,7 @@ from omegadot.diagnosis.stepping.step_ends import (
     turned_by_last_omega,
     with_end,
 )
-from omegadot.gates.bounds.scales import EPS, norm
+from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import PHRASES, canonical, distinct
 from omegadot.reference_impl.growth import changes
@@ -49,8 +49,6 @@ def _precision(reported: ReportedRun) -> str:
 
     Places are not looked at: they may follow, in double, from what is kept.
     """
-    if reported.truth.yardstick.eps > EPS:
-        return ""  # as is declared
 
     def single(state: State, field: str) -> bool:
         kept = getattr(state, field)[1:]
