@@ -42,7 +42,7 @@ class MeasuredRun:
     round_off: dict[str, Array]
     against_scheme: dict[str, Array] = field(default_factory=dict)
     floor: dict[str, Array] = field(default_factory=dict)
-    single: bool = False
+    single: bool = field(default=False, kw_only=True)
 
     @property
     def saturating_error(self) -> Array:
