@@ -254,6 +254,8 @@ def rows(
 
 
 def _note(limit: Limit, factor: float | None, digits: int, unit: str) -> str:
+    if not np.all(np.isfinite(limit.found)):
+        return "a step leads to numbers that are not finite"
     if factor == 0.0:
         return "a run of one step does not move"
     if factor is not None:
