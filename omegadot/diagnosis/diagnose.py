@@ -34,6 +34,7 @@ from omegadot.diagnosis.stepping.vanishing_steps import (
     omega_share_cause,
     vanishing_steps,
 )
+from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import (
@@ -145,6 +146,9 @@ class CaseCauses:
         return any(i.name == name and i.scheme in SCHEMES for i in self._answers.integrators)
 
     def _of_trajectories(self, name: str) -> list[str]:
+        # In single precision much fits a run within its rounding, and little is told apart.
+        if self._answers.precision == "float32":
+            return []
         if name not in self._of_runs and self._result is not None:
             runs = [run for run in self._runs if run.integrator.name == name]
             self._of_runs[name] = run_causes(self._case, self._truth, self._result, runs)
@@ -160,8 +164,9 @@ def _fails(run: JudgedRun) -> bool:
 
 
 def _steps_of(case: Case, result: CaseResult) -> dict[str, VanishingSteps]:
+    eps = eps_of(result.precision)
     return {
-        name: vanishing_steps(case.system, probe, State(**answer.result))
+        name: vanishing_steps(case.system, probe, State(**answer.result), eps)
         for name, (probe, answer) in result.first_steps.items()
         if answer.ok
     }

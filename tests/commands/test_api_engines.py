@@ -75,6 +75,14 @@ def test_what_fails_is_named(quick: Path) -> None:
     assert "omega_dot" in failed.message
 
 
+def test_single_precision_is_checked_down_to_its_causes(quick: Path) -> None:
+    engines = WRONG.with_name("single_engines.py")
+    assert api.check(f"{engines}:SingleEuler", scenarios=quick).passed
+    wrong = api.check(f"{engines}:SingleCoupling", scenarios=quick, shrink=False)
+    message = wrong.failures["singlecoupling-quick-equation"].message
+    assert "the gyroscopic term is scaled by 1.25" in message
+
+
 def test_progress_is_reported_and_nothing_printed(
     quick: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

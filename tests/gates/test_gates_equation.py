@@ -14,12 +14,14 @@ from omegadot.gates.states.equation import (
     random_states,
     reported_rows,
 )
+from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import (
     center_of_mass_acceleration,
     forward_dynamics,
     inverse_dynamics,
 )
+from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.system import Acceleration, Body, Load, State, System
 
 BODY = Body(np.array(2.0), np.array([0.1, 0.0, 0.3]), np.diag([1.0, 2.0, 2.5]))
@@ -85,6 +87,26 @@ def test_a_torque_is_held_to_its_terms(part: float, verdict: str) -> None:
     assert (row.gate, row.channel, row.metric, row.unit) == ("equation", "torque", "residual", "1")
     assert (row.bound, row.verdict) == (BOUND, verdict)
     assert row.value == pytest.approx(part * BOUND, rel=0.1)
+
+
+def test_a_torque_may_come_from_places_in_the_world() -> None:
+    """A small heavy body at some distance: its lever is a difference of places, and is rounded."""
+    body = Body(np.array(340.0), np.array([1e-3, 2e-3, -1e-3]), np.diag([1.0, 2.0, 2.5]) * 1e-3)
+    system = System((body,), Load(gravity=np.array([0.0, 1.0, -9.0])))
+    states = random_states(case(system, x=30.0, w=0.1, v=0.1), 200, SEED)
+    requested = random_acceleration(system, states, SEED)
+    arm = rotate(states.orientation, body.center_of_mass)
+    lever = states.position - (states.position - arm)  # of the place that it has from the origin's
+    force = body.mass * (requested.linear - system.load.gravity)
+    moved = rotate_inverse(states.orientation, cross(lever - arm, force))
+    (row,) = inverse_rows(
+        system, states, requested, inverse_dynamics(system, states, requested) + moved
+    )
+    assert 1e-3 * BOUND < row.value <= BOUND
+    (wrong,) = inverse_rows(
+        system, states, requested, inverse_dynamics(system, states, requested) + 1e3 * moved
+    )
+    assert wrong.verdict == "fail"
 
 
 def test_the_worst_state_counts() -> None:

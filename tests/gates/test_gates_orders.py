@@ -12,6 +12,7 @@ from omegadot.gates.errors.orders import (
     Errors,
     ObservedOrder,
     excess_of,
+    highest_order,
     is_whole,
     observed_order,
     order_of,
@@ -31,6 +32,30 @@ def over_time(sizes: dict[float, Array], bound: Array | None = None) -> list[Err
 
 def powers(order: float, steps: tuple[float, ...] = STEPS) -> dict[float, Array]:
     return {h: h**order * SAMPLES for h in steps}
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_rounding_leaves_an_order_open_that_the_errors_have(order: int) -> None:
+    """However near its bound rounding comes, with either sign."""
+    bound = 3e-3 * 0.01**order * SAMPLES + 1e-30
+    for part in (-0.9, 0.0, 0.9):
+        sizes = {h: error + part * bound for h, error in powers(order).items()}
+        assert highest_order(over_time(sizes, bound)) >= order
+    hidden = {h: np.minimum(size, 0.9 * bound) for h, size in powers(order).items()}
+    assert highest_order(over_time(hidden, bound)) == np.inf
+
+
+def test_rounding_leaves_no_order_to_an_error_that_no_step_changes() -> None:
+    """Close to rounding, so that its order cannot be seen; late rounding hides it as well."""
+    bound = 0.1 * SAMPLES * (1.0 + 100.0 * SAMPLES**2)
+    sweep = over_time(dict.fromkeys(STEPS, 1e-3 * SAMPLES), bound * 1e-3)
+    seen = order_of(sweep)
+    assert seen is None or not seen.resolved
+    assert 0.0 < highest_order(sweep) < 1.0
+    rising = {0.04: 3e-3 * SAMPLES, 0.02: 2e-3 * SAMPLES, 0.01: 1e-3 * SAMPLES}
+    assert highest_order(over_time(rising, bound * 1e-3)) == np.inf  # it may settle further on
+    saturated = {h: np.full(65, 0.9) for h in STEPS}
+    assert highest_order(over_time(saturated)) == np.inf
 
 
 @pytest.mark.parametrize("order", [1, 2, 4])

@@ -1,5 +1,7 @@
 """The sizes that errors are measured against, worked out by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -60,6 +62,17 @@ def test_the_terms_of_the_equation_add_up_by_size() -> None:
     expected = gyroscopic + 2.0 + levers + moving
     assert torque_size(FREE, STATE, ACCELERATION) == pytest.approx(expected, rel=8 * EPS)
     assert angular_size(FREE, STATE, ACCELERATION) == pytest.approx(expected / 2.0, rel=8 * EPS)
+
+
+def test_a_lever_is_the_difference_of_two_places() -> None:
+    """It is off by a rounding of the place, at which the force m (a - g) acts."""
+    far = replace(STATE, position=np.array([0.0, 5.0, 12.0]))
+    force = 2.0 * (6.0 + 10.0)
+    there, here = torque_size(FREE, far, ACCELERATION), torque_size(FREE, STATE, ACCELERATION)
+    assert there - here == pytest.approx(13.0 * force, rel=64 * EPS)
+    falling = Acceleration(ACCELERATION.angular, LOAD.gravity)  # forward dynamics: no force
+    assert torque_size(FREE, far, falling) == torque_size(FREE, STATE, falling)
+    assert torque_size(PIVOTED, far, ACCELERATION) == torque_size(PIVOTED, STATE, ACCELERATION)
 
 
 def test_a_pivoted_body_has_no_bias_of_translation() -> None:

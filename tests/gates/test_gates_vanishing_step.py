@@ -48,6 +48,15 @@ def probe(on: System, *omegas: object) -> Probe:
     return probe_of(on, SimpleNamespace(random=found, path=found))  # type: ignore[arg-type]
 
 
+def test_steps_to_no_numbers_fail_also_from_rest() -> None:
+    on = system(1.0, 2.0, 3.0)
+    still = probe(on, [0.0, 0.0, 0.0])
+    lost = State(*(np.full((*still.timesteps.shape, n), np.nan) for n in (4, 3, 3, 3)))
+    found = rows(on, still, lost)
+    assert {row.verdict for row in found} == {"fail"}
+    assert {row.note for row in found} == {"a step leads to numbers that are not finite"}
+
+
 @pytest.mark.parametrize(("level", "degree"), [(0, 4), (1, 3), (2, 2)])
 def test_each_extrapolant_is_exact_for_its_own_degree(level: int, degree: int) -> None:
     h = 2.0 ** -np.arange(5)

@@ -5,7 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from omegadot.gates.errors.orders import ORDER_TOLERANCE, SATURATE, VANISHED, ObservedOrder
+from omegadot.gates.errors.orders import (
+    NEAR_ROUNDING,
+    ORDER_TOLERANCE,
+    SATURATE,
+    VANISHED,
+    ObservedOrder,
+)
 from omegadot.gates.errors.verdicts import Evidence, Finding, judge
 
 BOUND = np.array([1e-15, 1e-12, 1e-11])
@@ -16,6 +22,35 @@ def evidence(error: object, left: object = None, floor: object = None, *orders: 
     compared = None if left is None else np.array(left, float)
     below = None if floor is None else np.array(floor, float)
     return Evidence(np.array(error, float), BOUND, compared, orders or (SLOW,), below)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("order", "settled", "kind"),
+    [
+        (3.14, False, "unsettled"),  # two slopes may agree by chance
+        (3.14, True, "unexplained"),
+        (0.1, False, "unexplained"),
+        (3.9, False, "consistent"),
+    ],
+)
+def test_a_low_order_is_looked_at_again_at_finer_steps(
+    order: float, settled: bool, kind: str
+) -> None:
+    found = evidence([0.0, 1e-3, 1e-3], None, None, ObservedOrder(order, True))
+    assert judge(replace(found, settled=settled), "rk4", 4).kind == kind
+
+
+def test_an_order_that_rounding_does_not_leave_open_fails() -> None:
+    near = ObservedOrder(1.7, False, hidden=NEAR_ROUNDING)
+    found = evidence([0.0, 1e-3, 1e-3], None, None, near)
+    assert judge(found, None, 4).kind == "unresolved"
+    assert judge(replace(found, highest=3.6), None, 4).kind == "unresolved"
+    failed = judge(replace(found, highest=1.78), None, 4)
+    assert failed.kind == "unexplained"
+    assert failed.note == "the order is 1.78 at most, whatever rounding does, declared 4"
+    assert (
+        judge(replace(evidence(BOUND, None, None, near), highest=0.0), None, 4).kind == "round-off"
+    )
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,13 @@ from omegadot.gates.truth import Truth
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
+from omegadot.reference_impl.rotations import (
+    normalize,
+    quaternion_product,
+    rotate,
+    rotate_inverse,
+)
+from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
 SINGLES = 2.0**-23
@@ -193,6 +200,42 @@ def test_no_limit_is_sought_where_the_inverse_of_the_inertia_has_no_digit() -> N
     assert "fail" in verdicts(65 * SINGLES, SINGLES)
     assert verdicts(63 * SINGLES, SINGLES) == {"info"}
     assert "fail" in verdicts(63 * SINGLES, EPS)
+
+
+def momentum_stepped(system: System, probe: Probe) -> State:
+    """A Runge-Kutta step of the free body's attitude alone: its momentum stays as it is."""
+    q = np.broadcast_to(probe.states.orientation[:, None], (*probe.timesteps.shape, 4))
+    tensor, h = moving_inertia(system), probe.timesteps[..., None]
+    momentum = rotate(q, apply(tensor, probe.states.angular_velocity[:, None]))
+
+    def omega(q: Array) -> Array:
+        return apply(inverse(tensor), rotate_inverse(normalize(q), momentum))
+
+    def rate(q: Array) -> Array:
+        w = omega(q)
+        return 0.5 * quaternion_product(q, np.concatenate((0 * w[..., :1], w), axis=-1))
+
+    k1 = rate(q)
+    k2 = rate(q + h / 2 * k1)
+    k3 = rate(q + h / 2 * k2)
+    k4 = rate(q + h * k3)
+    q = normalize(q + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+    place = probe.states.position[:, None] + h * probe.states.linear_velocity[:, None]
+    return State(q, omega(q), place, probe.states.linear_velocity[:, None] + 0 * h)
+
+
+@pytest.mark.parametrize("thin", [0.3, 1e-2, 1e-3, 4e-4])
+def test_a_momentum_in_world_axes_needs_short_steps_of_a_thin_body(thin: float) -> None:
+    """An error of the attitude changes omega by J / lambda times as much."""
+    system = System((Body(np.array(1.0), np.zeros(3), np.diag([1.0, 1.0, thin])),))
+    states = SimpleNamespace(random=STATES, path=STATES)
+    for eps in (EPS, SINGLES):
+        probe = probe_of(system, states, eps)  # type: ignore[arg-type]
+        rows = vanishing_step.rows(system, probe, momentum_stepped(system, probe), eps)
+        judged = {row.channel: row.verdict for row in rows}
+        assert "fail" not in judged.values()
+        assert (judged["omega"] == "info") is (eps == SINGLES and thin <= 1e-2)
+        assert judged["position"] == "pass"
 
 
 def sweep_of_errors(*errors: float, bound: float = 1e-3) -> list[MeasuredRun]:

@@ -59,6 +59,12 @@ CASES: dict[str, Any] = {
         "initial": TURN,
         "body": {"mass": 1.7, "inertia": [[1.0, 0.0, 0.0], [0.0, 0.5, 0.49], [0.0, 0.49, 0.5]]},
     },
+    # steps of a third of a radian, next to which rounding is small
+    "disc": {
+        "initial": TURN,
+        "body": {"mass": 1.7, "inertia": [1.0, 1.0, 2.0]},
+        "run": {"duration": 3.2, "timesteps": [0.16, 0.08, 0.04], "sample": 0.16},
+    },
     # 10 km away, where a millimetre is an ulp
     "far": {
         "initial": TURN | {"position": [1e4, -2e3, 5e3], "linear_velocity": [30.0, 1.0, -4.0]},
@@ -115,6 +121,15 @@ def test_a_fault_far_above_rounding_fails(
         assert ("diverges from it" if engine.declared else "steps are 0.1 % too") in notes
     else:
         assert "equation" in found.failed
+
+
+@pytest.mark.parametrize("factor", [0.999, 1.001])
+def test_a_thousandth_in_the_steps_alone_is_seen_near_rounding(factor: float) -> None:
+    """An error that no step changes, where the bounds of rounding hide its order."""
+    found = judged("disc", with_fault(Single, stepped_gyroscopic=factor))
+    assert found.failed == {"trajectory"}
+    notes = " ".join(row.note for row in found.rows if row.verdict == "fail")
+    assert "at most, whatever rounding does, declared 4" in notes
 
 
 @pytest.mark.parametrize("engine", [SingleEuler, StoredSingle])

@@ -21,7 +21,7 @@ def solved(rate, noise=0.0):
         jitter = noise * generator.standard_normal(3)
         return rate * (w - START) + 1.0 + jitter
 
-    return mean_velocity_of(push, np.ones(3), START, same, slice(None)), len(evaluated)
+    return mean_velocity_of(push, np.ones(3), START, same, slice(None), 0.5), len(evaluated)
 
 
 @pytest.mark.parametrize("rate", [0.0, 0.1, -0.4, 0.6, -0.7])
@@ -51,7 +51,7 @@ def test_lanes_settle_each_for_itself():
         return rate * (w - START) + 1.0
 
     starts = np.array([START, START])
-    found = mean_velocity_of(push, np.ones((2, 3)), starts, same, slice(None))
+    found = mean_velocity_of(push, np.ones((2, 3)), starts, same, slice(None), 0.5)
     assert np.allclose(found[0], START + 1.0 / 0.9)
     assert np.isnan(found[1]).all()
 
@@ -64,9 +64,34 @@ def test_only_the_spin_is_judged():
         return np.concatenate((1e-20 * generator.standard_normal(3), 0.1 * (w[3:] - START) + 1.0))
 
     first, start = np.concatenate((np.zeros(3), np.ones(3))), np.concatenate((np.zeros(3), START))
-    found = mean_velocity_of(push, first, start, same, slice(3, None))
+    found = mean_velocity_of(push, first, start, same, slice(3, None), 0.5)
     assert np.allclose(found[3:], START + 1.0 / 0.9)
     assert np.all(np.abs(found[:3]) <= 1e-19)
+
+
+@pytest.mark.parametrize(("noise", "settles"), [(1e-12, True), (1e-3, False)])
+def test_a_spin_that_is_rounding_alone_is_at_rest(noise, settles):
+    """Of a fast body at rest in attitude; that of an engine is ``eps m |v|² / J``."""
+    generator = np.random.default_rng(2)
+
+    def push(w):
+        return np.concatenate((np.ones(3), noise * generator.standard_normal(3)))
+
+    first, start = np.concatenate((np.ones(3), np.zeros(3))), np.concatenate((START, np.zeros(3)))
+    found = mean_velocity_of(push, first, start, same, slice(3, None), 0.5)
+    assert np.isfinite(found).all() == settles
+    if settles:
+        assert np.allclose(found[:3], START + 1.0)
+        assert np.all(np.abs(found[3:]) <= 10 * noise)
+    both = mean_velocity_of(
+        push,
+        np.array([first] * 2),
+        np.array([start] * 2),
+        same,
+        slice(3, None),
+        np.full((2, 1), 0.5),
+    )
+    assert np.isfinite(both).all() == settles
 
 
 def test_velocities_that_settle_later_than_the_spin_are_waited_for():
@@ -76,5 +101,5 @@ def test_velocities_that_settle_later_than_the_spin_are_waited_for():
         return np.concatenate((0.4 * (w[:3] - START) + 1.0, np.zeros(3)))
 
     first, start = np.concatenate((np.ones(3), np.zeros(3))), np.concatenate((START, START))
-    found = mean_velocity_of(push, first, start, same, slice(3, None))
+    found = mean_velocity_of(push, first, start, same, slice(3, None), 0.5)
     assert np.allclose(found[:3], START + 1.0 / 0.6, rtol=1e-14, atol=0.0)

@@ -50,12 +50,16 @@ class Single:
     """Runge-Kutta of order 4 on the quaternion, all of it in single precision.
 
     work: the type that is computed in.  gyroscopic, damping, mass, gravity, stretch: factors, one
-    where it is sound; that of the step is the last.  declared: the scheme.
+    where it is sound; stretch is that of the step, and stepped_gyroscopic acts in the steps alone.
+    declared: the scheme.
     """
 
     work: type = F
     order, declared = 4, ""
-    gyroscopic = damping = mass = gravity = stretch = 1.0
+    gyroscopic = damping = mass = gravity = stretch = stepped_gyroscopic = 1.0
+
+    def __init__(self, setup: str = "physics") -> None:
+        pass
 
     @property
     def description(self) -> Description:
@@ -128,6 +132,8 @@ class Single:
     def rates(self, y: Floats) -> Floats:
         chart, w, _, v = np.split(y, (-9, -6, -3))
         angular = self.angular(self.from_chart(chart), w)
+        more = F(self.stepped_gyroscopic - 1.0)
+        angular = angular - more * (cross(w, w @ self.inertia) @ self.inverse)
         moving = (v, self.g) if self.free else (0 * v, 0 * v)
         return np.concatenate((self.chart_rate(chart, w), angular, *moving))
 
@@ -176,6 +182,12 @@ class SingleEuler(Single):
         q = unit(times(q, np.concatenate(([np.cos(angle)], part)).astype(self.work)))
         v = v + h * self.g * self.free
         return np.concatenate((q, w, x + h * v * self.free, v))
+
+
+class SingleCoupling(SingleEuler):
+    """The gyroscopic term is a quarter too large, in forward dynamics and in the steps."""
+
+    gyroscopic = 1.25
 
 
 class DeclaredEuler(SingleEuler):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.equation_form import Form, accelerations, stacked
-from omegadot.gates.bounds.scales import body_scale, linear_size, norm, torque_size
+from omegadot.gates.bounds.scales import EPS, body_scale, linear_size, norm, torque_size
 from omegadot.gates.states.equation import BOUND
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Acceleration, Array, State, System
@@ -98,12 +98,15 @@ def _share(apart: Array, bound: Array) -> Array:
     return np.where(np.isnan(share), np.inf, share)
 
 
-def of_forward_dynamics(system: System, states: State, found: Acceleration) -> Evidence:
+def of_forward_dynamics(
+    system: System, states: State, found: Acceleration, eps: float = EPS
+) -> Evidence:
     """Forward dynamics at states, within the equation gate's bounds."""
     true, smallest = forward_dynamics(system, states), body_scale(system).smallest
     sizes = [torque_size(system, states, one) for one in (true, _finite(found, true))]
     linear = [linear_size(system, states, one) for one in (true, _finite(found, true))]
-    bounds = (BOUND * np.maximum(*sizes) / smallest, BOUND * np.maximum(*linear))
+    bound = BOUND * (eps / EPS)
+    bounds = (bound * np.maximum(*sizes) / smallest, bound * np.maximum(*linear))
     return Evidence("forward", system, states, found, *bounds)
 
 

@@ -12,7 +12,7 @@ from omegadot.diagnosis.equations.evidence import SLACK, Evidence, of_forward_dy
 from omegadot.diagnosis.equations.quotient import difference_quotient
 from omegadot.diagnosis.wording.digits import factor
 from omegadot.diagnosis.wording.features import features_of
-from omegadot.gates.bounds.scales import norm, torque_size
+from omegadot.gates.bounds.scales import eps_of, norm, torque_size
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import BOUND, EvaluationStates
 from omegadot.harness.drive import CaseResult
@@ -30,8 +30,9 @@ FORWARD, ALONG = "forward", "along the trajectory"
 
 def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> Scene:
     """What is kept of one scenario's forward dynamics."""
+    eps = eps_of(result.precision)
     evidence = {
-        source: of_forward_dynamics(case.system, states, Acceleration(**answer.result))
+        source: of_forward_dynamics(case.system, states, Acceleration(**answer.result), eps)
         for source, answer, states in (
             (FORWARD, result.forward, evaluation_states.random),
             (ALONG, result.path, evaluation_states.path),
@@ -63,13 +64,12 @@ def equation_causes(across: Across, name: str, source: str) -> list[str]:
 
 
 def _single(evidence: Evidence) -> str:
-    """omega-dot in numbers of single precision, which the right ones are not."""
-    rounded = [
-        np.array_equal(a.angular, a.angular.astype(np.float32).astype(float))
-        for a in (evidence.found, evidence.true)
-    ]
-    moves = bool(np.any(evidence.found.angular))
-    return "omega-dot is worked out in single precision" * (moves and rounded == [True, False])
+    """omega-dot in numbers of single precision, where the right ones so rounded are wrong."""
+    angular, true = evidence.found.angular, evidence.true
+    single = Acceleration(true.angular.astype(np.float32).astype(float), true.linear)
+    rounded = np.array_equal(angular, angular.astype(np.float32).astype(float))
+    found = rounded and bool(np.any(angular)) and evidence.visible(single)
+    return "omega-dot is worked out in single precision" * found
 
 
 def _constant(evidence: Evidence) -> str:

@@ -11,7 +11,7 @@ from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.models.misreadings import misreadings
 from omegadot.diagnosis.wording.conditions import only_where
 from omegadot.diagnosis.wording.digits import limits
-from omegadot.gates.bounds.scales import norm
+from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.steps.vanishing_step import Limit, Probe
 from omegadot.gates.steps.vanishing_step import limits as rates_at_no_step
 from omegadot.reference_impl.cross_product import cross
@@ -61,10 +61,15 @@ class VanishingSteps:
         return f"steps are {100 * abs(k - 1.0):.4g} % too {'long' if k > 1.0 else 'short'}"
 
 
-def vanishing_steps(system: System, probe: Probe, stepped: State) -> VanishingSteps:
-    """From the answers to the gate's own requests: states (m, 9, ...) after one step each."""
+def vanishing_steps(
+    system: System, probe: Probe, stepped: State, eps: float = EPS
+) -> VanishingSteps:
+    """From the answers to the gate's own requests: states (m, k, ...) after one step each.
+
+    k is 9 in double and 5 in single precision, whose eps this then is.
+    """
     with np.errstate(all="ignore"):
-        rates = rates_at_no_step(system, probe, stepped)
+        rates = rates_at_no_step(system, probe, stepped, eps)
     ends = [2.0 * f[:, -1] - f[:, -2] for f in vars(stepped).values()]
     moved = [f[:, -1] - f[:, -2] for f in vars(stepped).values()]
     return VanishingSteps(system, probe.states, rates, State(*ends), State(*moved))

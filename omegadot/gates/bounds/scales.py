@@ -72,7 +72,9 @@ def torque_size(system: System, state: State, acceleration: Acceleration) -> Arr
 
     ``J (|omega|^2 + |omega_dot|) + |tau| + m L (|g| + |a|)``, J the largest inertia and L the lever
     of `body_scale`; for a free body also ``m |v| (|v| + L |omega|)``: the spatial bias force of an
-    engine holds ``v x m v``, which vanishes on paper and leaves its rounding.
+    engine holds ``v x m v``, which vanishes on paper and leaves its rounding; and
+    ``m |x| |a - g|``: a lever that is the difference of two places in the world is off by a
+    rounding of x, and the force ``m (a - g)`` acts on it.
     """
     scale, load = body_scale(system), system.load
     rate = norm(state.angular_velocity)
@@ -81,6 +83,8 @@ def torque_size(system: System, state: State, acceleration: Acceleration) -> Arr
     if load.pivot is None:
         speed = norm(state.linear_velocity)
         size = size + scale.mass * speed * (speed + scale.lever * rate)
+        force = scale.mass * norm(acceleration.linear - load.gravity)
+        size = size + norm(state.position) * force
     return np.asarray(size)
 
 

@@ -8,8 +8,16 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
+from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
-from omegadot.gates.errors.orders import FEWEST_STEPS, Errors, ObservedOrder, excess_of, order_of
+from omegadot.gates.errors.orders import (
+    FEWEST_STEPS,
+    Errors,
+    ObservedOrder,
+    excess_of,
+    highest_order,
+    order_of,
+)
 from omegadot.gates.errors.verdicts import Evidence, Finding, judge
 from omegadot.gates.truth import Companion, Truth, scheme_key
 from omegadot.reference_impl.schemes import SCHEMES
@@ -24,13 +32,17 @@ STATE = (*ROTATION, "position", "linear_momentum")
 
 @dataclass(frozen=True)
 class MeasuredRun:
-    """One engine's run, measured. All arrays are (n,) at the sample times, by channel."""
+    """One engine's run, measured. All arrays are (n,) at the sample times, by channel.
+
+    single: whether the engine works in single precision.
+    """
 
     sweep: Sweep
     error: dict[str, Array]
     round_off: dict[str, Array]
     against_scheme: dict[str, Array] = field(default_factory=dict)
     floor: dict[str, Array] = field(default_factory=dict)
+    single: bool = field(default=False, kw_only=True)
 
     @property
     def saturating_error(self) -> Array:
@@ -59,6 +71,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
         round_off={channel: _sizes(bound) for channel, bound in bounds.items()},
         against_scheme=apart(own.state) if own else {},
         floor={channel: values[rows] for channel, values in truth.floor.items()},
+        single=yardstick.eps > EPS,
     )
 
 
@@ -85,17 +98,20 @@ def evidence_of(
     """What one run and the others of its sweep show in a channel. declared: its order."""
     left = measured.against_scheme.get(channel)
     orders: list[ObservedOrder | None] = []
-    excess, finer = 0.0, sum(r.sweep.timestep < measured.sweep.timestep for r in measured_runs)
+    finer = sum(run.sweep.timestep < measured.sweep.timestep for run in measured_runs)
+    highest, excess = np.inf, 0.0
     for part in (False,) if left is None else (False, True):
         errors = [errors_of(run, channel, left=part) for run in measured_runs]
         known = [one for one in errors if one is not None]
         orders.append(order_of(known))
+        if measured.single:
+            highest = min(highest, highest_order(known))
         if channel in STATE and declared is not None:
             own = next(one for one in known if one.timestep == measured.sweep.timestep)
             excess = max(excess, excess_of(own, known, declared + part))
     bound, floor = measured.round_off[channel], measured.floor.get(channel)
-    settled = finer >= FEWEST_STEPS
-    return Evidence(measured.error[channel], bound, left, tuple(orders), floor, excess, settled)
+    more = (excess, finer >= FEWEST_STEPS, highest)
+    return Evidence(measured.error[channel], bound, left, tuple(orders), floor, *more)
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from omegadot.reference_impl.system import Array
 
 Known = tuple[Array, NDArray[np.bool_]]
+Point = tuple[float, float, float, bool]
 
 # How far an observed order may lie below the declared one where the sweep resolves it.
 ORDER_TOLERANCE = 0.15
@@ -171,6 +172,32 @@ def _jumps(sweep: Sequence[Errors]) -> bool:
     before, bound = np.max(finest.overall[:at]), finest.bound
     growth = bound[at] / bound[at - 1]
     return bool(LARGEST_RISE * growth * before < SATURATED)
+
+
+def highest_order(sweep: Sequence[Errors]) -> float:
+    """The highest order that rounding leaves open; infinite where it leaves all.
+
+    An error e whose bound of rounding is b is ``e ± b`` without it, so that from e1 to the next
+    finer e2 the order is ``log((e1 + b1) / (e2 - b2)) / log(h1 / h2)`` at most. It takes two such
+    slopes in a row, the finer one not on its way up, over a time in which no error saturates.
+    """
+    found = [np.inf]
+    for horizon in HORIZONS:
+        if horizon * min((len(one.size) for one in sweep), default=0) < FEWEST_SAMPLES:
+            break
+        points = sorted((one.timestep, *one.largest(horizon)) for one in sweep)
+        for three in zip(points, points[1:], points[2:], strict=False):
+            if all(error > bound and not saturated for _, error, bound, saturated in three):
+                found.append(_highest(*three))
+    return float(min(found))
+
+
+def _highest(fine: Point, middle: Point, coarse: Point) -> float:
+    most, shown = [], []
+    for (h2, e2, b2, _), (h1, e1, b1, _) in ((fine, middle), (middle, coarse)):
+        most.append(np.log((e1 + b1) / (e2 - b2)) / np.log(h1 / h2))
+        shown.append(np.log(e1 / e2) / np.log(h1 / h2))
+    return float(max(most)) if shown[0] - shown[1] <= ORDER_TOLERANCE else np.inf
 
 
 def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:

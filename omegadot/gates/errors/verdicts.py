@@ -58,6 +58,7 @@ class Evidence:
     floor: (n,), how far a perfect answer may be off, where that is known.
     excess: how many times larger the error is than those at finer steps let it be.
     settled: there are so many finer steps that more would not change that.
+    highest: the order that rounding leaves open at most, where that is known.
     """
 
     error: Array
@@ -67,6 +68,7 @@ class Evidence:
     floor: Array | None = None
     excess: float = 0.0
     settled: bool = True
+    highest: float = np.inf
 
 
 def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Finding:
@@ -108,6 +110,9 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
     lowest = min(seen, key=lambda order: order.value)
     least = declared - ORDER_TOLERANCE
     text = f"observed order {lowest.value:.2f}, declared {declared}"
+    if evidence.highest < declared - 0.5:
+        limit = f"the order is {evidence.highest:.2f} at most, whatever rounding does"
+        return Finding("unexplained", f"{limit}, declared {declared}")
     if not all(order.resolved for order in seen):
         shown = [order for order in seen if not order.resolved and not order.hidden]
         # Clear errors that do not even begin to shrink as they should.
@@ -117,7 +122,9 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
         if lowest.value + lowest.rise >= least or not is_whole(lowest.value):
             falls = lowest.value < declared - 0.5 and lowest.rise <= ORDER_TOLERANCE
             return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
-        return Finding("unexplained", text)
+        # Two slopes may agree by chance where terms nearly cancel; at finer steps they do not.
+        doubtful = not evidence.settled and lowest.value > 0.5
+        return Finding("unsettled" if doubtful else "unexplained", text)
     if evidence.excess > 1.0:
         times = f"{evidence.excess:.1e} times what the errors at finer steps let it be"
         note = f"at this step the error is {times}"

@@ -34,6 +34,7 @@ GATE = "scheme"
 METRIC = "rate_at_no_step"
 UNITS = {"attitude": "rad/s", "omega": "rad/s^2", "position": "m/s", "linear_momentum": "m/s^2"}
 UNDETERMINED = "not judged: in this precision the inverse of the inertia has no digit"
+TOO_LONG = "not judged: of so thin a body no steps in this precision are short enough"
 PROBES = 6  # of the random states, and as many along the exact trajectory
 
 
@@ -157,6 +158,9 @@ def limits(
     the angular momentum: omega is then rounded by ``16 eps |J omega| / lambda``, J the inertia and
     lambda its least eigenvalue; and by velocities so rounded attitude and position move. A screw
     motion is a turn about an axis at the distance |v| / |omega|, which is rounded as places are.
+    Of a scheme that steps the momentum in world axes an error of the attitude grows at the rate
+    |J omega| / lambda. Single precision has no steps that are short against that of a thin body:
+    there the bound is infinite.
     """
     states, h = probe.states, probe.timesteps
     before = states[:, None]
@@ -180,11 +184,14 @@ def limits(
         "linear_momentum": (push, true.linear, step * moving, of_velocity),
     }
     found, ladder = {}, ladder_of(eps)
+    grows = h[:, -1] * spinning > 1.0 if ladder is SINGLE else np.zeros(len(w), bool)
+    follows = ("attitude", "omega") if system.load.pivot is None else tuple(parts)
     for channel, (change, rate, rounding, per_rate) in parts.items():
         size = rounding / step
         loose = tolerated.in_a_radian * ladder.radians / h[:, 0] * size
         own = rounding + tolerated.in_a_run * size
-        found[channel] = _limit(ladder.ranges, h, change, rate, own, per_rate + loose)
+        per_rate = np.where(grows & (channel in follows), np.inf, per_rate + loose)
+        found[channel] = _limit(ladder.ranges, h, change, rate, own, per_rate)
     return found
 
 
@@ -239,12 +246,16 @@ def rows(
             channel: _note(one, factor, digits, UNITS[channel]) for channel, one in found.items()
         }
         return [
-            within(GATE, channel, METRIC, share, "1", 1.0, notes[channel])
+            Row(GATE, channel, METRIC, 0.0, "1", 1.0, "info", TOO_LONG)
+            if np.all(np.isinf(found[channel].bound))
+            else within(GATE, channel, METRIC, share, "1", 1.0, notes[channel])
             for channel, share in shares.items()
         ]
 
 
 def _note(limit: Limit, factor: float | None, digits: int, unit: str) -> str:
+    if not np.all(np.isfinite(limit.found)):
+        return "a step leads to numbers that are not finite"
     if factor == 0.0:
         return "a run of one step does not move"
     if factor is not None:

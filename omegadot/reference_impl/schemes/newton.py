@@ -20,15 +20,17 @@ def mean_velocity_of(
     v0: Array,
     solve: Callable[[Array], Array],
     spin: slice,
+    half: float | Array,
 ) -> Array:
     """The v_m with ``v_m = v₀ + h/2 v̇(v_m)``, (..., n).
 
     push: ``h/2 v̇`` at a v_m.  first: the same at v₀.  solve: by ``1 - h/2 J``, with J the Jacobian
     in v of the step's start.  spin: the angular velocities; the others, where there are any, are
-    judged apart, since in body axes they may settle later.
+    judged apart, since in body axes they may settle later.  half: h/2 in s, (..., 1) or a float.
     It ends where both stand still to round-off, which may be that of an engine: a fast body's
-    bias forces, ``m |v|²``, can leave far fewer digits of ω̇ than the number format has. A lane
-    that has not settled comes back as NaN: its step is too large.
+    bias forces, ``m |v|²``, can leave far fewer digits of ω̇ than the number format has, and of a
+    body at rest none. A lane that has not settled comes back as NaN: its step is too large. Its
+    last change is then more than a hundredth of ω, and a turn of more than the root of eps in rad.
     """
     v = v0 + solve(first)
     eps, last, before = _eps(v.dtype), np.inf, np.inf
@@ -45,6 +47,9 @@ def mean_velocity_of(
             break
         last = size
     settled = size <= UNSETTLED
+    if not _all(settled):
+        length = half if isinstance(half, float) else half[..., 0]
+        settled = settled | (length * _square(change, spin) ** 0.5 <= eps**0.5)
     return v if _all(settled) else np.where(np.asarray(settled)[..., None], v, np.nan)
 
 
