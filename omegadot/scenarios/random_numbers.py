@@ -33,7 +33,8 @@ RUNS = {
     ("long", "whole"): (0.1, 10, 250, 3),
     ("long", "short"): (0.1, 12, 257, 3),
 }
-STEADY_RUN = (0.9, 1, 13, 4)  # beyond a cap of a quarter turn of pi; below 1, where some implicit steps end
+# beyond a quarter of pi, at which engines cap a turn, and below 1, where some implicit steps end
+STEADY_RUN = (0.9, 1, 13, 4)
 AXES = ((0, 0, 1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
 
 
@@ -130,7 +131,7 @@ def loads_of(
         load["damping"] = rounded(between(DAMPINGS[kind], draw.share["damping"]) * least * rate)
     if (frame := draw.traits["torque"]) != "none":
         signs = np.array([1.0 if draw.octant >> bit & 1 else -1.0 for bit in range(3)])
-        gain = random.uniform(1.5, 4.0) * (0.4 if draw.traits["steps"] == "coarse" else 1.0)
+        gain = random.uniform(1.5, 4.0) * (0.25 if draw.traits["steps"] == "coarse" else 1.0)
         torque = least * rate**2 * gain / np.sqrt(6.0 * turn)
         load["torque"] = {"frame": frame, "value": rounded(torque * signs * abs(oblique(random)))}
     return load

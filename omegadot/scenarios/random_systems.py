@@ -36,7 +36,7 @@ def random_scenario(seed: int, index: int) -> Scenario:
     """
     draw, random = drawn(seed, index), np.random.default_rng([seed, index])
     bulk = draw.traits["bulk"]
-    mass = rounded(between(MASSES[bulk], draw.share["mass"]))
+    mass = rounded(between(MASSES[bulk], draw.share["mass"]), 8)
     flying = draw.traits["support"] == "flying"  # the larger a body, the faster it may go
     size = between(SIZES[bulk.partition("-")[2]], max(draw.share["size"], 0.6 * flying))
     rate = between(RATES["middle" if rests(draw) else draw.traits["rate"]], draw.share["rate"])

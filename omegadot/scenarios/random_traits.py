@@ -89,15 +89,17 @@ def _block(seed: int, number: int) -> tuple[Draw, ...]:
     pairs = covering_rows(TRAITS, BLOCK - len(STEADY_INERTIAS), random)
     places = random.permutation(BLOCK)  # the first are those of the steady ones
     rows = [dict[str, str]() for _ in range(BLOCK)]
-    for place, row in zip(places, [*(_steady_row(random) for _ in STEADY_INERTIAS), *pairs], strict=True):
+    for place, row in zip(
+        places, [*(_steady_row(random) for _ in STEADY_INERTIAS), *pairs], strict=True
+    ):
         rows[place] = row
     shares = [dict[str, float]() for _ in rows]
     for name, key in SPREAD_BY.items():
         for share, (rank, of) in zip(shares, _ranks(list(map(key, rows)), random), strict=True):
             share[name] = (rank + random.random()) / of
     steady = dict(zip(map(int, places), STEADY_INERTIAS, strict=False))
-    for place, share in steady.items():
-        shares[place]["inertia"] = share
+    for place, inertia in steady.items():
+        shares[place]["inertia"] = inertia
     # those of large torques have every sign among them, and so have the others
     ranks = _ranks([_drive(row) for row in rows], random)
     octants = [OCTANTS[rank % len(OCTANTS)] for rank, _ in ranks]
