@@ -35,7 +35,7 @@ def mean_velocity(motion: Motion, q: Array, v: Array, h: float | Array) -> Array
         even = 0.5 * acceleration(q, w)
         return half * (even + 0.5 * acceleration(q, -w) + odd)
 
-    return mean_velocity_of(push, half * ahead, v, solve, motion.spin)
+    return mean_velocity_of(push, half * ahead, v, solve, motion.spin, h)
 
 
 def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:

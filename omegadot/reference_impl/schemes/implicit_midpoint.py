@@ -26,7 +26,7 @@ def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, A
     def push(w: Array) -> Array:
         return half * acceleration(retract(q, 0.5 * cayley(h * w)), w)
 
-    w = mean_velocity_of(push, half * a, v, solve, motion.spin)
+    w = mean_velocity_of(push, half * a, v, solve, motion.spin, h)
     return retract(q, cayley(h * w)), 2 * w - v
 
 

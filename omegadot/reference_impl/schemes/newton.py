@@ -20,12 +20,13 @@ def mean_velocity_of(
     v0: Array,
     solve: Callable[[Array], Array],
     spin: slice,
+    h: float | Array | None = None,
 ) -> Array:
     """The v_m with ``v_m = v₀ + h/2 v̇(v_m)``, (..., n).
 
     push: ``h/2 v̇`` at a v_m.  first: the same at v₀.  solve: by ``1 - h/2 J``, with J the Jacobian
     in v of the step's start.  spin: the angular velocities; the others, where there are any, are
-    judged apart, since in body axes they may settle later.
+    judged apart, since in body axes they may settle later.  h: the step, s.
     It ends where both stand still to round-off, which may be that of an engine: a fast body's
     bias forces, ``m |v|²``, can leave far fewer digits of ω̇ than the number format has. A lane
     that has not settled comes back as NaN: its step is too large.
@@ -45,6 +46,8 @@ def mean_velocity_of(
             break
         last = size
     settled = size <= UNSETTLED
+    if h is not None and not _all(settled):
+        settled = settled | (_square(change, spin) ** 0.5 * _lanes(h) <= eps**0.5)
     return v if _all(settled) else np.where(np.asarray(settled)[..., None], v, np.nan)
 
 
@@ -73,6 +76,11 @@ def _square(vector: Array, spin: slice) -> Any:
         return float(part @ part)
     part = vector[..., spin]
     return np.add.reduce(part * part, -1)
+
+
+def _lanes(h: float | Array) -> Any:
+    """The size of a step, (...); steps of lanes have an axis more."""
+    return abs(h[..., 0]) if isinstance(h, np.ndarray) and h.ndim else abs(h)
 
 
 @cache
