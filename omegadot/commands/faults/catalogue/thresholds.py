@@ -56,7 +56,7 @@ def GyroscopicHeldBelow(system: System, state: State) -> Array:
     """The gyroscopic term is held to what gives 1000 rad/s^2."""
     term = gyroscopic_term(system, state)
     most = LARGEST_ACCELERATION * float(np.linalg.eigvalsh(system.body.inertia)[0])
-    return term * np.maximum(1.0 - most / np.maximum(norm(term), 1e-300), 0.0)[..., None]
+    return term * (1.0 - most / np.maximum(norm(term), most))[..., None]
 
 
 @extra_torque("torque at-rest", named=("torque", "rest", "|omega|"))
