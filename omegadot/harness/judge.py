@@ -155,7 +155,8 @@ def _judge_integrator(
         rows, broken = _rows_of_run(truth, measured, findings, answer, result)
         broken += [row.note for row in (match, *probed) if row.verdict == "fail"]
         why = broken[0] if broken else "; ".join([_why(findings), *(r.note for r in grows[:1])])
-        unresolved = any(f.open for f in findings.values())
+        # what is broken at this step stays so, whatever finer ones show
+        unresolved = not broken and any(f.open for f in findings.values())
         rows = [match, *orders, *grows, *probed, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
 
@@ -209,7 +210,8 @@ def _judge_accuracies(
         broken += [row.note for row in probed if row.verdict == "fail"]
         why = broken[0] if broken else _why(findings)
         rows = [*accuracy_followed.rows(measured, known), *probed, *rows]
-        yield JudgedRun(integrator, sweep, "ok", "", rows, why, further is not None, further)
+        unresolved = not broken and further is not None
+        yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved, further)
 
 
 def judge_case(

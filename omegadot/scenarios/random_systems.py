@@ -30,15 +30,15 @@ NAME = re.compile(r"random-(0|[1-9]\d{0,8})-(0|[1-9]\d{0,5})")
 def random_scenario(seed: int, index: int) -> Scenario:
     """The system of this number, called ``random-SEED-INDEX``.
 
-    Masses span six decades (1 g to 1.5 t), sizes nearly as many (1 mm to 500 m), rates six (0.001
+    Masses span nine decades (0.1 g to 100 t), sizes nearly six (1 mm to 500 m), rates seven (1e-4
     to 1000 rad/s, or at rest), speeds go up to 10 km/s. A run lasts 4 to 26 rad at the body's own
-    rate, in steps of 0.5 rad or of 0.1, up to 1028 of them.
+    rate, in steps of 0.5 rad or of 0.1, up to 1028 of them; of 0.9 rad where it spins steadily.
     """
     draw, random = drawn(seed, index), np.random.default_rng([seed, index])
-    weight, extent = draw.traits["bulk"].split("-")
-    mass = rounded(between(MASSES[weight], draw.share["mass"]))
+    bulk = draw.traits["bulk"]
+    mass = rounded(between(MASSES[bulk], draw.share["mass"]), 8)
     flying = draw.traits["support"] == "flying"  # the larger a body, the faster it may go
-    size = between(SIZES[extent], max(draw.share["size"], 0.6 * flying))
+    size = between(SIZES[bulk.partition("-")[2]], max(draw.share["size"], 0.6 * flying))
     rate = between(RATES["middle" if rests(draw) else draw.traits["rate"]], draw.share["rate"])
     tensor = np.array(rounded(tensor_of(random, draw, mass, size), 9))
     center, pivot = np.zeros(3), None
@@ -61,7 +61,7 @@ def random_scenario(seed: int, index: int) -> Scenario:
             "name": f"random-{seed}-{index}",
             "shows": ", ".join(f"{trait} {level}" for trait, level in draw.traits.items()),
             "body": {"mass": mass, "inertia": tensor.tolist(), "center_of_mass": center.tolist()},
-            "initial": initial_of(random, draw, size, rate),
+            "initial": initial_of(random, draw, tensor, size, rate),
             "load": load,
             "run": run,
         }

@@ -1,15 +1,16 @@
 """What random systems have in them, drawn from a seed: the same seed gives the same traits.
 
 They come in blocks of 24. Within a block every two traits occur together, and magnitudes are spread
-evenly over their range.
+evenly over their range. Two systems of a block spin steadily, at steps that turn them far.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from operator import itemgetter
 
 import numpy as np
 from numpy.random import Generator
@@ -32,9 +33,27 @@ TRAITS = {
 }
 # Signs of the components of a torque; two neighbours have both signs of each.
 OCTANTS = (0b000, 0b111, 0b001, 0b110, 0b010, 0b101, 0b011, 0b100)
-SPREAD_BY = {
-    **{"mass": "bulk", "size": "bulk", "rate": "rate", "speed": "support"},
-    **{"damping": "damping", "gravity": "gravity", "inertia": "inertia"},
+# A body that turns at a constant omega: every scheme's error is then that of its turns alone.
+STEADY = {
+    **{"support": "free", "damping": "none", "torque": "none", "inertia": "diagonal"},
+    **{"steps": "coarse", "end": "whole"},
+}
+STEADY_INERTIAS = (0.0, 0.5)  # shares of the range: a sphere, and a body of three moments
+
+
+def _weight_and_support(traits: Mapping[str, str]) -> object:
+    """A pivoted body's mass shows in its turning, a free one's does not."""
+    return traits["bulk"].partition("-")[0], traits["support"].startswith("pivot")
+
+
+SPREAD_BY: dict[str, Callable[[Mapping[str, str]], object]] = {
+    "mass": _weight_and_support,
+    "size": itemgetter("bulk"),
+    "rate": itemgetter("rate"),
+    "speed": itemgetter("support"),
+    "damping": itemgetter("damping"),
+    "gravity": itemgetter("gravity"),
+    "inertia": itemgetter("inertia"),
 }
 
 
@@ -43,11 +62,13 @@ class Draw:
     """What is drawn of a system before its numbers.
 
     share: of the range of each magnitude.  octant: of a torque, a bit for each component's sign.
+    steady: its omega is constant.
     """
 
     traits: Mapping[str, str]
     share: Mapping[str, float]
     octant: int
+    steady: bool = False
 
 
 def _ranks(groups: Sequence[object], random: Generator) -> list[tuple[int, int]]:
@@ -65,15 +86,32 @@ def _ranks(groups: Sequence[object], random: Generator) -> list[tuple[int, int]]
 @lru_cache(64)
 def _block(seed: int, number: int) -> tuple[Draw, ...]:
     random = np.random.default_rng([seed, number, BLOCK])
-    rows = covering_rows(TRAITS, BLOCK, random)
+    pairs = covering_rows(TRAITS, BLOCK - len(STEADY_INERTIAS), random)
+    places = random.permutation(BLOCK)  # the first are those of the steady ones
+    rows = [dict[str, str]() for _ in range(BLOCK)]
+    for place, row in zip(
+        places, [*(_steady_row(random) for _ in STEADY_INERTIAS), *pairs], strict=True
+    ):
+        rows[place] = row
     shares = [dict[str, float]() for _ in rows]
-    for name, by in SPREAD_BY.items():
-        for share, (rank, of) in zip(shares, _ranks([r[by] for r in rows], random), strict=True):
+    for name, key in SPREAD_BY.items():
+        for share, (rank, of) in zip(shares, _ranks(list(map(key, rows)), random), strict=True):
             share[name] = (rank + random.random()) / of
+    steady = dict(zip(map(int, places), STEADY_INERTIAS, strict=False))
+    for place, inertia in steady.items():
+        shares[place]["inertia"] = inertia
     # those of large torques have every sign among them, and so have the others
     ranks = _ranks([_drive(row) for row in rows], random)
     octants = [OCTANTS[rank % len(OCTANTS)] for rank, _ in ranks]
-    return tuple(map(Draw, rows, shares, octants))
+    return tuple(
+        Draw(row, shares[place], octants[place], place in steady) for place, row in enumerate(rows)
+    )
+
+
+def _steady_row(random: Generator) -> dict[str, str]:
+    """The traits of a body that spins steadily; it is never at rest."""
+    levels = {**TRAITS, "rate": TRAITS["rate"][1:], **{k: (v,) for k, v in STEADY.items()}}
+    return {name: str(random.choice(levels[name])) for name in TRAITS}
 
 
 def _drive(traits: Mapping[str, str]) -> tuple[bool, bool]:

@@ -118,6 +118,16 @@ def test_rounding_grows_with_steps_and_growth() -> None:
     np.testing.assert_allclose(found["linear_momentum"], 2.0 * speed / 10.0, **close)
 
 
+def test_a_pivoted_bodys_velocity_counts_as_it_is_reported() -> None:
+    system = System((OFFSET,), Load(pivot=np.array([0.4, 0.0, 0.0])))
+    states = place_on_pivot(system, STATES)
+    yardstick = Yardstick(system, TIMES, states)
+    other = replace(states, linear_velocity=1.01 * states.linear_velocity)
+    found = yardstick.distance("linear_momentum", other, states)
+    sizes = np.linalg.norm(states.linear_velocity, axis=-1)
+    np.testing.assert_allclose(found, 0.01 * sizes / np.max(sizes), rtol=1e-12)
+
+
 def test_rounding_of_a_pivoted_body_takes_its_lever_along() -> None:
     system = System((BODY,), Load(gravity=GRAVITY, pivot=np.array([0.0, 0.0, 0.5])))
     states = place_on_pivot(system, STATES)

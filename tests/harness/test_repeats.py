@@ -16,6 +16,7 @@ import pytest
 
 from omegadot.adapters.protocol import Adapter
 from omegadot.adapters.reference.adapter import ReferenceAdapter
+from omegadot.commands.faults.catalogue import FAULTS
 from omegadot.commands.faults.detect import Judgement, Nameless, judge
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.case import Sweep
@@ -110,6 +111,14 @@ def test_an_unknown_scheme_may_have_two_points_for_an_attitude(
         ("repeated", "pass"),
         ("reloaded", "pass"),
     }
+
+
+@pytest.mark.parametrize("name", ["LaterRunsDiffer", "FirstRunDiffers"])
+def test_a_run_that_differs_from_one_alike_is_seen_without_a_scheme(
+    name: str, pool: Pool, prepared: Prepared
+) -> None:
+    faulty = Nameless(FAULTS[name].wrap(ReferenceAdapter()))
+    assert "repeated" in failed(judged(pool, prepared, faulty))
 
 
 def test_a_run_that_fails_the_second_time_is_reported(pool: Pool, prepared: Prepared) -> None:

@@ -103,3 +103,18 @@ def test_velocities_that_settle_later_than_the_spin_are_waited_for():
     first, start = np.concatenate((np.ones(3), np.zeros(3))), np.concatenate((START, START))
     found = mean_velocity_of(push, first, start, same, slice(3, None), 0.5)
     assert np.allclose(found[:3], START + 1.0 / 0.6, rtol=1e-14, atol=0.0)
+
+
+def test_a_spin_that_is_rounding_alone_settles_where_a_step_does_not_turn_by_it():
+    """A body at rest whose engine finds an omega-dot of rounding, another one at each call."""
+    generator = np.random.default_rng(2)
+
+    def push(w):
+        return 1e-14 * generator.standard_normal(w.shape)
+
+    def settled(start, h):
+        return np.isfinite(mean_velocity_of(push, push(start), start, same, slice(None), h)).all()
+
+    assert settled(np.zeros(3), 1.0)
+    assert settled(np.zeros((2, 3)), np.ones((2, 1)))
+    assert not settled(np.zeros(3), 1e12)

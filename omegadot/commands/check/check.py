@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,7 +13,7 @@ from pathlib import Path
 from omegadot.adapters.registry import registered
 from omegadot.commands.check.result import Check, Result, Subject, Tally
 from omegadot.commands.check.select import Arguments, Selection, select
-from omegadot.commands.check.shrink import Failing, kinds_of_failure
+from omegadot.commands.check.shrink import SECONDS, Failing, kinds_of_failure
 from omegadot.commands.check.shrink import shrink as shrink_check
 from omegadot.commands.check.suite import SEED, Suite
 from omegadot.commands.progress import Count, Reporter, Reporting, reporting
@@ -137,13 +138,15 @@ def _shrunk(
     cases = {case.name: case for case in selection.cases}
     given = engine if isinstance(engine, str) else target_of(engine)
     kinds, found = kinds_of_failure(results, cases), []
+    deadline = time.monotonic() + SECONDS
     count = Count(report, "shrinking what fails", len(kinds)) if kinds else None
-    for one in kinds:
+    for number, one in enumerate(kinds):
         line = ["omegadot", "check", given]
         line += ["--integrator", one.integrator] if one.integrator else []
         choice = next(choice for choice in selection.choices if choice.name == one.engine)
         how = (selection.arguments.timeout, SEED, shlex.join(line))
-        found.append(shrink_check(one, cases[one.scenario], choice, *how))
+        share = max(0.0, deadline - time.monotonic()) / (len(kinds) - number)
+        found.append(shrink_check(one, cases[one.scenario], choice, *how, seconds=share))
         if count:
             count.advance()
     return [one for one in found if one is not None]

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from omegadot.commands.check.judge import failure
 from omegadot.commands.check.result import GATES_OF_A_RUN, GATES_OF_A_SCENARIO, Check, Result
-from omegadot.commands.check.simpler import SIMPLER
+from omegadot.commands.check.simpler import SIMPLER, brief
 from omegadot.commands.check.tables import Tables, ingredients, tables_of
 from omegadot.gates.case import Case
 from omegadot.gates.errors.verdicts import UNDECIDED
@@ -27,7 +27,7 @@ from omegadot.scenarios.writing import to_toml
 
 MOST = 3  # failures that are shrunk, each of another kind
 TRIALS = 60  # for each
-SECONDS = 20.0  # for each
+SECONDS = 20.0  # for all together
 
 
 @dataclass(frozen=True)
@@ -77,11 +77,18 @@ def kinds_of_failure(results: Mapping[Check, Result], cases: Mapping[str, Case])
 
 
 def shrink(
-    check: Check, case: Case, choice: EngineChoice, timeout: float, seed: int, command: str
+    check: Check,
+    case: Case,
+    choice: EngineChoice,
+    timeout: float,
+    seed: int,
+    command: str,
+    seconds: float = SECONDS,
 ) -> Failing | None:
     """The simplest system on which this check's gate fails; None where it fails no more.
 
     choice: the engine.  seed: of the evaluation states.  command: the line up to the scenario.
+    seconds: after which no further system is tried, nor one that is expected to last longer.
     """
     chosen = replace(choice, integrators=(check.integrator,) if check.integrator else ())
     request = RunRequest([], [chosen], seed=seed, timeout=min(timeout, SECONDS))
@@ -90,7 +97,7 @@ def shrink(
         warnings.simplefilter("ignore", RuntimeWarning)
         try:
             runner.engines.start()
-            return _search(runner, check, case, command)
+            return _search(runner, check, case, command, seconds)
         except BaseException:
             runner.engines.stop()
             raise
@@ -130,9 +137,12 @@ def _candidates(start: Tables) -> Generator[Tables, bool, None]:
                 simplest, again = tables, True
 
 
-def _search(runner: Runner, check: Check, case: Case, command: str) -> Failing | None:
+def _search(
+    runner: Runner, check: Check, case: Case, command: str, seconds: float
+) -> Failing | None:
     name = f"{case.name}-shrunk"
-    simplest = tables_of(case, name)
+    whole, of_engine = tables_of(case, name), check.gate in GATES_OF_A_SCENARIO
+    began = time.monotonic()
 
     def failed(tables: Tables) -> list[Row]:
         try:
@@ -140,22 +150,28 @@ def _search(runner: Runner, check: Check, case: Case, command: str) -> Failing |
         except ScenarioError:  # no body has this inertia
             return []
 
-    last = failed(simplest)
-    wanted = _metrics(last)
-    deadline, trials, finished = time.monotonic() + SECONDS, 1, True
+    wanted, trials, finished = set[str](), 0, True
+    # most gates of the engine fail on one step as well, and the whole run takes long
+    for simplest in (brief(whole), whole) if of_engine else (whole,):
+        trials, started = trials + 1, time.monotonic()
+        last = failed(simplest)
+        wanted, took = _metrics(last), time.monotonic() - started
+        if wanted:
+            break
     if not wanted:
         return None
     candidates = _candidates(simplest)
     tables = next(candidates, None)
     while tables is not None:
-        finished = trials < TRIALS and time.monotonic() < deadline
+        started = time.monotonic()
+        finished = trials < TRIALS and started + took < began + seconds
         if not finished:
             break
         trials += 1
         rows = failed(tables)
         kept = bool(wanted & _metrics(rows))
         if kept:
-            simplest, last = tables, rows
+            simplest, last, took = tables, rows, time.monotonic() - started
         try:
             tables = candidates.send(kept)
         except StopIteration:

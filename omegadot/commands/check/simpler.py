@@ -96,7 +96,7 @@ def _shorter(tables: Tables) -> Tables:
     return _with(tables, "run", duration=duration, sample=min(run["sample"], duration))
 
 
-def _brief(tables: Tables) -> Tables:
+def brief(tables: Tables) -> Tables:
     """One step of the longest size: the gates of the engine itself need no more."""
     step = max(tables["run"]["timesteps"])
     return _with(tables, "run", timesteps=[step], duration=step, sample=step)
@@ -142,7 +142,7 @@ def _rounded_value_of(table: Tables, digits: int) -> Tables:
 
 
 SIMPLER: tuple[Simpler, ...] = (
-    _brief,
+    brief,
     _bare,
     *(partial(_without, loads=(load,)) for load in LOADS),
     partial(_one_step_size, number=0),

@@ -8,15 +8,21 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case
 from omegadot.harness.random_cases import features_of as common_features
 from omegadot.reference_impl.inertia import lever, moving_inertia
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.schemes.scheme import kinds_of
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, System
 
-HEAVY, LIGHT = 100.0, 0.01  # kg
+HEAVY, LIGHT, TON = 100.0, 0.01, 1000.0  # kg
+MOST_GRAVITY = 20.0  # m/s^2
+SLIGHT_DAMPING = 1e-3  # N m s/rad
+DROPPED = 0.01  # rad/s
+SLIGHT = 0.01  # of a tensor's trace
 SMALL_INERTIA = 1e-3  # kg m^2
 LONG_STEP = 0.015  # s
 DROWSY = 5e-5  # J/kg, PhysX's default, below which a body may be put to sleep
 RATES, SPEEDS = (7, 25, 47, 100), (100, 300)  # rad/s, m/s
-TURNS = (0.05, 0.1, 0.12)  # rad, of one step
+TURNS = (0.05, 0.1, 0.12, 0.79)  # rad, of one step
 MICROSECOND = 1e-6
 NEAR = 0.01  # of two neighbouring moments, relative
 
@@ -25,12 +31,15 @@ def features_of(case: Case) -> frozenset[str]:
     """The features by which faults name what they need.
 
     Those of the harness, and:
-    ``above-100-kg``, ``below-10-g``; ``odd-mass``, ``odd-load``: of more digits than single
-    precision has; ``small-inertia``: a moment below 1e-3 kg m^2; ``near-pair``: two moments within
-    1 %; ``unsorted-moments`` on a diagonal inertia;
+    ``above-100-kg``, ``above-1-t``, ``below-10-g``; ``odd-mass``, ``odd-load``: of more digits than
+    single precision has; ``small-inertia``: a moment below 1e-3 kg m^2; ``near-pair``: two moments
+    within 1 %; ``slight-products``: one below 1 % of the trace; ``unsorted-moments`` on a diagonal
+    inertia;
     ``lever-negative``: a pivoted body with a component of the lever below zero;
     ``attitude-dependent`` torques; ``torque-below-clamp``: a component below -0.25 N m;
+    ``gravity-above-20`` in m/s^2; ``damping-below-1e-3`` in N m s/rad;
     ``low-energy``; ``omega-above-R`` in rad/s at the start, ``speed-above-V`` in m/s at either end;
+    ``steady``: omega is constant, ``tumbling``: it is not, though nothing acts;
     ``step-above-15-ms``, ``turn-above-A`` in rad a step, ``beyond-1000-steps``; ``fine-steps``,
     ``fine-times``: steps, and times of samples, that microseconds do not hold.
     """
@@ -43,11 +52,14 @@ def _of_body(system: System) -> dict[str, bool]:
     body = system.body
     diagonal, moments = np.diag(body.inertia), np.linalg.eigvalsh(body.inertia)
     gaps = np.diff(moments) / moments[1:]
+    products = np.abs(body.inertia[[0, 0, 1], [1, 2, 2]]) / np.trace(body.inertia)
     plain = not np.any(body.inertia - np.diag(diagonal))
     return {
         "above-100-kg": bool(body.mass > HEAVY),
+        "above-1-t": bool(body.mass > TON),
         "below-10-g": bool(body.mass < LIGHT),
         "odd-mass": not _is_single(body.mass),
+        "slight-products": bool(np.any((products > 1e-6) & (products < SLIGHT))),
         "small-inertia": bool(moments[0] < SMALL_INERTIA),
         "near-pair": bool(np.any((gaps > 1e-9) & (gaps <= NEAR))),
         "unsorted-moments": plain and bool(np.any(np.diff(diagonal) < 0.0)),
@@ -68,6 +80,8 @@ def _of_load(system: System) -> dict[str, bool]:
         "lever-negative": bool(np.any(arm < 0.0)),
         "attitude-dependent": hangs or bool(np.any(load.torque_world)),
         "odd-load": not all(map(_is_single, acting)),
+        "gravity-above-20": bool(norm(load.gravity) > MOST_GRAVITY),
+        "damping-below-1e-3": bool(0.0 < load.damping < SLIGHT_DAMPING),
         "torque-below-clamp": bool(np.any(torques < -0.25)),
     }
 
@@ -83,7 +97,10 @@ def _of_start(case: Case) -> dict[str, bool]:
     free = system.load.pivot is None
     energy = 0.5 * (w @ apply(moving_inertia(system), w) / system.body.mass + free * v @ v)
     speed = max(float(norm(v)), float(norm(end))) if free else 0.0
+    changes = float(norm(forward_dynamics(system, start).angular)) > 1e-12 * rate**2
     return {
+        "steady": rate > 0.0 and not changes,
+        "tumbling": rate > 0.0 and changes and "torque-free" in kinds_of(system),
         "low-energy": 0.0 < float(energy) < DROWSY,
         **{f"omega-above-{most}": rate > most for most in RATES},
         **{f"speed-above-{most}": speed > most for most in SPEEDS},

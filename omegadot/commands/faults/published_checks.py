@@ -152,7 +152,9 @@ PUBLISHED = (
         "energy below (1 + 1e-9) of its start at every step and above 0.7 at the end, |H| within "
         "0.05 kg m^2/s; a box of 1 kg, omega = (1, 2, 3), 500 steps of 0.01 s, implicitfast",
         "google-deepmind/mujoco test/engine/engine_forward_test.cc, FreeBodyConservation",
-        frozenset({"free", "asymmetric", "full-inertia", "offset", "torque-free", "fast"}),
+        frozenset(
+            {"free", "asymmetric", "full-inertia", "offset", "torque-free", "tumbling", "fast"}
+        ),
         ("linearly-implicit-euler",),
         mujoco_free_body,
     ),
@@ -162,7 +164,7 @@ PUBLISHED = (
         "within 1e-10, its pose within 1e-7, its energy within 1e-6 over 1000 steps of 1e-3 s",
         "dartsim/dart tests/integration/dynamics/test_joints.cpp, FreeJointEnergyConservation"
         "NoForces and FreeJointSphericalInertiaConstantWorldTwistLongHorizon",
-        frozenset({"free", "asymmetric", "torque-free"}),
+        frozenset({"free", "asymmetric", "torque-free", "tumbling"}),
         EULERS,
         dart_free_joint,
     ),
@@ -173,7 +175,7 @@ PUBLISHED = (
         "cylinder of 0.04, 0.04 and 0.02 kg m^2, omega = (2, 4, 6), 16 steps a turn",
         "RobotLocomotion/drake multibody/benchmarks/free_body/test/multibody_plant_free_body_test"
         ".cc, testNumericalIntegration",
-        frozenset({"free", "torque-free", "gravity", "fast", "order-4"}),
+        frozenset({"free", "torque-free", "tumbling", "gravity", "fast", "order-4"}),
         FOURTH,
         drake_free_body,
     ),
@@ -183,7 +185,7 @@ PUBLISHED = (
         "0.2, 0.5, 0.4, omega = (0.7, -0.5, 0.9)",
         "newton-physics/newton newton/tests/test_physics_verification.py, "
         "test_torque_free_precession",
-        frozenset({"free", "asymmetric", "torque-free", "fast"}),
+        frozenset({"free", "asymmetric", "torque-free", "tumbling", "fast"}),
         EULERS,
         newton_torque_free,
     ),

@@ -88,7 +88,8 @@ def random_acceleration(system: System, states: State, seed: Sequence[int]) -> A
     angular = free.angular + rate**2 * random.standard_normal(free.angular.shape)
     if system.load.pivot is not None:  # the pivot, not the caller, sets the linear part
         return Acceleration(angular, center_of_mass_acceleration(system, states, angular))
-    linear = free.linear + rate**2 * random.standard_normal(free.linear.shape)
+    gyration = np.sqrt(np.trace(system.body.inertia) / system.body.mass)
+    linear = free.linear + rate**2 * gyration * random.standard_normal(free.linear.shape)
     return Acceleration(angular, linear)
 
 

@@ -19,6 +19,7 @@ from omegadot.commands.faults.catalogue import (  # noqa: F401  (importing them 
     solving,
     start,
     stepping,
+    thresholds,
 )
 from omegadot.commands.faults.fault import FAULTS
 

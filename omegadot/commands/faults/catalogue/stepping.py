@@ -109,7 +109,7 @@ def OmegaClamped(before: State, after: State, dt: float | Array) -> State:
     return step_ends.held_below(FASTEST)(before, after, dt)
 
 
-@logged("stepping", "scheme", "torque-free", named="rescaled so that the kinetic energy")
+@logged("stepping", "scheme", "torque-free tumbling", named="rescaled so that the kinetic energy")
 def EnergyCorrected(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """omega is rescaled so that the kinetic energy of rotation looks conserved."""
     state = trajectory.state
@@ -120,7 +120,7 @@ def EnergyCorrected(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     return Trajectory(trajectory.time, replace(state, angular_velocity=w))
 
 
-@logged("stepping", "scheme", "torque-free", named="rescaled so that the angular momentum")
+@logged("stepping", "scheme", "torque-free tumbling", named="rescaled so that the angular momentum")
 def MomentumCorrected(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """omega is rescaled so that the size of the angular momentum looks conserved."""
     state = trajectory.state
