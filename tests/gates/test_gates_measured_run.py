@@ -59,6 +59,24 @@ def test_the_channels() -> None:
     )
 
 
+@pytest.mark.parametrize(("of_attitude", "verdict"), [(2, "info"), (0, "fail")])
+def test_energy_overflows_with_the_state(of_attitude: int, verdict: str) -> None:
+    """Its errors cancel until then, and show no order; those of the state do, or do not."""
+    times, runs = np.linspace(0.0, 1.0, 65), []
+    for step, change in ((0.04, 1.0), (0.02, 0.6), (0.01, 1.0), (0.005, 1.7)):
+        grown = times * 10.0 ** (5.0 * times)
+        error = dict.fromkeys(CHANNELS, step**2 * grown)
+        error["attitude"] = 1e-4 * (step / 0.04) ** of_attitude * grown
+        error["energy"] = change * step**2 * grown
+        for channel in ("omega", "attitude", "energy") if step == 0.04 else ():
+            error[channel] = np.where(times > 0.9, np.inf, error[channel])
+        bound = dict.fromkeys(CHANNELS, np.full(65, BOUND))
+        runs.append(MeasuredRun(Sweep(step, 64, 1), error, bound))
+    found = findings_of(runs[0], Declared(None, dict.fromkeys(CHANNELS, 2)), runs)
+    assert found["omega"].verdict == "info"
+    assert found["attitude"].verdict == found["energy"].verdict == verdict
+
+
 @pytest.mark.parametrize("order", [1, 2, 4])
 def test_the_orders_of_an_error_and_of_what_is_left_of_it(order: int) -> None:
     runs = sweep(1, order)

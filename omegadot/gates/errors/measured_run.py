@@ -18,7 +18,7 @@ from omegadot.gates.errors.orders import (
     highest_order,
     order_of,
 )
-from omegadot.gates.errors.verdicts import Evidence, Finding, judge
+from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN, Evidence, Finding, judge
 from omegadot.gates.truth import Companion, Truth, scheme_key
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
@@ -134,8 +134,17 @@ def orders_for(integrator: Integrator, system: System) -> dict[str, int | None]:
 def findings_of(
     measured: MeasuredRun, declared: Declared, measured_runs: list[MeasuredRun]
 ) -> dict[str, Finding]:
-    """Judge every channel of one run; the other runs of its sweep show the orders."""
-    return {
+    """Judge every channel of one run; the other runs of its sweep show the orders.
+
+    Where the state blows up as a scheme may, so do energy and angular momentum: these may show no
+    order until then, as their errors cancel now and then.
+    """
+    found = {
         c: judge(evidence_of(measured, measured_runs, c, order), declared.scheme, order)
         for c, order in declared.orders.items()
     }
+    lost = [found[c] for c in STATE if c in found and not np.all(np.isfinite(measured.error[c]))]
+    if lost and all(finding.kind == "beyond" for finding in lost):
+        follow = {c for c, finding in found.items() if finding == BLOWN_UP_UNSEEN}
+        found |= dict.fromkeys(follow - {*STATE}, lost[0])
+    return found

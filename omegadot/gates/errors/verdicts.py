@@ -47,6 +47,10 @@ class Finding:
         return self.kind in ("unresolved", "unsettled")
 
 
+BLOWN_UP_UNSEEN = Finding("unsettled", NOT_FINITE)
+"""Of an error that overflows, and whose order is not to be seen until then."""
+
+
 @dataclass(frozen=True)
 class Evidence:
     """What is known of one channel of one run.
@@ -100,7 +104,7 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
         return found
     if found.kind == "consistent":
         return Finding("beyond", "not judged: it blows up at so large a step")
-    return Finding("unsettled" if found.open else "unexplained", NOT_FINITE)
+    return BLOWN_UP_UNSEEN if found.open else Finding("unexplained", NOT_FINITE)
 
 
 def _by_order(evidence: Evidence, declared: int) -> Finding:
