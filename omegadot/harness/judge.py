@@ -13,6 +13,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors import rounding_step
 from omegadot.gates.errors.measured_run import (
+    STATE,
     Declared,
     MeasuredRun,
     findings_of,
@@ -90,12 +91,16 @@ def _diverged(
     findings: dict[str, Finding],
     eps: float,
 ) -> JudgedRun:
-    """A run whose state ceases to be finite; what its scheme does as well is not judged."""
+    """A run whose state ceases to be finite; what its scheme does as well is not judged.
+
+    Energy and angular momentum follow from the state, and overflow before it.
+    """
     finite = np.isfinite(measured.saturating_error) & np.isfinite(answer.result["time"])
     bad = np.flatnonzero(~finite)
     when = f" from t = {sweep.times[bad[0]]:g} s" if len(bad) else ""
     note = f"the state is not finite{when}"
-    worst = min(findings.values(), key=lambda f: _FINDINGS.index(f.kind))
+    of_state = [finding for channel, finding in findings.items() if channel in STATE]
+    worst = min(of_state, key=lambda f: _FINDINGS.index(f.kind))
     rows = [
         trajectory.time_row(sweep, answer.result["time"], eps),
         Row("trajectory", "omega", "error_max", float("nan"), "1", None, worst.verdict, worst.note),

@@ -56,7 +56,7 @@ def test_published_checks_have_the_strengths_and_the_holes_of_their_bounds() -> 
 
 
 def test_a_row_of_the_matrix() -> None:
-    pool = Pool(2)
+    pool = Pool(7)
     row = detection(FAULTS["GravityReversed"], "reference", pool, 5)
     under_gravity = [bool(np.any(one.case.system.load.gravity)) for one in pool.first(5)]
     assert (row.judged, row.broken) == (5, 0)

@@ -83,9 +83,11 @@ class Pair:
         return self.coarse > max(self.fine, self.rounding) * math.pow(self.factor, MOST_SLOPE)
 
 
-def _pair(coarse: AccuracyRun, fine: AccuracyRun, channel: str) -> Pair:
+def _pair(coarse: AccuracyRun, fine: AccuracyRun, channel: str, *, whole: bool = False) -> Pair:
+    """whole: up to where errors saturate."""
     samples = _unsaturated(coarse, fine)
-    until = 1 + int(np.argmax(_shares(fine, channel)[:samples]))  # where it is clearest of rounding
+    clearest = 1 + int(np.argmax(_shares(fine, channel)[:samples]))
+    until = samples if whole else clearest
     bound = fine.round_off[channel] + fine.floor.get(channel, 0.0)
     sizes = (coarse.error[channel], fine.error[channel], bound)
     one, other = coarse.sweep, fine.sweep
@@ -93,6 +95,15 @@ def _pair(coarse: AccuracyRun, fine: AccuracyRun, channel: str) -> Pair:
     factor = one.timestep / other.timestep if spacing else one.knob / other.knob
     largest = [float(np.max(size[:until])) for size in sizes]
     return Pair(largest[0], largest[1], largest[2], factor)
+
+
+def _slope(coarse: AccuracyRun, fine: AccuracyRun, channel: str) -> float:
+    """The larger one of where errors are clearest of rounding and of all of them.
+
+    A motion that starts at rest is clearest of rounding at its first samples, to which any accuracy
+    takes it in the same few small steps.
+    """
+    return max(_pair(coarse, fine, channel, whole=every).slope for every in (False, True))
 
 
 def _split(runs: Sequence[AccuracyRun]) -> tuple[list[AccuracyRun], list[AccuracyRun]]:
@@ -113,7 +124,7 @@ def _follows(runs: Sequence[AccuracyRun], channel: str) -> Finding:
     if np.all(finest.error[channel] <= finest.kept[channel]):
         return Finding("consistent", f"keeps its accuracy: {text}")
     for what, these in (("its accuracy", over), ("the spacing of its samples", spaced)):
-        slope = _pair(these[-2], these[-1], channel).slope if len(these) > 1 else 0.0
+        slope = _slope(these[-2], these[-1], channel) if len(these) > 1 else 0.0
         if slope >= LEAST_SLOPE:
             return Finding("consistent", f"follows {what}: {text}, slope {slope:.2f}")
     if len(runs) < 2:
@@ -166,9 +177,9 @@ def finer_sweep(
     last = spaced[-1].sweep
     still = []
     if len(over) > 1:
-        still = [c for c in clear if _pair(over[-2], over[-1], c).slope < LEAST_SLOPE]
+        still = [c for c in clear if _slope(over[-2], over[-1], c) < LEAST_SLOPE]
     if len(spaced) > 1:
-        still = [c for c in still if _pair(spaced[-2], spaced[-1], c).slope >= LEAST_SLOPE]
+        still = [c for c in still if _slope(spaced[-2], spaced[-1], c) >= LEAST_SLOPE]
     return last.refined(4) if still and 4 * last.steps <= MOST_OWN_STEPS else None
 
 
