@@ -123,8 +123,8 @@ def inverse_causes(
         "the applied torque": applied_torque(system, states),
     }
 
-    def fits(candidate: Array) -> bool:
-        return bool(np.all(norm(torque - candidate) <= SLACK * bound))
+    def fits(candidate: Array, times: float = 1.0) -> bool:
+        return bool(np.all(norm(torque - candidate) <= SLACK * max(1.0, abs(times)) * bound))
 
     found = []
     if fits(rotate(states.orientation, true)):
@@ -138,7 +138,7 @@ def inverse_causes(
             axes = order_text(order, signs)
             found.append(f"inverse dynamics report the torque in other axes: {axes}")
     k = _share(torque, true, bound)
-    if k is not None and abs(k - 1.0) > 1e-9 and abs(k + 1.0) > 1e-9 and fits(k * true):
+    if k is not None and abs(k - 1.0) > 1e-9 and abs(k + 1.0) > 1e-9 and fits(k * true, k):
         found.append(f"inverse dynamics report the torque scaled by {factor(k)}")
     if all(np.any(one) for one in loads.values()) and fits(true - sum(loads.values())):
         found.append("inverse dynamics leave out the loads that act: damping and torque")

@@ -84,6 +84,12 @@ def _mean_velocity(motion: Motion, q: Array, v: Array, h: float | Array) -> tupl
     return motion.retract(q, 0.5 * h * (v + after)), after
 
 
+def _mean_omega(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    after = v + h * motion.acceleration(q, v)
+    mean = 0.5 * (v + after)[..., -3:]
+    return motion.retract(q, h * np.concatenate((after[..., :-3], mean), axis=-1)), after
+
+
 def _straight(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
     v = v + h * motion.acceleration(q, v)
     return motion.normalize(q + h * motion.coordinate_rate(q, v)), v
@@ -117,13 +123,15 @@ def _by_series(order: int) -> Step:
     return step
 
 
+# What says less comes first: on many bodies the velocity of translation is constant.
 EULER: dict[str, Step] = {
-    "attitude and position move by the velocities of the step's start (explicit Euler)": _explicit,
-    "attitude and position move first, by the velocities of the step's start": _drift_first,
-    "attitude and position move by the mean of the velocities before and after": _mean_velocity,
-    "the attitude moves by one straight step of the quaternion, normalised": _straight,
     "the attitude moves by the omega of the step's start": _old_omega,
     "the position moves by the velocity of the step's start": _old_velocity,
+    "attitude and position move by the velocities of the step's start (explicit Euler)": _explicit,
+    "attitude and position move first, by the velocities of the step's start": _drift_first,
+    "the attitude moves by the mean of the omega before and after": _mean_omega,
+    "attitude and position move by the mean of the velocities before and after": _mean_velocity,
+    "the attitude moves by one straight step of the quaternion, normalised": _straight,
     "the turn of a step is taken by the second-order series of the exponential": _by_series(2),
     "the turn of a step is taken by the third-order series of the exponential": _by_series(3),
 }
