@@ -332,3 +332,33 @@ def test_a_trace_has_causes() -> None:
     assert found == ["the applied torque is missing"]
     right = step_body(SCHEMES["rk4-quaternion"], one.system, one.initial, 1e-3, 1000, 20)[1]
     assert trace_causes(one.system, Trace(times, right, nothing, nothing)) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "phrase"),
+    [
+        (
+            lambda torque: torque * np.array([1.0, -1.0, 1.0]),
+            "in other axes: x, y, z hold x, -y, z",
+        ),
+        (lambda torque: 1000.0 * torque, "report the torque scaled by 1000"),
+    ],
+)
+def test_a_torque_of_inverse_dynamics_in_other_axes_or_units_is_named(
+    change: Any, phrase: str
+) -> None:
+    system = CASES[-1].system
+    states = random_states(CASES[-1], 60, [1])
+    requested = random_acceleration(system, states, [1])
+    wrong = change(inverse_dynamics(system, states, requested))
+    (text,) = inverse_causes(system, states, requested, wrong)
+    assert phrase in text
+
+
+def test_one_component_of_the_gyroscopic_term_is_named_in_inverse_dynamics() -> None:
+    system = CASES[-1].system
+    states = random_states(CASES[-1], 60, [1])
+    requested = random_acceleration(system, states, [1])
+    wrong = inverse_dynamics(system, states, requested) - gyroscopic(system, states) * [1, 0, 0]
+    (text,) = inverse_causes(system, states, requested, wrong)
+    assert text == "inverse dynamics leave out the x component of the gyroscopic term"

@@ -34,6 +34,7 @@ from omegadot.workers.wire import body_from
 
 FORWARD, ALONG = "forward", "along the trajectory"
 RELOADED = "after another system"
+MOST_NAMED = 3  # causes between which nothing decides
 
 
 def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> Scene:
@@ -152,7 +153,15 @@ def inverse_causes(
             found.append(_load_worded(what, k))
     bodies = _other_bodies(system, states, requested)
     found += [text for text, made in bodies.items() if not fits(true) and fits(made())]
-    return ["either " + ", or ".join(found)] if 1 < len(found) <= 3 else found[:1]
+    for what, term in terms.items() if not found else ():
+        for axis in range(3):
+            alone = np.where(np.arange(3) == axis, term, 0.0)
+            k = _share(torque - true, alone, bound)
+            if k is not None and fits(true + k * alone):
+                found.append(_worded(f"the {'xyz'[axis]} component of {what}", 1.0 + k))
+    if len(found) > MOST_NAMED:
+        return []
+    return ["either " + ", or ".join(found)] if len(found) > 1 else found
 
 
 def _share(rest: Array, term: Array, bound: Array) -> float | None:
