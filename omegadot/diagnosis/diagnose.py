@@ -19,21 +19,27 @@ from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.wrong_equation import (
     ALONG,
     FORWARD,
+    RELOADED,
     equation_causes,
     inverse_causes,
     known_difference,
     scene_of,
 )
-from omegadot.diagnosis.models.wrong_model import model_causes
+from omegadot.diagnosis.models.wrong_model import lever_causes, model_causes
+from omegadot.diagnosis.reported.requests import again_cause, batch_cause
 from omegadot.diagnosis.runs import run_causes
+from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, follows
 from omegadot.diagnosis.stepping.vanishing_steps import (
     VanishingSteps,
     jump_cause,
     jumps,
     kinematic_cause,
+    moves_by_cause,
     omega_share_cause,
+    omega_still_cause,
     vanishing_steps,
 )
+from omegadot.diagnosis.wording.kinds import agreed, is_of_one_run
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
@@ -41,6 +47,7 @@ from omegadot.gates.states.equation import (
     EvaluationStates,
     evaluation_states_of,
 )
+from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
@@ -69,6 +76,13 @@ class CaseCauses:
         self._answers = replace(result, runs={}, first_steps={}, restarts={})
         self._steps = _steps_of(case, result)
         self._of_runs: dict[str, list[str]] = {}
+        self._again = {one.integrator.name: "" for one in runs}
+        for one in runs:
+            self._again[one.integrator.name] = self._again[one.integrator.name] or again_cause(
+                one.rows
+            )
+        self._followed: dict[tuple[str, tuple[str, ...]], bool | None] = {}
+        self._beginnings = _beginnings_of(truth, result, runs)
         self._shared_rows = [row for row in shared if row.verdict == "fail"]
         scene = scene_of(case, evaluation_states, result)
         for name, steps in self._steps.items():
@@ -101,19 +115,30 @@ class CaseCauses:
         """Of the model, then of forward dynamics, then of inverse dynamics."""
         answers, states, across = self._answers, self._states, self._across
         failed = {(row.gate, row.metric) for row in self._shared_rows}
+        model = (self._case, states, answers)
         if any(gate == "model" for gate, _ in failed):
-            found = model_causes(across, self._case, states, answers)
+            found = model_causes(across, *model)
             if found:
                 return found
+        alone = batch_cause(failed)
+        if alone:
+            return [alone]
         torques = any(row.channel == "torque" for row in self._shared_rows)
         for source, metric in ((FORWARD, "residual"), (ALONG, "residual_on_path")):
             rates = [r for r in self._shared_rows if r.metric == metric and r.channel != "torque"]
             if rates:
-                return equation_causes(across, self._case.name, source)
+                found = equation_causes(across, self._case.name, source)
+                named = found and not found[0].startswith("none is known")
+                return found if named else lever_causes(*model) or found
+        if ("equation", "residual_reloaded") in failed:
+            found = equation_causes(across, self._case.name, RELOADED)
+            return [f"{AFTER_ANOTHER}: {one}" for one in found] or [AFTER_ANOTHER]
         if torques and answers.inverse.ok:
             torque = answers.inverse.result["torque"]
-            return inverse_causes(self._case.system, states.random, states.acceleration, torque)
-        return []
+            eps = eps_of(answers.precision)
+            known = (self._case.system, states.random, states.acceleration)
+            return inverse_causes(*known, torque, eps)
+        return lever_causes(*model)
 
     def _of_run(self, name: str) -> list[str]:
         """Of the steps as they vanish and of the run itself.
@@ -122,6 +147,9 @@ class CaseCauses:
         the steps as they vanish; a wrong equation is known better by these.
         """
         steps, declared = self._steps.get(name), self._declares(name)
+        if self._again[name]:
+            seen = self._of_trajectories(name)
+            return [one for one in seen if is_of_one_run(one)] or [self._again[name]]
         found: list[str] = []
         if steps is not None and not steps.sound:
             common = steps.common_cause() or omega_share_cause(steps)
@@ -129,11 +157,36 @@ class CaseCauses:
             if not found and not declared and jumps(steps):
                 found = _of_states(steps)
             if not found and not jumps(steps) and not steps.still:
-                found = _of_equation(self._across, self._case.name, name, steps)
-        found = found or self._of_trajectories(name)
+                moved = moves_by_cause(steps)
+                if moved.startswith("either"):  # which of two, a whole run may show
+                    return self._of_trajectories(name) or [moved]
+                found = [moved] if moved else self._of_equation(name, steps)
+        if not found:
+            found = self._of_trajectories(name)
+            over = self._across.of_runs.get(name, {})
+            found = [one for one in found if agreed(one, over)]
         if found or steps is None or steps.sound:
             return found
         return _of_states(steps) or ([] if steps.still else self._known(name))
+
+    def _of_equation(self, name: str, steps: VanishingSteps) -> list[str]:
+        """By which equation the limit of vanishing steps is another; nothing where it is right."""
+        if np.all(steps.evidence.sound) or not steps.turns:
+            return []
+        where = (self._case.name, _source(name))
+        text, one = self._across.cause(*where), self._across.chosen(*where)
+        if not text:
+            still = omega_still_cause(steps)
+            return (self._of_trajectories(name) or [still]) if still else []
+        begun = self._beginnings.get(name)
+        if one is not None and begun is not None:
+            key = (name, one.key)
+            if key not in self._followed:
+                self._followed[key] = follows(self._case.system, begun, one, steps.eps)
+            followed = self._followed[key]
+            if followed is False:
+                return [f"in the first step of a run alone, {text}"]
+        return [f"in the steps, {text}"]
 
     def _known(self, name: str) -> list[str]:
         """What is known of the steps' equation where nothing fits."""
@@ -152,7 +205,12 @@ class CaseCauses:
         if name not in self._of_runs and self._result is not None:
             runs = [run for run in self._runs if run.integrator.name == name]
             self._of_runs[name] = run_causes(self._case, self._truth, self._result, runs)
+            here = "; ".join(self._of_runs[name])
+            self._across.of_runs.setdefault(name, {})[self._case.name] = here
         return self._of_runs.get(name, [])
+
+
+AFTER_ANOTHER = "something of a system that was loaded before is left over"
 
 
 def _source(integrator: str) -> str:
@@ -164,9 +222,11 @@ def _fails(run: JudgedRun) -> bool:
 
 
 def _steps_of(case: Case, result: CaseResult) -> dict[str, VanishingSteps]:
-    eps = eps_of(result.precision)
+    tolerated = {one.name: tolerated_by(one) for one in result.integrators}
     return {
-        name: vanishing_steps(case.system, probe, State(**answer.result), eps)
+        name: vanishing_steps(
+            case.system, probe, State(**answer.result), eps_of(result.precision), tolerated[name]
+        )
         for name, (probe, answer) in result.first_steps.items()
         if answer.ok
     }
@@ -178,12 +238,21 @@ def _of_states(steps: VanishingSteps) -> list[str]:
     return [found] if found else []
 
 
-def _of_equation(across: Across, case: str, integrator: str, steps: VanishingSteps) -> list[str]:
-    """By which equation the limit of vanishing steps is another; nothing where it is the right."""
-    if np.all(steps.evidence.sound):
-        return []
-    text = across.cause(case, _source(integrator))
-    return [f"in the steps, {text}"] if text else []
+def _beginnings_of(
+    truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> dict[str, Beginning]:
+    """The first samples of every failed integrator's run with the shortest steps."""
+    found = dict[str, Beginning]()
+    for run in sorted(runs, key=lambda run: -run.sweep.timestep):
+        answer = result.runs.get((run.integrator.name, run.sweep.knob))
+        if not _fails(run) or answer is None or not answer.ok:
+            continue
+        times, state = run.sweep.times, State(**answer.result["state"])
+        if len(state.position) == len(times):
+            first = slice(0, SAMPLES + 1)
+            parts = (times[first], state[first], truth.at(run.sweep)[first])
+            found[run.integrator.name] = Beginning(*parts)
+    return found
 
 
 class Causes:

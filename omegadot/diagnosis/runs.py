@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from omegadot.diagnosis.reported.clock import clock_cause
 from omegadot.diagnosis.reported.run import ReportedRun, reported_run, reported_run_guesses
 from omegadot.diagnosis.reported.run_causes import CAUSES_REPORTED, begin_apart
 from omegadot.diagnosis.reported.sample_causes import intervals, omega_dot_late, one_field
@@ -12,26 +13,55 @@ from omegadot.diagnosis.stepping.wrong_steps import (
     CAUSES_OF_STEPPING,
     CAUSES_OF_UNKNOWN,
     MOST_STEPS,
+    precision_reported,
 )
+from omegadot.diagnosis.wording.kinds import is_fact, kind_of
 from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun, is_finite
+
+MOST_TRIED = 1000  # steps of a second run, in which a cause is looked for again
 
 
 def run_causes(
     case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
 ) -> list[str]:
     """Of the failed run of the fewest steps in which one is found: hypotheses are stepped again."""
+    truth = truth.in_precision(result.precision)
     failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
+    for run in failed:
+        answer = result.runs.get((run.integrator.name, run.sweep.knob))
+        if answer is not None and answer.ok:
+            text = clock_cause(answer.result["time"], run.sweep, truth.yardstick.eps)
+            if text:
+                return [text]
     several = _of_several_schemes(case, truth, result, runs) if failed else ""
     if several:
         return [several]
     for run in sorted(failed, key=lambda run: run.sweep.steps):
         text = _of_run(case, truth, result, run)
-        if text:
+        if text and _explains_others(text, case, truth, result, run, failed):
             return [text + _at_long_steps(runs)]
+        if text:
+            return []
     return []
+
+
+def _explains_others(
+    text: str,
+    case: Case,
+    truth: Truth,
+    result: CaseResult,
+    run: JudgedRun,
+    failed: Sequence[JudgedRun],
+) -> bool:
+    """Whether the next failed run, if it is short, has the same cause, by other numbers maybe."""
+    longer = [one for one in failed if run.sweep.steps < one.sweep.steps <= MOST_TRIED]
+    if not longer or is_fact(text):
+        return True
+    other = _of_run(case, truth, result, min(longer, key=lambda one: one.sweep.steps))
+    return kind_of(other) == kind_of(text) or is_fact(other)
 
 
 def _of_several_schemes(
@@ -78,6 +108,10 @@ def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> str
 def _of_reported(reported: ReportedRun, result: CaseResult) -> str:
     if not reported.is_declared and reported.is_own:
         return ""  # nothing in this run is wrong
+    if len(reported.time) == len(reported.sweep.times) and is_finite(reported.state):
+        text = precision_reported(reported)
+        if text:
+            return text
     if begin_apart(reported, result):
         return "runs begin at other states than the one given: one is left over from a run before"
     tried = list(CAUSES_REPORTED)

@@ -27,7 +27,7 @@ from omegadot.reference_impl.motion import (
     forward_dynamics,
     inverse_dynamics,
 )
-from omegadot.reference_impl.rotations import rotate
+from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import stack, step_body
 from omegadot.reference_impl.symmetric import apply, inverse
@@ -60,6 +60,8 @@ CASES = (
     case("driven", {"torque": BODY_TORQUE}, 1.3),
     case("driven-in-world", {"torque": WORLD_TORQUE}),
     case("top", {"gravity": GRAVITY, "pivot": PIVOT}),
+    case("falling-slowly", {"gravity": [0.3, 0.1, 1.1]}),
+    case("falling-fast", {"gravity": [-31.0, 17.0, 5.0]}),
     case("top-damped", {"gravity": GRAVITY, "pivot": PIVOT, "damping": 0.4}, 1.7),
     case("top-driven", {"pivot": PIVOT, "torque": WORLD_TORQUE}, 0.9),
     case("top-driven-damped", {"pivot": PIVOT, "torque": BODY_TORQUE, "damping": 0.2}),
@@ -142,6 +144,64 @@ def cubic_damping(system: System, states: State) -> Acceleration:
     return with_torque(system, states, -0.01 * np.sum(w * w, axis=-1, keepdims=True) * w)
 
 
+def gyroscopic_without_x(system: System, states: State) -> Acceleration:
+    return with_torque(system, states, gyroscopic(system, states) * np.array([1.0, 0.0, 0.0]))
+
+
+def gyroscopic_of_world_omega(system: System, states: State) -> Acceleration:
+    turned = rotate(states.orientation, states.angular_velocity)
+    wrong = cross(turned, apply(moving_inertia(system), turned))
+    return with_torque(system, states, gyroscopic(system, states) - wrong)
+
+
+def constant_rate(system: System, states: State) -> Acceleration:
+    rate = np.array([0.0, 0.0, 2e-3]) + 0.0 * states.angular_velocity
+    return with_torque(system, states, apply(moving_inertia(system), rate))
+
+
+def turning_world(system: System, states: State) -> Acceleration:
+    turn = rotate_inverse(states.orientation, np.array([0.0, 0.0, 7.292e-5]))
+    rate = cross(states.angular_velocity, turn)
+    return with_torque(system, states, apply(moving_inertia(system), rate))
+
+
+def torque_turned_back(system: System, states: State) -> Acceleration:
+    world = system.load.torque_world
+    wrong, right = (turn(states.orientation, world) for turn in (rotate, rotate_inverse))
+    return with_torque(system, states, wrong - right)
+
+
+def scaled_moment(system: System, states: State) -> Acceleration:
+    tensor = np.array(system.body.inertia) + np.diag([0.0, 0.0, 0.03 * system.body.inertia[2, 2]])
+    body = replace(system.body, inertia=tensor)
+    return forward_dynamics(replace(system, bodies=(body,)), states)
+
+
+def accelerometer(system: System, states: State) -> Acceleration:
+    true = forward_dynamics(system, states)
+    return Acceleration(true.angular, true.linear - system.load.gravity)
+
+
+def air_drag(system: System, states: State) -> Acceleration:
+    true, v = forward_dynamics(system, states), states.linear_velocity
+    if system.load.pivot is not None:
+        return true
+    speed = np.linalg.norm(v, axis=-1, keepdims=True)
+    return Acceleration(true.angular, true.linear - 0.03 * speed * v)
+
+
+def weaker_with_height(system: System, states: State) -> Acceleration:
+    true, g = forward_dynamics(system, states), system.load.gravity
+    if system.load.pivot is not None:
+        return true
+    return Acceleration(true.angular, true.linear - 3e-7 * g * states.position[:, 2:])
+
+
+def quartic_damping(system: System, states: State) -> Acceleration:
+    w = states.angular_velocity
+    return with_torque(system, states, -0.01 * np.sum(w * w, axis=-1, keepdims=True) ** 1.5 * w)
+
+
 EQUATIONS: dict[str, tuple[Any, str]] = {
     "rate": (damping_as_rate, "the damping acts as a rate"),
     "rate-no-gyro": (rate_and_no_gyroscopic_term, "the gyroscopic term is missing"),
@@ -167,7 +227,35 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "mass-float32": (mass_in_single_precision, "the mass is kept in single precision"),
     "spatial": (spatial, "the linear acceleration is the spatial one"),
     "fast": (no_gyroscopic_term_when_fast, "there, the gyroscopic term is missing"),
-    "cubic": (cubic_damping, "by a torque along omega, by an amount that goes as |omega|^3"),
+    "row": (gyroscopic_without_x, "of the gyroscopic term the x component is missing"),
+    "world-omega": (gyroscopic_of_world_omega, "formed with omega in world axes"),
+    "constant": (constant_rate, "omega-dot has a constant (0, 0, 0.002) rad/s^2 in body axes"),
+    "turning": (
+        turning_world,
+        "omega x c in it with c = (0, 0, 7.292e-05) rad/s, constant in world",
+    ),
+    "torque-back": (torque_turned_back, "turned into the body by the transposed rotation"),
+    "moment": (scaled_moment, "the moment of inertia zz is scaled by 1.03"),
+    "accelerometer": (accelerometer, "the linear acceleration leaves gravity out"),
+    "drag": (air_drag, "the acceleration has -0.03 |v| v in it"),
+    "height": (
+        weaker_with_height,
+        "gravity changes with the place: by -3e-07 of it a metre along z",
+    ),
+    "gravity-up": (
+        under(gravity=lambda s: s.load.gravity[[0, 2, 1]] * np.array([1.0, 1.0, -1.0])),
+        "gravity has other axes: x, y, z hold x, z, -y of what was requested",
+    ),
+    "gravity-size": (
+        under(gravity=lambda s: s.load.gravity / (np.linalg.norm(s.load.gravity) or 1.0) * 9.81),
+        "the size of gravity is 9.81 m/s^2, whatever was requested",
+    ),
+    "cubic": (cubic_damping, "a torque of -0.01 |omega|^2 omega N m acts"),
+    "quartic": (quartic_damping, "by a torque along omega, by an amount that goes as |omega|^4"),
+    "world-torque": (
+        under(torque_world=lambda s: 0.5 * s.load.torque_world),
+        "the torque in world axes is scaled by 0.5",
+    ),
 }
 
 
@@ -244,3 +332,33 @@ def test_a_trace_has_causes() -> None:
     assert found == ["the applied torque is missing"]
     right = step_body(SCHEMES["rk4-quaternion"], one.system, one.initial, 1e-3, 1000, 20)[1]
     assert trace_causes(one.system, Trace(times, right, nothing, nothing)) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "phrase"),
+    [
+        (
+            lambda torque: torque * np.array([1.0, -1.0, 1.0]),
+            "in other axes: x, y, z hold x, -y, z",
+        ),
+        (lambda torque: 1000.0 * torque, "report the torque scaled by 1000"),
+    ],
+)
+def test_a_torque_of_inverse_dynamics_in_other_axes_or_units_is_named(
+    change: Any, phrase: str
+) -> None:
+    system = CASES[-1].system
+    states = random_states(CASES[-1], 60, [1])
+    requested = random_acceleration(system, states, [1])
+    wrong = change(inverse_dynamics(system, states, requested))
+    (text,) = inverse_causes(system, states, requested, wrong)
+    assert phrase in text
+
+
+def test_one_component_of_the_gyroscopic_term_is_named_in_inverse_dynamics() -> None:
+    system = CASES[-1].system
+    states = random_states(CASES[-1], 60, [1])
+    requested = random_acceleration(system, states, [1])
+    wrong = inverse_dynamics(system, states, requested) - gyroscopic(system, states) * [1, 0, 0]
+    (text,) = inverse_causes(system, states, requested, wrong)
+    assert text == "inverse dynamics leave out the x component of the gyroscopic term"

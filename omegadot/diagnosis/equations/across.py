@@ -11,8 +11,8 @@ import numpy as np
 from omegadot.diagnosis.equations.equation_form import Form, same_form
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.families import Family
-from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
-from omegadot.diagnosis.equations.search import Candidate, levels
+from omegadot.diagnosis.equations.hypotheses import wrong_form
+from omegadot.diagnosis.equations.search import Candidate, levels, possible
 from omegadot.diagnosis.wording.conditions import LEAST, only_where
 from omegadot.diagnosis.wording.features import Features, in_common
 from omegadot.diagnosis.wording.laws import law_of
@@ -21,6 +21,7 @@ from omegadot.reference_impl.system import Array, Body, System
 QUICK = 3  # levels of one scenario that are quick, and more basic than what another has shown
 MOST_DEEP = 5  # scenarios that are searched to the end; the rest have what these have
 MOST_NAMED = 3  # causes between which a scenario does not decide
+TELLING = 1e-5  # relative: what a number must be known to
 LAWS = {
     "damping": "the damping",
     "gravity": "gravity",
@@ -49,7 +50,8 @@ class Held:
     """A candidate held against the other scenarios.
 
     shown: those where it can be seen and fits.  against: where it could be seen, and the engine is
-    right.  pairs: of a family's numbers, requested and acting.
+    right.  pairs: of a family's numbers, requested and acting.  numbers: by scenario, where they
+    had to be others; with these the candidate fits no two of them.
     """
 
     candidate: Candidate
@@ -57,6 +59,13 @@ class Held:
     against: list[Scene] = field(default_factory=list)
     contradicted: bool = False
     pairs: list[tuple[Array, Array]] = field(default_factory=list)
+    numbers: list[tuple[Scene, Array]] = field(default_factory=list)
+    law: str = ""
+
+    @property
+    def strong(self) -> bool:
+        """Whether one rule gives its numbers on every scenario."""
+        return not self.numbers or bool(self.law)
 
     @property
     def holds(self) -> bool:
@@ -71,6 +80,8 @@ class Held:
         common = in_common(shown, against)
         if common and len(common) <= 2:
             return f", but only where {' or where '.join(common)}"
+        if self.numbers:
+            return ""  # what is seen elsewhere is not by these
         return f", on {len(shown)} of the {len(shown) + len(against)} scenarios that would show it"
 
 
@@ -93,15 +104,23 @@ class Across:
 
     def __init__(self) -> None:
         self.scenes: dict[str, Scene] = {}
+        self.of_runs: dict[str, dict[str, str]] = {}  # by integrator and scenario
         self._accepted: list[list[Candidate]] = []
+        self._weak: list[Candidate] = []
         self._texts: dict[tuple[str, str], str] = {}
+        self._chosen: dict[tuple[str, str], Candidate] = {}
         self._with_another: dict[tuple[tuple[str, ...], str, str], bool] = {}
         self._searches: dict[tuple[str, str], _Search] = {}
+
+    def chosen(self, name: str, source: str) -> Candidate | None:
+        """The first of the candidates that `cause` names; None where it names none."""
+        self.cause(name, source)
+        return self._chosen.get((name, source))
 
     def add(self, scene: Scene) -> None:
         """One more scenario; what was found before may not hold any more."""
         self.scenes[scene.name] = scene
-        self._accepted, self._texts = [], {}
+        self._accepted, self._weak, self._texts, self._chosen = [], [], {}, {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -112,35 +131,71 @@ class Across:
 
     def _cause(self, name: str, source: str) -> str:
         scene = self.scenes[name]
-        conditional: list[Held] = []
+        if not scene.evidence[source].clear:
+            return ""
+        conditional, weak = list[Held](), ""
+        weakest: Candidate | None = None
         for number, level in enumerate(self._search(scene, source)):
             if number == QUICK:
+                self._search_elsewhere(name, source)
                 text = self._known_elsewhere(scene, source)
                 if text:
                     return text
             held = [self._held(one, scene, source) for one in _distinct(level)]
             whole = [one for one in held if one.holds]
-            text = self._worded(whole, source)
+            strong = [one for one in whole if one.strong]
+            strong = [one for one in strong if not one.against] or strong
+            text = self._worded(strong, source)
             if text:
-                self._accepted.append([one.candidate for one in whole])
+                self._accepted.append([one.candidate for one in strong])
+                self._chosen[name, source] = strong[0].candidate
                 return text
+            if whole and not weak:
+                weak = self._worded(whole, source)
+                weakest = whole[0].candidate
             conditional += [one for one in held if not one.contradicted]
             if number == 0:
                 text = self._conditional(conditional)
                 if text:
                     return text
+        if not weak:
+            weakest, weak = self._weak_elsewhere(scene, source)
+        elif weakest is not None and weakest.family is not None:
+            self._weak.append(weakest)
+        if weak and weakest is not None:
+            self._chosen[name, source] = weakest
+            return weak
         return self._at_some_states(scene, source) or self._conditional(conditional)
+
+    def _weak_elsewhere(self, scene: Scene, source: str) -> tuple[Candidate | None, str]:
+        """What was found on another scenario by numbers that are others on each."""
+        evidence = scene.evidence[source]
+        for one in self._weak:
+            fitted = _fitting(one, evidence)
+            held = self._held(fitted, scene, source) if fitted else None
+            text = self._worded([held], source) if held and held.holds else ""
+            if text:
+                return fitted, text
+        return None, ""
+
+    def _search_elsewhere(self, name: str, source: str) -> None:
+        """For a scenario that is not searched to the end: the causes of those that are."""
+        searched = list(self._searches)
+        if (name, source) not in searched[:MOST_DEEP]:
+            for other, same in searched[:MOST_DEEP]:
+                if same == source and (other, same) not in self._texts and other != name:
+                    self.cause(other, source)
 
     def _known_elsewhere(self, scene: Scene, source: str) -> str:
         """What was found on another scenario, if it fits this one and holds on all."""
         evidence = scene.evidence[source]
         for group in self._accepted:
-            tried = [(one, one.predicted(evidence)) for one in group]
-            fits = [one for one, made in tried if made is not None and evidence.fits(made)]
+            fits = [one for one in (_fitting(one, evidence) for one in group) if one]
             held = [self._held(one, scene, source) for one in fits]
-            whole = [one for one in held if one.holds]
+            whole = [one for one in held if one.holds and one.strong]
             text = self._worded(whole, source)
             if text:
+                self._chosen[scene.name, source] = whole[0].candidate
                 return text
         return ""
 
@@ -161,7 +216,8 @@ class Across:
         every = [e for one in self.scenes.values() if (e := one.evidence.get(source))]
         parts = [(e.system, e.states, e.sound) for e in every]
         alone = [(evidence.system, evidence.states, evidence.sound)]
-        where = only_where(parts) or only_where(alone)
+        few = sum(not np.all(right) for _, _, right in parts) < 2
+        where = only_where(parts) or (only_where(alone) if few else "")
         if not where:
             return ""
         text = f"the equation holds at some states, and is wrong only where {where}"
@@ -178,28 +234,53 @@ class Across:
         held = Held(one, [scene])
         for other in self.scenes.values():
             evidence = other.evidence.get(source)
-            if other is scene or evidence is None:
+            if other is scene or evidence is None or not evidence.finite:
                 continue
             if held.contradicted:
                 break
-            tried = one.predicted(evidence)
+            tried = held.candidate.predicted(evidence)
             if tried is None:
                 continue
             if evidence.fits(tried):
                 if evidence.visible(tried):
                     held.shown.append(other)
                 continue
-            if not evidence.visible(tried):
+            if one.numbers is not None and evidence.clear:
+                self._with_own_numbers(held, other, source)
+            elif not evidence.visible(tried):
                 continue
-            if one.family is not None and not bool(np.all(evidence.sound)):
-                held.contradicted |= not _own_numbers(one, evidence)
             elif bool(np.all(evidence.sound)):
                 held.against.append(other)
-            else:
+            elif evidence.clear:
                 held.contradicted |= not self._explained(one, other, source)
         if one.family is not None and one.family.name in LAWS and not one.fixed:
             held.pairs = self._numbers(one.family, source)
+            if held.pairs:
+                law = law_of(held.pairs, LAWS[one.family.name], one.family.unit)
+                held.law = law
+        own = one.numbers
+        if held.numbers and not held.law and one.family is not None and own is not None:
+            known = [(s.features, s.evidence[source].system, p) for s, p in held.numbers]
+            known.append((scene.features, scene.evidence[source].system, own))
+            held.law = one.family.law(known) if one.family.law else ""
         return held
+
+    def _with_own_numbers(self, held: Held, other: Scene, source: str) -> None:
+        """Numbers of another scenario: the same where these fit here too, and known better there.
+
+        What is known of them is what fits, on either side.
+        """
+        there = held.candidate.refitted(other.evidence[source])
+        if there is None:
+            held.contradicted = True
+            return
+        back = [one.evidence[source] for one in held.shown]
+        tried = [(one, there.predicted(one)) for one in back]
+        if all(made is not None and one.fits(made) for one, made in tried):
+            held.candidate = there
+        elif there.numbers is not None:
+            held.numbers.append((other, there.numbers))
+        held.shown.append(other)
 
     def _explained(self, one: Candidate, other: Scene, source: str) -> bool:
         """Whether a scenario shows this and one more thing that is wrong; worked out once."""
@@ -216,6 +297,9 @@ class Across:
             if evidence is None or not family.starts(evidence.system):
                 continue
             right = family.right(evidence.system)
+            more = Candidate((), family, right * (1.0 + TELLING)).predicted(evidence)
+            if evidence.fits(evidence.true) and (more is None or not evidence.visible(more)):
+                continue  # it shows nothing of these numbers
             one = Candidate((), family, right).refitted(evidence)
             if one is not None and one.numbers is not None:
                 found.append((right, one.numbers))
@@ -223,17 +307,18 @@ class Across:
 
     def _worded(self, whole: Sequence[Held], source: str) -> str:
         """Causes that hold everywhere; several where no scenario decides between them."""
-        texts, forms = list[str](), list[Form]()
+        texts, forms = list[str](), list[tuple[set[str], Form]]()
         for held in whole:
             one = held.candidate
-            system, law = held.shown[0].evidence[source].system, ""
-            form = one.form(system) if one.reading is None else None
-            if form is not None and any(same_form(form, other) for other in forms):
+            system = held.shown[0].evidence[source].system
+            plain = one.reading is None and one.terms is None
+            form = one.form(system) if plain else None
+            if form is not None and any(
+                same_form(form, other) and one.parts == parts for parts, other in forms
+            ):
                 continue
-            forms += [form] if form is not None else []
-            if held.pairs and one.family is not None:
-                law = law_of(held.pairs, LAWS[one.family.name], one.family.unit)
-            texts.append(law or one.text(system) + held.where())
+            forms += [(one.parts, form)] if form is not None else []
+            texts.append(held.law or one.text(system) + held.where())
         texts = list(dict.fromkeys(texts))
         if not texts or len(texts) > MOST_NAMED:
             return ""
@@ -253,16 +338,19 @@ class Across:
         return ""
 
 
-def _own_numbers(one: Candidate, evidence: Evidence) -> bool:
-    """Whether a scenario has numbers of its own for this cause."""
-    return one.refitted(evidence) is not None
+def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:
+    """A candidate with its own numbers or with those of another scenario, where it fits there."""
+    made = one.predicted(evidence)
+    if made is not None and evidence.fits(made):
+        return one
+    return one.refitted(evidence)
 
 
 def _with_another(one: Candidate, evidence: Evidence) -> bool:
     """Whether a scenario shows this and one more thing that is wrong."""
-    if one.reading is not None:
+    if one.reading is not None or one.terms is not None:
         return False
-    known = [h for h in hypotheses(evidence.system) if h.part not in one.parts]
+    known = [h for h in possible(evidence) if h.part not in one.parts]
     made = [wrong_form((*one.fixed, h), evidence.system) for h in known]
     return bool(evidence.fitting(made))
 

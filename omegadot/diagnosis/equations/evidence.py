@@ -10,13 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.equation_form import Form, accelerations, stacked
-from omegadot.gates.bounds.scales import EPS, body_scale, linear_size, norm, torque_size
-from omegadot.gates.states.equation import BOUND
+from omegadot.gates.bounds.scales import (
+    EPS,
+    ROUNDINGS_PER_EVALUATION,
+    body_scale,
+    linear_size,
+    norm,
+    torque_size,
+)
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 # A fitted number has rounding of its own, of about as many terms as there are components.
 SLACK = 4.0
+# Nothing within a few bounds has a cause: the bounds are of sound engines, and not exact.
+BEYOND_ROUNDING = 16.0
 SCREENED = 10  # states at which every hypothesis is tried; only what fits there is tried at all
 LANES = 512
 
@@ -27,6 +35,7 @@ class Evidence:
 
     source: where they come from, "forward" for forward dynamics, "steps" for steps that vanish.
     angular_bound and linear_bound: (n,) rad/s^2 and m/s^2, what rounding may account for.
+    eps: of the engine's precision.
     """
 
     source: str
@@ -35,6 +44,7 @@ class Evidence:
     found: Acceleration
     angular_bound: Array
     linear_bound: Array
+    eps: float = EPS
 
     @cached_property
     def true(self) -> Acceleration:
@@ -45,6 +55,16 @@ class Evidence:
     def sound(self) -> NDArray[np.bool_]:
         """(n,): the states at which the engine is right."""
         return self.shares(self.true) <= 1.0
+
+    @property
+    def finite(self) -> bool:
+        """Whether the engine gave numbers at every state."""
+        return bool(np.isfinite(self.found.angular).all() and np.isfinite(self.found.linear).all())
+
+    @property
+    def clear(self) -> bool:
+        """Whether the engine is off by more than a few times what rounding may account for."""
+        return not bool(np.all(self.shares(self.true) <= BEYOND_ROUNDING))
 
     def shares(self, candidate: Acceleration) -> Array:
         """(..., n): the distance of a candidate (..., n, 3) from the engine's, in bounds."""
@@ -61,7 +81,7 @@ class Evidence:
         return not Evidence.fits(self._with(self.true), candidate)
 
     def _with(self, found: Acceleration) -> Evidence:
-        rest = (self.angular_bound, self.linear_bound)
+        rest = (self.angular_bound, self.linear_bound, self.eps)
         return Evidence(self.source, self.system, self.states, found, *rest)
 
     def fitting(self, forms: Sequence[Form | None]) -> list[int]:
@@ -82,7 +102,7 @@ class Evidence:
         """The evidence of these states alone."""
         found = Acceleration(self.found.angular[places], self.found.linear[places])
         bounds = (self.angular_bound[places], self.linear_bound[places])
-        return Evidence(self.source, self.system, self.states[places], found, *bounds)
+        return Evidence(self.source, self.system, self.states[places], found, *bounds, self.eps)
 
     def weighted(self, one: Acceleration, other: Acceleration) -> Array:
         """All components of a difference in one row, each state's in parts of its bound."""
@@ -105,9 +125,9 @@ def of_forward_dynamics(
     true, smallest = forward_dynamics(system, states), body_scale(system).smallest
     sizes = [torque_size(system, states, one) for one in (true, _finite(found, true))]
     linear = [linear_size(system, states, one) for one in (true, _finite(found, true))]
-    bound = BOUND * (eps / EPS)
+    bound = ROUNDINGS_PER_EVALUATION * eps
     bounds = (bound * np.maximum(*sizes) / smallest, bound * np.maximum(*linear))
-    return Evidence("forward", system, states, found, *bounds)
+    return Evidence("forward", system, states, found, *bounds, eps)
 
 
 def _finite(found: Acceleration, true: Acceleration) -> Acceleration:

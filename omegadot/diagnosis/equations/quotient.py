@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from omegadot.diagnosis.equations.evidence import SLACK, Evidence
+from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING, SLACK, Evidence
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.body_motion import attitude_motion
 from omegadot.reference_impl.schemes import SCHEMES
@@ -18,7 +18,14 @@ def difference_quotient(evidence: Evidence) -> str:
     """
     motion, states = attitude_motion(evidence.system), evidence.states
     rate = float(np.max(norm(evidence.states.angular_velocity)))
-    if not rate > 0.0:
+    off = norm(evidence.found.linear - evidence.true.linear)
+    free = evidence.system.load.pivot is None
+    if not rate > 0.0 or (free and not np.all(off <= SLACK * evidence.linear_bound)):
+        return ""  # it would be omega-dot alone that is off
+    if np.all(
+        norm(evidence.found.angular - evidence.true.angular)
+        <= BEYOND_ROUNDING * evidence.angular_bound
+    ):
         return ""
     delta, step = 1e-4 / rate, SCHEMES["lie-rk4"].step
     ahead, behind = (

@@ -5,12 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.models.misreadings import OF_ANY_STATE, Misreading
+from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
-from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.motion import center_of_mass_acceleration, forward_dynamics
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
-from omegadot.reference_impl.system import Acceleration
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Acceleration, Array
 
 
 @dataclass(frozen=True)
@@ -37,6 +43,44 @@ def _reported() -> Iterator[Reading]:
     def upwards(e: Evidence) -> Acceleration:
         return Acceleration(e.true.angular, -e.true.linear)
 
+    def of_world_omega(e: Evidence) -> Acceleration:
+        w = e.states.angular_velocity
+        inertia, turned = moving_inertia(e.system), rotate(e.states.orientation, w)
+        more = cross(w, apply(inertia, w)) - cross(turned, apply(inertia, turned))
+        return _pushed(e, more)
+
+    def torque_back(e: Evidence) -> Acceleration:
+        wanted = e.system.load.torque_world
+        q = e.states.orientation
+        return _pushed(e, rotate(q, wanted) - rotate_inverse(q, wanted))
+
+    def gravity_back(e: Evidence) -> Acceleration:
+        """On a pivot; a free body's centre of mass falls without being turned."""
+        q, pull = e.states.orientation, e.system.load.gravity * e.system.body.mass
+        more = cross(lever(e.system), rotate(q, pull) - rotate_inverse(q, pull))
+        return _pushed(e, more if e.system.load.pivot is not None else 0 * more)
+
+    def damped(power: int, each: bool) -> Callable[[Evidence], Acceleration]:
+        """By a power of omega, of each component or of its size, instead of omega itself."""
+
+        def there(e: Evidence) -> Acceleration:
+            w, d = e.states.angular_velocity, float(e.system.load.damping)
+            size = np.abs(w) if each else norm(w)[:, None]
+            return _pushed(e, d * (w - size ** (power - 1) * w))
+
+        return there
+
+    for power, named in ((2, "square"), (3, "cube")):
+        yield Reading(f"the damping goes with the {named} of |omega|", damped(power, each=False))
+        yield Reading(
+            f"the damping goes with the {named} of each component of omega",
+            damped(power, each=True),
+        )
+    yield Reading("the gyroscopic term is formed with omega in world axes", of_world_omega)
+    yield Reading(
+        "the torque in world axes is turned into the body by the transposed rotation", torque_back
+    )
+    yield Reading("gravity is turned into the body by the transposed rotation", gravity_back)
     yield Reading("omega-dot looks like world axes: it matches after R^T", turned)
     yield Reading("omega-dot looks turned twice: it matches after R", back)
     yield Reading("omega-dot has the wrong sign", negative)
@@ -45,6 +89,14 @@ def _reported() -> Iterator[Reading]:
     yield Reading(
         "the linear acceleration is zero", lambda e: Acceleration(e.true.angular, 0 * e.true.linear)
     )
+
+
+def _pushed(e: Evidence, torque: Array) -> Acceleration:
+    """The right accelerations with one more torque, (n, 3) N m in body axes."""
+    angular = e.true.angular + apply(inverse(moving_inertia(e.system)), torque)
+    if e.system.load.pivot is None:
+        return Acceleration(angular, e.true.linear)
+    return Acceleration(angular, center_of_mass_acceleration(e.system, e.states, angular))
 
 
 def _misread(one: Misreading) -> Iterator[Reading]:

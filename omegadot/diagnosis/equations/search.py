@@ -20,27 +20,34 @@ from omegadot.diagnosis.equations.families import (
 )
 from omegadot.diagnosis.equations.hypotheses import Hypothesis, hypotheses, wrong_form
 from omegadot.diagnosis.equations.readings import READINGS, Reading
+from omegadot.diagnosis.equations.terms import FEW, MORE, Terms
 from omegadot.diagnosis.wording.digits import vector
+from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.system import Acceleration, Array, System
 
+STEPS = "steps"  # evidence of what moves a body, of which nothing is reported by itself
 MOST_PAIRS = 64
 DISTINCT = 1e-14  # relative: of a fitted number no more can be known
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """Hypotheses without numbers, one family with its numbers, or both; or another reading."""
+    """Hypotheses without numbers, one family with its numbers, or both.
+
+    Or another reading, or terms too many with their factors.
+    """
 
     fixed: tuple[Hypothesis, ...] = ()
     family: Family | None = None
     numbers: Array | None = None
     reading: Reading | None = None
+    terms: Terms | None = None
 
     @property
     def key(self) -> tuple[str, ...]:
         """What it is, whatever the numbers."""
         named = (one.text for one in self.fixed)
-        other = self.reading.text if self.reading else ""
+        other = self.reading.text if self.reading else self.terms.name if self.terms else ""
         return (*named, self.family.name if self.family else "", other)
 
     @property
@@ -53,6 +60,8 @@ class Candidate:
         """The cause as text, with the numbers of this system."""
         if self.reading is not None:
             return self.reading.text
+        if self.terms is not None and self.numbers is not None:
+            return self.terms.text(system, self.numbers)
         texts = [_with_gravity(one, system) for one in self.fixed]
         if self.family is not None and self.numbers is not None:
             texts.append(self.family.text(system, self.numbers))
@@ -74,15 +83,22 @@ class Candidate:
         """What it gives at the states of any scenario; None where it has no meaning there."""
         if self.reading is not None:
             return self.reading.accelerations(evidence)
+        if self.terms is not None and self.numbers is not None:
+            return self.terms.made(evidence, self.numbers)
         form = self.form(evidence.system)
         return None if form is None else accelerations(form, evidence.states)
 
     def refitted(self, evidence: Evidence) -> Candidate | None:
         """The same with the numbers of another scenario; None where none fit."""
+        if self.terms is not None:
+            found = self.terms.fit(evidence)
+            return None if found is None else replace(self, numbers=found)
         if self.family is None:
             return None
         base = wrong_form(self.fixed, evidence.system)
-        found = None if base is None else fit(evidence, self.family, base)
+        if base is None:
+            return None
+        found = fit(evidence, self.family, base if self.fixed else None)
         return None if found is None else replace(self, numbers=found)
 
 
@@ -101,22 +117,35 @@ def levels(evidence: Evidence, deep: bool = True) -> Iterator[list[Candidate]]:
 
     A level is worked out when it is needed. deep: also those that take long.
     """
-    known = hypotheses(evidence.system)
+    known = possible(evidence)
     forms = [wrong_form([one], evidence.system) for one in known]
     single = [Candidate((known[k],)) for k in evidence.fitting(forms)]
     likely = [one for one in single if not one.fixed[0].unlikely]
     yield likely + _readings(evidence)
-    yield _fitted(evidence, ONE_NUMBER)
+    yield _fitted(evidence, ONE_NUMBER) + _with_terms(evidence, FEW)
     yield _fitted(evidence, LEAST)
     unlikely = [one for one in single if one.fixed[0].unlikely]
     if deep:
         seen = _visible(evidence, known, forms)
         yield unlikely + _pairs(evidence, known, forms, seen)
-        yield _fitted(evidence, (*THREE_NUMBERS, *EXTRA))
+        yield _fitted(evidence, THREE_NUMBERS) + _with_terms(evidence, MORE)
+        yield _fitted(evidence, EXTRA)
         yield _mixed(evidence, known, seen)
         yield _fitted(evidence, SIX_NUMBERS)
     else:
         yield unlikely
+
+
+def possible(evidence: Evidence) -> list[Hypothesis]:
+    """All but what is no fault: single precision in an engine that declares it."""
+    single = evidence.eps > EPS
+    return [h for h in hypotheses(evidence.system) if not (single and h.part == "precision")]
+
+
+def _with_terms(evidence: Evidence, kinds: Sequence[Terms]) -> list[Candidate]:
+    usable = [one for one in kinds if not (one.reported and evidence.source == STEPS)]
+    found = [(terms, terms.fit(evidence)) for terms in usable]
+    return [Candidate(terms=terms, numbers=p) for terms, p in found if p is not None]
 
 
 def _readings(evidence: Evidence) -> list[Candidate]:

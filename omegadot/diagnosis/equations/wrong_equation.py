@@ -8,34 +8,45 @@ import numpy as np
 
 from omegadot.diagnosis.equations.across import Across, Scene
 from omegadot.diagnosis.equations.describe import description, scenarios_in_common
-from omegadot.diagnosis.equations.evidence import SLACK, Evidence, of_forward_dynamics
+from omegadot.diagnosis.equations.evidence import (
+    BEYOND_ROUNDING,
+    SLACK,
+    Evidence,
+    of_forward_dynamics,
+)
 from omegadot.diagnosis.equations.quotient import difference_quotient
+from omegadot.diagnosis.models.misreadings import order_text, signed_orders
+from omegadot.diagnosis.reported.requests import place_cause
 from omegadot.diagnosis.wording.digits import factor
 from omegadot.diagnosis.wording.features import features_of
-from omegadot.gates.bounds.scales import eps_of, norm, torque_size
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, eps_of, norm, torque_size
 from omegadot.gates.case import Case
-from omegadot.gates.states.equation import BOUND, EvaluationStates
+from omegadot.gates.states.equation import EvaluationStates
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
-from omegadot.reference_impl.rotations import rotate
+from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 from omegadot.workers.wire import body_from
 
 FORWARD, ALONG = "forward", "along the trajectory"
+RELOADED = "after another system"
+MOST_NAMED = 3  # causes between which nothing decides
 
 
 def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> Scene:
     """What is kept of one scenario's forward dynamics."""
-    eps = eps_of(result.precision)
     evidence = {
-        source: of_forward_dynamics(case.system, states, Acceleration(**answer.result), eps)
+        source: of_forward_dynamics(
+            case.system, states, Acceleration(**answer.result), eps_of(result.precision)
+        )
         for source, answer, states in (
             (FORWARD, result.forward, evaluation_states.random),
             (ALONG, result.path, evaluation_states.path),
+            (RELOADED, result.reloaded, evaluation_states.random),
         )
         if answer.ok
     }
@@ -54,10 +65,12 @@ def equation_causes(across: Across, name: str, source: str) -> list[str]:
         finite = int(np.count_nonzero(np.isfinite(values).all(-1)))
         if finite < len(values):
             return [f"{what} is not finite at {len(values) - finite} of {len(values)} states"]
+    if not evidence.clear:
+        return []
     single = _single(evidence)
-    if single:
+    if single and evidence.eps <= EPS:
         return [single]
-    text = across.cause(name, source)
+    text = place_cause(evidence) or across.cause(name, source)
     if not text and source in (FORWARD, ALONG):
         text = _constant(evidence) or difference_quotient(evidence)
     return [text] if text else known_difference(across, name, source)
@@ -92,11 +105,13 @@ def known_difference(across: Across, name: str, source: str) -> list[str]:
 
 
 def inverse_causes(
-    system: System, states: State, requested: Acceleration, torque: Array
+    system: System, states: State, requested: Acceleration, torque: Array, eps: float = EPS
 ) -> list[str]:
     """What the torque of inverse dynamics leaves out or counts, forward dynamics being sound."""
     true, w = inverse_dynamics(system, states, requested), states.angular_velocity
-    bound = BOUND * torque_size(system, states, requested)
+    bound = ROUNDINGS_PER_EVALUATION * eps * torque_size(system, states, requested)
+    if np.all(norm(torque - true) <= BEYOND_ROUNDING * bound):
+        return []
     inertia = moving_inertia(system)
     terms: dict[str, Array] = {
         "the gyroscopic term": cross(w, apply(inertia, w)),
@@ -108,14 +123,23 @@ def inverse_causes(
         "the applied torque": applied_torque(system, states),
     }
 
-    def fits(candidate: Array) -> bool:
-        return bool(np.all(norm(torque - candidate) <= SLACK * bound))
+    def fits(candidate: Array, times: float = 1.0) -> bool:
+        return bool(np.all(norm(torque - candidate) <= SLACK * max(1.0, abs(times)) * bound))
 
     found = []
     if fits(rotate(states.orientation, true)):
         found.append("inverse dynamics report the torque in world axes")
+    if fits(rotate_inverse(states.orientation, true)):
+        found.append("inverse dynamics report the torque turned by R^T once more")
     if fits(-true):
         found.append("inverse dynamics have the wrong sign")
+    for order, signs in signed_orders():
+        if not np.all(signs < 0.0) and fits(signs * true[:, order]):
+            axes = order_text(order, signs)
+            found.append(f"inverse dynamics report the torque in other axes: {axes}")
+    k = _share(torque, true, bound)
+    if k is not None and abs(k - 1.0) > 1e-9 and abs(k + 1.0) > 1e-9 and fits(k * true, k):
+        found.append(f"inverse dynamics report the torque scaled by {factor(k)}")
     if all(np.any(one) for one in loads.values()) and fits(true - sum(loads.values())):
         found.append("inverse dynamics leave out the loads that act: damping and torque")
     for what, term in terms.items():
@@ -128,7 +152,15 @@ def inverse_causes(
             found.append(_load_worded(what, k))
     bodies = _other_bodies(system, states, requested)
     found += [text for text, made in bodies.items() if not fits(true) and fits(made())]
-    return ["either " + ", or ".join(found)] if 1 < len(found) <= 3 else found[:1]
+    for what, term in terms.items() if not found else ():
+        for axis in range(3):
+            alone = np.where(np.arange(3) == axis, term, 0.0)
+            k = _share(torque - true, alone, bound)
+            if k is not None and fits(true + k * alone):
+                found.append(_worded(f"the {'xyz'[axis]} component of {what}", 1.0 + k))
+    if len(found) > MOST_NAMED:
+        return []
+    return ["either " + ", or ".join(found)] if len(found) > 1 else found
 
 
 def _share(rest: Array, term: Array, bound: Array) -> float | None:

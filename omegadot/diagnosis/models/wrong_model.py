@@ -8,17 +8,23 @@ from itertools import permutations
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
-from omegadot.diagnosis.models.misreadings import misreadings
+from omegadot.diagnosis.equations.hypotheses import hypotheses
+from omegadot.diagnosis.models.misreadings import fitted_misreadings, misreadings
 from omegadot.diagnosis.models.tensors import other_tensors
 from omegadot.diagnosis.wording.digits import factor, number, vector
 from omegadot.diagnosis.wording.laws import law_of
-from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.states.model import body_rows, state_rows
 from omegadot.harness.drive import CaseResult
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import lever as lever_of
+from omegadot.reference_impl.rotations import attitude_angle, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, Body, State, System
 from omegadot.workers.wire import body_from
+
+CLOSE = 1e-9  # relative: numbers of a state that are the same
 
 
 def model_causes(
@@ -30,7 +36,8 @@ def model_causes(
     held = body_from(result.model.result["bodies"][0])
     if not all(np.all(np.isfinite(values)) for values in vars(held).values()):
         return ["the model reads back numbers that are not finite"]
-    failed = {row.metric for row in body_rows(case, held) if row.verdict == "fail"}
+    eps = eps_of(result.precision)
+    failed = {row.metric for row in body_rows(case, held, eps) if row.verdict == "fail"}
     bodies = [(one.system, one.held) for one in across.scenes.values() if one.held is not None]
     parts = {"mass": _masses, "center_of_mass": _centers, "inertia": _inertias}
     found = []
@@ -41,7 +48,8 @@ def model_causes(
     # Of a wrong body the state follows: where it is pivoted, where its centre of mass is.
     if found or failed:
         return found
-    return _state(case, evaluation_states.random[0], State(**result.model.result["state"]))
+    state = State(**result.model.result["state"])
+    return _state(case, evaluation_states.random[0], state, eps)
 
 
 Named = Callable[[System], Iterator[tuple[str, Array]]]
@@ -157,18 +165,54 @@ def _inertias(system: System) -> Iterator[tuple[str, Array]]:
     yield from other_tensors(system).items()
 
 
-def _state(case: Case, requested: State, back: State) -> list[str]:
+def _state(case: Case, requested: State, back: State, eps: float) -> list[str]:
     def failures(state: State) -> set[str]:
-        return {r.channel for r in state_rows(case, requested, state) if r.verdict == "fail"}
+        rows = state_rows(case, requested, state, eps)
+        return {row.channel for row in rows if row.verdict == "fail"}
 
     failed = failures(back)
     if not failed:
         return []
-    for one in misreadings(case.system):
+    for one in (*misreadings(case.system), *fitted_misreadings(back, requested)):
         if not failures(one.right(back)):
             return [one.statement]
     single = State(*(f.astype(np.float32).astype(float) for f in vars(requested).values()))
     pairs = zip(vars(single).values(), vars(back).values(), strict=True)
-    if all(np.array_equal(a, b) for a, b in pairs):
+    if eps <= EPS and all(np.array_equal(a, b) for a, b in pairs):
         return ["the state is kept in single precision"]
     return []
+
+
+def lever_causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[str]:
+    """A pivoted body that is placed by another lever; its attitude and omega are right."""
+    if not result.model.ok or case.system.load.pivot is None:
+        return []
+    state = State(**result.model.result["state"])
+    text = _lever(case.system, evaluation_states.random[0], state)
+    return [text] if text else []
+
+
+def _lever(system: System, requested: State, back: State) -> str:
+    due = np.asarray(lever_of(system), dtype=float)
+    q, w = requested.orientation, requested.angular_velocity
+    held = rotate_inverse(back.orientation, back.position)
+    size = float(np.linalg.norm(held)) + float(np.linalg.norm(due))
+    moved = rotate(q, cross(w, held))
+    same = attitude_angle(back.orientation, q) <= CLOSE
+    same &= np.linalg.norm(back.angular_velocity - w) <= CLOSE * np.linalg.norm(w)
+    apart = np.linalg.norm(back.linear_velocity - moved)
+    if not np.isfinite(apart) or not same or apart > CLOSE * size * np.linalg.norm(w):
+        return ""
+    if np.linalg.norm(held - due) <= CLOSE * size:
+        return ""
+    for one in hypotheses(system):
+        if one.part in ("pivot", "center"):
+            other = one.system(system)
+            placed = other.load.pivot is not None
+            if placed and np.linalg.norm(held - lever_of(other)) <= CLOSE * size:
+                return one.text
+    k = float(held @ due) / float(due @ due) if np.any(due) else 0.0
+    if np.linalg.norm(held - k * due) <= CLOSE * size:
+        return f"the lever from the pivot to the centre of mass is scaled by {factor(k)}"
+    shown = f"{vector(held, due)} m from the pivot, where {vector(due, held)} m was requested"
+    return f"the centre of mass is placed {shown}: either of them is another"

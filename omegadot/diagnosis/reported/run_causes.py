@@ -6,13 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.models.misreadings import OF_ANY_STATE, misreadings
+from omegadot.diagnosis.models.misreadings import (
+    ADDED,
+    OF_ANY_STATE,
+    fitted_misreadings,
+    misreadings,
+)
 from omegadot.diagnosis.reported.run import ReportedRun
-from omegadot.diagnosis.reported.sample_causes import digits_reported, half_step, not_unit
+from omegadot.diagnosis.reported.sample_causes import ALONE, digits_reported, half_step, not_unit
 from omegadot.gates.bounds.scales import norm
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.energy import rotational_kinetic_energy
 from omegadot.reference_impl.momentum import angular_momentum
+from omegadot.reference_impl.rotations import quaternion_product
 from omegadot.reference_impl.system import Array, State
 
 
@@ -24,33 +30,6 @@ def begin_apart(reported: ReportedRun, result: CaseResult) -> bool:
             start = State(**run.result["state"])[first]
             starts += [start] if np.all(np.isfinite(start.angular_velocity)) else []
     return any(not reported.agrees(start, starts[0], first) for start in starts[1:])
-
-
-def _samples(reported: ReportedRun) -> str:
-    expected, came = reported.sweep.times, len(reported.time)
-    if came == len(expected):
-        return ""
-    missing = len(expected) - came
-    counted = "sample is" if missing == 1 else f"{missing} samples are"
-    for which, left in (("first", expected[missing:]), ("last", expected[:-missing])):
-        if missing > 0 and np.allclose(reported.time, left, rtol=1e-12, atol=0.0):
-            return f"the {which} {counted} missing"
-    return f"{came} samples came back, {len(expected)} were requested"
-
-
-def _clock(reported: ReportedRun) -> str:
-    late = reported.time - reported.sweep.times
-    tolerance = 4 * np.finfo(float).eps * reported.sweep.times[-1]
-    if np.all(np.abs(late) <= tolerance):
-        return ""
-    if np.all(np.abs(late - late[0]) <= tolerance):
-        steps = late[0] / reported.sweep.timestep
-        return f"every time is reported {late[0]:.4g} s late, {steps:.3g} steps"
-    ratio = reported.time[-1] / reported.sweep.times[-1]
-    if np.all(np.abs(reported.time - ratio * reported.sweep.times) <= tolerance):
-        wrong = "fast" if ratio < 1.0 else "slow"
-        return f"the clock runs {abs(ratio - 1.0):.3g} too {wrong}: every time is off in proportion"
-    return ""
 
 
 def _not_finite(reported: ReportedRun) -> str:
@@ -68,9 +47,21 @@ def _not_finite(reported: ReportedRun) -> str:
 def _misread(reported: ReportedRun) -> str:
     if reported.agrees(reported.state, reported.own):
         return ""
-    for one in misreadings(reported.case.system):
-        if reported.agrees(one.right(reported.state), reported.own):
-            return f"in the run, {one.statement}"
+    later, own = slice(1, None), reported.own[1:]  # the start may be passed on as it was given
+    came = reported.state[1:]
+    if len(own.position) > 1 and not reported.agrees(came, own, later):
+        begins = reported.agrees(reported.state[:1], reported.own[:1], slice(0, 1))
+        for one in (*misreadings(reported.case.system), *fitted_misreadings(came, own)):
+            if ADDED in one.statement and not begins:
+                continue  # it is a run from another state as well
+            if reported.agrees(one.right(came), own, later):
+                return f"in the run, {one.statement}"
+        first = reported.case.initial.orientation
+        turned = quaternion_product(
+            np.broadcast_to(first, came.orientation.shape), came.orientation
+        )
+        if reported.agrees(replace(came, orientation=turned), own, later):
+            return "the attitude of a run is relative to its start, or starts from the identity"
     for one in OF_ANY_STATE:
         start = one.right(reported.case.initial)
         if reported.agrees(one.right(reported.state), reported.stepped(initial=start)):
@@ -94,6 +85,15 @@ def _late(reported: ReportedRun) -> str:
     early = every[np.minimum(steps + 1, steps[-1])]
     if reported.agrees(reported.state[before], early[before], before):
         return "every sample is the state one step after: the run is logged one step early"
+    behind = {
+        "sample": np.maximum(steps - reported.sweep.every, 0),
+        "step": np.maximum(steps - 1, 0),
+    }
+    for what, names in ALONE.items():
+        for when, shifted in behind.items():
+            other = {name: getattr(every, name)[shifted] for name in names}
+            if reported.agrees(reported.state, replace(reported.own, **other)):
+                return f"{what.rstrip(',')} alone is reported one {when} late"
     last = slice(-1, None)
     ended = reported.agrees(reported.state[last], late[last], last)
     if ended and reported.agrees(reported.state[before], reported.own[before], before):
@@ -130,8 +130,6 @@ def _rescaled(reported: ReportedRun) -> str:
 
 
 CAUSES_REPORTED = (
-    _samples,
-    _clock,
     _not_finite,
     digits_reported,
     _misread,

@@ -8,7 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.rotations import conjugate, normalize, quaternion_product, turn_in_body
+from omegadot.reference_impl.rotations import (
+    conjugate,
+    normalize,
+    quaternion_product,
+    rotation_between,
+    turn_in_body,
+)
 from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array, State
 
@@ -55,6 +61,26 @@ def turned_by_last_omega(before: State, after: State, dt: float | Array) -> Stat
     """``q exp(h omega)`` with the omega at the end of the step."""
     turned = turn_in_body(before.orientation, after.angular_velocity, dt)
     return replace(after, orientation=turned)
+
+
+def turn_within(angle: float) -> End:
+    """The turn of the step is cut at an angle in rad."""
+
+    def end(before: State, after: State, dt: float | Array) -> State:
+        turn = rotation_between(before.orientation, after.orientation)
+        turned = turn_in_body(before.orientation, _shortened(turn, angle), 1.0)
+        short = norm(turn)[..., None] <= angle
+        return replace(after, orientation=np.where(short, after.orientation, turned))
+
+    return end
+
+
+def second_order_turn(before: State, after: State, dt: float | Array) -> State:
+    """The turn of the step by the exponential's series to second order, made unit."""
+    turn = rotation_between(before.orientation, after.orientation)
+    first = 1.0 - 0.125 * np.sum(turn * turn, axis=-1, keepdims=True)
+    short = normalize(np.concatenate([first, 0.5 * turn], axis=-1))
+    return replace(after, orientation=quaternion_product(before.orientation, short))
 
 
 def single_precision(before: State, after: State, dt: float | Array) -> State:

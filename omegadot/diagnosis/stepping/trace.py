@@ -150,7 +150,10 @@ class _Intervals:
         p = np.asarray(starts[0], dtype=float)
         delta = 1e-4 * (float(np.abs(p[0])) or _unit(self.system, family))
         for _ in range(TRIES):
-            forms = [family.form(right, self.system, p + d) for d in (0.0, delta)]
+            try:
+                forms = [family.form(right, self.system, p + d) for d in (0.0, delta)]
+            except (ValueError, np.linalg.LinAlgError):
+                return None  # no body has such numbers
             ends = self.ends(forms).angular_velocity / self.bounds[0][:, None]
             line = np.ravel(ends[1] - ends[0]) / delta
             rest = np.ravel(self.end.angular_velocity / self.bounds[0][:, None] - ends[0])

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
-from omegadot.diagnosis.models.misreadings import misreadings
+from omegadot.diagnosis.models.misreadings import fitted_misreadings, misreadings
 from omegadot.diagnosis.wording.conditions import only_where
-from omegadot.diagnosis.wording.digits import limits
-from omegadot.gates.bounds.scales import EPS, norm
-from omegadot.gates.steps.vanishing_step import Limit, Probe
+from omegadot.diagnosis.wording.digits import factor, limits
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
+from omegadot.gates.steps.vanishing_step import Limit, Probe, Tolerated
 from omegadot.gates.steps.vanishing_step import limits as rates_at_no_step
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.rotations import attitude_angle, rotate, rotate_inverse
+from omegadot.reference_impl.rotations import (
+    attitude_angle,
+    quaternion_product,
+    rotate,
+    rotate_inverse,
+)
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
+EXACT = Tolerated()
+AMPLIFIED = 8.0  # what the extrapolation from five halved steps makes of a rounding
 STILL = 1e-9  # a factor that is none but for rounding
 LEFT = 1e-5  # relative: what is left of a state extrapolated to no step from two short ones
 
@@ -31,6 +38,7 @@ class VanishingSteps:
     rates: dict[str, Limit]
     start: State
     moved: State
+    eps: float = EPS
 
     @property
     def evidence(self) -> Evidence:
@@ -39,8 +47,13 @@ class VanishingSteps:
         linear, linear_bound = _better(self.rates["linear_momentum"])
         if self.system.load.pivot is not None and not np.all(_stays_in_place(self, self.start)):
             linear_bound = np.full_like(linear_bound, np.inf)  # placed by another pivot
+        # A wrong rate rounds as well; the bound of the right one, which may be zero, leaves it out.
+        own = AMPLIFIED * ROUNDINGS_PER_EVALUATION * self.eps
+        angular_bound = angular_bound + own * norm(angular)
+        linear_bound = linear_bound + own * norm(linear)
         found = Acceleration(angular, linear)
-        return Evidence("steps", self.system, self.states, found, angular_bound, linear_bound)
+        bounds = (angular_bound, linear_bound)
+        return Evidence("steps", self.system, self.states, found, *bounds, self.eps)
 
     @property
     def sound(self) -> bool:
@@ -53,6 +66,13 @@ class VanishingSteps:
         k = None if self.sound else common_factor(self.rates)
         return k is not None and abs(k) < STILL
 
+    @property
+    def turns(self) -> bool:
+        """Whether the attitude follows omega, by which a pivoted body's place moves as well."""
+        if self.system.load.pivot is None:
+            return True
+        return bool(np.all(self.rates["attitude"].shares() <= 1.0))
+
     def common_cause(self) -> str:
         """Steps that are too long or too short by a part: every rate is off by one factor."""
         k = None if self.sound else common_factor(self.rates)
@@ -62,17 +82,21 @@ class VanishingSteps:
 
 
 def vanishing_steps(
-    system: System, probe: Probe, stepped: State, eps: float = EPS
+    system: System,
+    probe: Probe,
+    stepped: State,
+    eps: float = EPS,
+    tolerated: Tolerated = EXACT,
 ) -> VanishingSteps:
     """From the answers to the gate's own requests: states (m, k, ...) after one step each.
 
     k is 9 in double and 5 in single precision, whose eps this then is.
     """
     with np.errstate(all="ignore"):
-        rates = rates_at_no_step(system, probe, stepped, eps)
+        rates = rates_at_no_step(system, probe, stepped, eps, tolerated)
     ends = [2.0 * f[:, -1] - f[:, -2] for f in vars(stepped).values()]
     moved = [f[:, -1] - f[:, -2] for f in vars(stepped).values()]
-    return VanishingSteps(system, probe.states, rates, State(*ends), State(*moved))
+    return VanishingSteps(system, probe.states, rates, State(*ends), State(*moved), eps)
 
 
 def _better(limit: Limit) -> tuple[Array, Array]:
@@ -108,13 +132,13 @@ def kinematic_cause(steps: VanishingSteps) -> str:
     lever = rotate(q, cross(w, system.body.center_of_mass))
     candidates: dict[str, dict[str, Array]] = {
         "attitude": {
-            "the attitude does not move": 0 * w,
+            "the attitude does not move, or not in the first step of a run": 0 * w,
             "the attitude turns by omega taken in world axes": rotate_inverse(q, w),
             "the attitude turns by R omega taken in body axes": rotate(q, w),
             "the attitude turns the wrong way": -w,
         },
         "position": {
-            "the position does not move": 0 * v,
+            "the position does not move, or not in the first step of a run": 0 * v,
             "the position moves by the velocity taken in body axes": rotate(q, v),
             "the position moves by R^T v": rotate_inverse(q, v),
             "the position moves with the velocity of the body's origin": v - lever,
@@ -136,11 +160,41 @@ def kinematic_cause(steps: VanishingSteps) -> str:
         for text, rate in named.items():
             if np.all(norm(found - rate) <= SLACK * bound):
                 return f"in the steps, {text}"
-        factor = float(np.sum(found * limit.expected) / np.sum(limit.expected**2))
-        if np.all(norm(found - factor * limit.expected) <= SLACK * bound):
-            what = "omega" if channel == "attitude" else "the velocity"
-            return f"in the steps, the {channel} moves by {factor:.9g} times {what}"
     return ""
+
+
+def moves_by_cause(steps: VanishingSteps) -> str:
+    """The attitude or the position moves by a factor of what it should; "" where it does not.
+
+    By half or by one and a half it is as well of another time than the rest.
+    """
+    for channel, what in (("attitude", "omega"), ("position", "the velocity")):
+        limit = steps.rates[channel]
+        found, bound = _better(limit)
+        if np.all(limit.shares() <= 1.0) or (
+            channel == "position" and steps.system.load.pivot is not None
+        ):
+            continue
+        weight = np.where(np.isfinite(bound) & (bound > 0.0), 1.0 / bound, 0.0)[:, None]
+        size = float(np.sum((limit.expected * weight) ** 2))
+        k = float(np.sum(found * limit.expected * weight**2)) / size if size > 0.0 else 1.0
+        if not np.all(norm(found - k * limit.expected) <= SLACK * bound) or abs(k) < STILL:
+            continue
+        text = f"in the steps, the {channel} moves by {factor(k)} times {what}"
+        for half, when in ((0.5, "before"), (1.5, "after")):
+            if abs(k - half) < 1e-6:
+                return f"either the {channel} is reported as of half a step {when}, or, {text}"
+        return text
+    return ""
+
+
+def omega_still_cause(steps: VanishingSteps) -> str:
+    """Omega does not change in the first step of a run, which has two explanations."""
+    limit = steps.rates["omega"]
+    found, bound = _better(limit)
+    still = bool(np.all(norm(found) <= SLACK * bound)) and not np.all(limit.shares() <= 1.0)
+    text = "either omega is reported late, or it does not change in the first step of a run"
+    return text if still else ""
 
 
 def omega_share_cause(steps: VanishingSteps) -> str:
@@ -200,9 +254,12 @@ def jump_cause(steps: VanishingSteps) -> str:
         where = only_where([(steps.system, before, finite)])
         text = f"a step leads to numbers that are not finite from {count} of {len(finite)} states"
         return f"{text}: only where {where}" if where else text
-    for one in misreadings(steps.system):
+    for one in (*misreadings(steps.system), *fitted_misreadings(after, before)):
         if np.all(_stays(steps, one.right(after))):
             return f"in the run, {one.statement}"
+    relative = replace(after, orientation=quaternion_product(before.orientation, after.orientation))
+    if np.all(_stays(steps, relative)):
+        return "the attitude of a run is relative to its start, or starts from the identity"
     w, new = before.angular_velocity, after.angular_velocity
     v, moved = before.linear_velocity, after.linear_velocity
     between = steps.moved

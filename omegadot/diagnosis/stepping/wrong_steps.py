@@ -10,21 +10,25 @@ import numpy as np
 from omegadot.diagnosis.equations.equation_form import Form, accelerations
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.stepping.slips import damping_ends, slipped
 from omegadot.diagnosis.stepping.step_ends import (
     End,
     clipped_at,
     held_below,
     left_multiplied,
+    second_order_turn,
     speed_below,
     straight_quaternion,
+    turn_within,
     turned_by_last_omega,
     with_end,
 )
-from omegadot.gates.bounds.scales import norm
+from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import PHRASES, canonical, distinct
 from omegadot.reference_impl.growth import changes
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State
@@ -33,6 +37,7 @@ ENDS: dict[str, End] = {
     "the attitude's change in body axes is multiplied from the left": left_multiplied,
     "the attitude is stepped as q + h/2 q omega and not normalised": straight_quaternion,
     "the attitude turns by the step's last omega alone": turned_by_last_omega,
+    "the turn of a step is taken by the exponential's series to second order": second_order_turn,
 }
 MOST_TRIES = 8
 CONVERGES = 0.3  # what a try must leave of the distance before it
@@ -44,7 +49,7 @@ MOST_NAMED = 3
 NOT_STEPPED = ("report", "precision")
 
 
-def _precision(reported: ReportedRun) -> str:
+def precision_reported(reported: ReportedRun) -> str:
     """Attitude or omega of every sample after the start are numbers of single precision.
 
     Places are not looked at: they may follow, in double, from what is kept.
@@ -60,7 +65,12 @@ def _precision(reported: ReportedRun) -> str:
         s for f, s in fields.items() if single(reported.state, f) and not single(reported.own, f)
     ]
     what = "state" if len(found) == 2 else "".join(found)
-    return f"the {what} is kept in single precision" if found else ""
+    eps = float(np.finfo(np.float32).eps)
+    pairs = zip(vars(reported.state).values(), vars(reported.own).values(), strict=True)
+    if found and all(np.all(np.abs(a - b) <= eps * np.abs(b)) for a, b in pairs):
+        return f"the {what} is reported in single precision, and kept in double"
+    single_is_due = reported.truth.yardstick.eps > EPS
+    return f"the {what} is kept in single precision" if found and not single_is_due else ""
 
 
 def _asleep(reported: ReportedRun) -> str:
@@ -111,6 +121,19 @@ def _speed(reported: ReportedRun) -> str:
     return "" if limit is None else f"the linear velocity is held below {limit:.6g} m/s"
 
 
+def _turn_held(reported: ReportedRun) -> str:
+    """The turn of each step is cut at an angle, which the greatest between samples is made of."""
+    q, every = reported.state.orientation, reported.sweep.every
+    greatest = float(np.max(norm(rotation_between(q[:-1], q[1:])))) / every
+    if not 0.0 < greatest < np.pi / every:
+        return ""
+    for angle in (float(f"{greatest:.6g}"), greatest):
+        stepped = reported.stepped(with_end(reported.declared, turn_within(angle)))
+        if reported.agrees(reported.state, stepped, slack=SLACK):
+            return f"the turn of a step is held within {angle:.6g} rad"
+    return ""
+
+
 def _other_scheme(reported: ReportedRun) -> str:
     for name, scheme in SCHEMES.items():
         system, declared = reported.case.system, reported.integrator.coordinates
@@ -131,6 +154,22 @@ def _other_end(reported: ReportedRun) -> str:
     for text, end in ENDS.items():
         if reported.agrees(reported.state, reported.stepped(with_end(reported.declared, end))):
             return text
+    return ""
+
+
+def _slipped(reported: ReportedRun) -> str:
+    """The declared scheme with one slip in it, or with the damping split off."""
+    name = reported.integrator.scheme or ""
+    for text, scheme in slipped(name).items():
+        if reported.agrees(reported.state, reported.stepped(scheme)):
+            return f"it is stepped by {name}, but {text}"
+    system = reported.case.system
+    if float(system.load.damping):
+        undamped = replace(system, load=replace(system.load, damping=np.zeros(())))
+        for text, end in damping_ends(system).items():
+            made = reported.stepped(with_end(reported.declared, end), undamped)
+            if reported.agrees(reported.state, made):
+                return f"the damping is split off each step: it acts {text}"
     return ""
 
 
@@ -232,20 +271,21 @@ def _in_lanes(reported: ReportedRun, lanes: Form, count: int) -> State:
 
 
 CAUSES_OF_STEPPING = (
-    _precision,
     _asleep,
     _other_scheme,
     _other_end,
+    _slipped,
     _longer,
     _damped,
     _clipped,
     _held,
     _speed,
+    _turn_held,
     _other_equation,
 )
 CAUSES_OF_UNKNOWN = (
-    _precision,
     _asleep,
+    _slipped,
     _longer,
     _damped,
     _clipped,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ from omegadot.reference_impl.system import Array, State, System
 
 # So many states on either side at least: the odds that chance sorts them are then below 1 in 20.
 LEAST = 3
+# In so many ways at least can the states be sorted: some forty conditions are tried.
+WAYS = 1000
 CLEAR = 1e-3  # relative: a narrower gap between two sides is chance, where many numbers are tried
 
 
@@ -49,6 +52,8 @@ def only_where(parts: Sequence[tuple[System, State, NDArray[np.bool_]]]) -> str:
     """
     sound = np.concatenate([right for _, _, right in parts])
     if np.count_nonzero(sound) < LEAST or np.count_nonzero(~sound) < LEAST:
+        return ""
+    if comb(len(sound), int(np.count_nonzero(sound))) < WAYS:
         return ""
     every = [features_of_states(system, states) for system, states, _ in parts]
     for text, (_, unit) in every[0].items():

@@ -17,7 +17,7 @@ from omegadot.reference_impl.loads import applied_torque, gravity_torque, torque
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 
-FIRST_STEPS = "only the first steps are wrong"
+FIRST_STEPS = ("only the first steps are wrong", "in the first step of a run alone")
 ASIDE = np.array([1e-6, 0.0, 0.0])  # m
 
 

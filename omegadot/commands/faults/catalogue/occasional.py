@@ -134,7 +134,7 @@ def LaterRunsDiffer(self: CountedRuns, state: State, sound: Acceleration) -> Acc
     return pushed(self.system, state, sound, self.damping(state)) if self.count else sound
 
 
-@fault("state", "trajectory", named=("run before", "scenario before", "start"))
+@fault("state", "trajectory", named=("run before", "loaded before", "start"))
 class OmegaOfTheLastSystem(Spoiled):
     """The first run of a system begins with the omega at the end of the last run of another."""
 

@@ -151,7 +151,7 @@ def AttitudeInSinglePrecision(before: State, after: State, dt: float | Array) ->
     return replace(after, orientation=after.orientation.astype(np.float32).astype(float))
 
 
-@step_end("scheme", "free gravity", named="the position alone is wrong")
+@step_end("scheme", "free gravity", named="the position moves by the velocity of the")
 def PositionByFirstVelocity(before: State, after: State, dt: float | Array) -> State:
     """The position goes with the velocity at the beginning of a step."""
     return replace(after, position=before.position + dt * before.linear_velocity)

@@ -77,3 +77,8 @@ def precision_hypotheses() -> Iterator[Hypothesis]:
             ),
         )
     yield of_load(f"the applied torque {kept}", "precision", lambda one: applied(one, single))
+    yield of_load(
+        "all loads are kept in single precision",
+        "precision",
+        lambda one: {k: None if v is None else single(v) for k, v in vars(one).items()},
+    )

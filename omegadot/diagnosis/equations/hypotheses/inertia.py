@@ -97,6 +97,11 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
             lambda f, s: _both(own_inertia(s) + _squared(s)),
         )
         yield of_form(
+            "the parallel-axis theorem adds to the diagonal alone: its products are left out",
+            "inertia",
+            lambda f, s: _both(own_inertia(s) + diagonal(_about(s))),
+        )
+        yield of_form(
             "the parallel-axis theorem is applied twice",
             "inertia",
             lambda f, s: _both(2.0 * f.spin - own_inertia(s)),

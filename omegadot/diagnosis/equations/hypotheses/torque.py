@@ -97,18 +97,31 @@ def torque_hypotheses() -> Iterator[Hypothesis]:
             return {"torque_body": ratio @ form.torque_body, "turned": ratio}
 
         yield of_form(f"the applied torque {text}", "torque", change)
-    for text, sign in (("", 1.0), ("", -1.0)):
+    for sign in (1.0, -1.0):
         yield of_form(
             "the applied torque turns the body about its origin, so that it moves the centre of "
-            "mass" + text,
+            "mass",
             "report",
-            given(
-                sign,
-                lambda k, f, s: (
-                    {"couple_offset": k * s.body.center_of_mass} if s.load.pivot is None else {}
-                ),
-            ),
+            given(sign, lambda k, f, s: _moves_center(s, k)),
         )
+    yield of_form(
+        "the applied torque acts about the body's origin, which stays: it meets the inertia about "
+        "the origin, and moves the centre of mass",
+        "torque",
+        lambda f, s: _about_origin(f, s) | _moves_center(s, 1.0),
+    )
+
+
+def _moves_center(system: System, sign: float) -> dict[str, Any]:
+    pivoted = system.load.pivot is not None
+    return {} if pivoted else {"couple_offset": sign * system.body.center_of_mass}
+
+
+def _about_origin(form: Form, system: System) -> dict[str, Any]:
+    if system.load.pivot is not None:
+        return {}
+    ratio = np.linalg.inv(form.solve) @ np.linalg.inv(own_inertia(system) + moved(system))
+    return {"torque_body": ratio @ form.torque_body, "turned": ratio}
 
 
 def _loads_scaled(form: Form, k: float) -> dict[str, Any]:

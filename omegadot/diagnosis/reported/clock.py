@@ -1,0 +1,81 @@
+"""Causes in the times of a run: samples missing, and clocks that are late, coarse or too fast."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.diagnosis.wording.digits import factor, number
+from omegadot.gates.case import Sweep
+from omegadot.reference_impl.system import Array
+
+UNITS = {1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds"}
+GRIDS = {1e-3: "milliseconds", 1e-6: "microseconds", 1e-9: "nanoseconds"}
+SAME = 1e-9  # relative, of a factor that is looked for
+
+
+def clock_cause(time: Array, sweep: Sweep, eps: float) -> str:
+    """What is wrong with the times of a run; "" where they are right, to the gate's own bound."""
+    expected = sweep.times
+    if len(time) != len(expected):
+        return _samples(time, expected)
+    tolerance = 2.0 * eps * float(expected[-1])
+    late = time - expected
+    if not np.isfinite(time).all():
+        return "times are reported that are not finite"
+    if np.all(np.abs(late) <= tolerance):
+        return ""
+    if np.all(np.abs(late - late[0]) <= 2.0 * tolerance):
+        steps = late[0] / sweep.timestep
+        return f"every time is reported {late[0]:.4g} s late, {steps:.3g} steps"
+    return (
+        _in_proportion(time, expected, tolerance) or _rounded(time, expected) or _off(late, sweep)
+    )
+
+
+def _samples(time: Array, expected: Array) -> str:
+    missing = len(expected) - len(time)
+    counted = "sample is" if missing == 1 else f"{missing} samples are"
+    for which, left in (("first", expected[missing:]), ("last", expected[:-missing])):
+        if missing > 0 and np.allclose(time, left, rtol=1e-12, atol=0.0):
+            return f"the {which} {counted} missing"
+    return f"{len(time)} samples came back, {len(expected)} were requested"
+
+
+def _in_proportion(time: Array, expected: Array, tolerance: float) -> str:
+    ratio = float(time[-1] / expected[-1])
+    if not np.all(np.abs(time - ratio * expected) <= 2.0 * max(ratio, 1.0) * tolerance):
+        return ""
+    for k, unit in UNITS.items():
+        if abs(ratio / k - 1.0) < SAME:
+            return f"the times are reported in {unit}"
+    if abs(ratio - 1.0) > 0.1:
+        return f"every time is scaled by {factor(ratio)}"
+    wrong = "fast" if ratio < 1.0 else "slow"
+    return f"the clock runs {abs(ratio - 1.0):.3g} too {wrong}: every time is off in proportion"
+
+
+def _rounded(time: Array, expected: Array) -> str:
+    if np.array_equal(time, time.astype(np.float32).astype(float)) and np.any(
+        expected != expected.astype(np.float32).astype(float)
+    ):
+        return "the times are kept in single precision"
+    for grid, unit in GRIDS.items():
+        whole = time / grid
+        near = np.abs(whole - np.round(whole)) <= 1e-6 * np.maximum(1.0, np.abs(whole) * 1e-9)
+        if np.all(near) and np.all(np.abs(time - expected) <= 1.01 * grid):
+            return f"the times are whole {unit}: what is left of them is cut off or rounded"
+    return ""
+
+
+def _off(late: Array, sweep: Sweep) -> str:
+    """Which times are off, where nothing more is known."""
+    eps = float(np.finfo(float).eps)
+    wrong = np.flatnonzero(np.abs(late) > 2.0 * eps * sweep.times[-1])
+    if len(wrong) == 1:
+        place, which = int(wrong[0]), "the last time"
+        if place < len(late) - 1:
+            which = f"one time, that of sample {place},"
+        due, came = float(sweep.times[place]), float(sweep.times[place] + late[place])
+        return f"{which} alone is off: {number(came, due)} s, where {number(due, came)} s was due"
+    largest = float(np.max(np.abs(late)))
+    return f"times are off by up to {largest:.3g} s, from sample {int(wrong[0])} on"

@@ -1,0 +1,92 @@
+"""Whether a run follows a wrong equation: its beginning next to the exact solutions of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.search import Candidate
+from omegadot.diagnosis.stepping.restep import on_rows
+from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.body_motion import motion_over
+from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+SAMPLES = 12
+RADIANS, MOST_STEPS = 0.1, 80  # of a step here; over the whole beginning
+NEAR, FAR = 0.3, 0.7  # of the distance of the two solutions
+SEEN = 1e-4  # relative: what the steps here leave
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """The first samples of a run, and the exact solution there. times: (n,) s."""
+
+    times: Array
+    reported: State
+    exact: State
+
+
+def follows(system: System, beginning: Beginning, candidate: Candidate, eps: float) -> bool | None:
+    """Whether a run follows a wrong equation, or the right one (False); None where it is open.
+
+    A scheme's own error is small against the distance of the two where the answer is given.
+    """
+    times = beginning.times
+    if len(times) < 3:
+        return None
+    rate = float(np.max(norm(beginning.exact.angular_velocity)))
+    counts = np.maximum(np.ceil(np.diff(times) * rate / RADIANS), 1).astype(int)
+    kept = int(np.searchsorted(np.cumsum(counts), MOST_STEPS, side="right"))
+    if kept < 2:
+        return None
+    wrong = _solved(system, beginning, candidate, counts[:kept], eps)
+    if wrong is None:
+        return None
+    reported, exact = (x[1 : kept + 1] for x in (beginning.reported, beginning.exact))
+    found = dict[float, bool | None]()
+    names = ("angular_velocity", "linear_velocity")
+    for name in names[: 1 if system.load.pivot is not None else 2]:
+        near, far, came = (getattr(x, name) for x in (exact, wrong, reported))
+        apart, size = norm(far - near), float(np.max(norm(near)) + np.max(norm(far)))
+        used = apart > max(SEEN * size, 0.1 * float(np.max(apart)))
+        if not used.any() or not np.isfinite(came[used]).all():
+            continue
+        to_wrong, to_right = (
+            float(np.median(norm(came - x)[used] / apart[used])) for x in (far, near)
+        )
+        answer = True if to_wrong < NEAR else False if to_right < NEAR and to_wrong > FAR else None
+        found[float(np.max(apart)) / size] = answer
+    return found[max(found)] if found else None
+
+
+def _solved(
+    system: System, beginning: Beginning, candidate: Candidate, counts: Array, eps: float
+) -> State | None:
+    """(n, ...): the wrong equation's solution at the samples after the first."""
+
+    def acceleration(states: State) -> Acceleration:
+        none = np.zeros_like(states.angular_velocity)
+        ones = np.ones(len(none))
+        at = Evidence("", system, states, Acceleration(none, none), ones, ones, eps)
+        found = candidate.predicted(at)
+        if found is None:
+            raise ValueError("no equation")
+        return found
+
+    motion = motion_over(system, "com-world", on_rows(acceleration))
+    q, v = to_coordinates(system, beginning.reported[0], "com-world")
+    scheme, samples = SCHEMES["munthe-kaas-rk4"], []
+    try:
+        for count, length in zip(counts, np.diff(beginning.times), strict=False):
+            stepped = step_through(scheme, motion, q, v, length / count, int(count), int(count))
+            q, v = stepped.q[-1], stepped.v[-1]
+            samples.append(from_coordinates(system, q, v, "com-world"))
+    except (ValueError, np.linalg.LinAlgError):
+        return None
+    columns = zip(*(vars(one).values() for one in samples), strict=True)
+    return State(*map(np.stack, columns))

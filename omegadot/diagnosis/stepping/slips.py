@@ -1,0 +1,163 @@
+"""Schemes of the reference with one slip in them, as they are written by mistake."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.diagnosis.stepping.step_ends import End
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.rotations import quaternion_product
+from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
+from omegadot.reference_impl.schemes.scheme import Step
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Array, State, System
+
+Rows = Sequence[Sequence[float]]
+CLASSIC: Rows = ((), (0.5,), (0.0, 0.5), (0.0, 0.0, 1.0))
+WEIGHTS = (1 / 6, 1 / 3, 1 / 3, 1 / 6)
+
+
+def _runge_kutta(rows: Rows = CLASSIC, weights: Sequence[float] = WEIGHTS, held: str = "") -> Step:
+    """Four stages on the quaternion's own equation. held: what keeps its value of the start."""
+
+    def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+        q_dot, v_dot = list[Array](), list[Array]()
+        for row in rows:
+            at_q, at_v = q, v
+            for a, one, two in zip(row, q_dot, v_dot, strict=True):
+                at_q, at_v = at_q + (a * h) * one, at_v + (a * h) * two
+            place = motion.normalize(q if held == "attitude" else at_q)
+            q_dot.append(motion.coordinate_rate(at_q, at_v))
+            if held == "omega-dot" and v_dot:
+                v_dot.append(v_dot[0])
+            else:
+                v_dot.append(motion.acceleration(place, at_v))
+        q = q + h * sum(b * one for b, one in zip(weights, q_dot, strict=True))
+        v = v + h * sum(b * one for b, one in zip(weights, v_dot, strict=True))
+        return motion.normalize(q), np.asarray(v)
+
+    return step
+
+
+def _rows(**changed: Sequence[float]) -> Rows:
+    """The classical rows, but for ``a2``, ``a3`` or ``a4``."""
+    return tuple(changed.get(f"a{k + 1}", row) for k, row in enumerate(CLASSIC))
+
+
+RUNGE_KUTTA: dict[str, Step] = {
+    "its second stage is taken at the whole step": _runge_kutta(_rows(a2=(1.0,))),
+    "its third stage is taken at the whole step": _runge_kutta(_rows(a3=(0.0, 1.0))),
+    "its third stage starts from the first slope": _runge_kutta(_rows(a3=(0.5, 0.0))),
+    "its fourth stage is taken at half the step": _runge_kutta(_rows(a4=(0.0, 0.0, 0.5))),
+    "its fourth stage starts from the second slope": _runge_kutta(_rows(a4=(0.0, 1.0, 0.0))),
+    "its fourth stage starts from the first slope": _runge_kutta(_rows(a4=(1.0, 0.0, 0.0))),
+    "its four slopes have equal weights": _runge_kutta(weights=(0.25,) * 4),
+    "its weights are 2, 1, 1, 2": _runge_kutta(weights=(1 / 3, 1 / 6, 1 / 6, 1 / 3)),
+    "its weights are 1, 3, 3, 1": _runge_kutta(weights=(1 / 8, 3 / 8, 3 / 8, 1 / 8)),
+    "its weights are 1, 4, 0, 1": _runge_kutta(weights=(1 / 6, 2 / 3, 0.0, 1 / 6)),
+    "its weights are 1, 0, 4, 1": _runge_kutta(weights=(1 / 6, 0.0, 2 / 3, 1 / 6)),
+    "its second slope alone is used": _runge_kutta(weights=(0.0, 1.0, 0.0, 0.0)),
+    "its third slope alone is used": _runge_kutta(weights=(0.0, 0.0, 1.0, 0.0)),
+    "the mean of its first and last slopes is used": _runge_kutta(weights=(0.5, 0.0, 0.0, 0.5)),
+    "its first slope alone is used: explicit Euler on the quaternion": _runge_kutta(
+        weights=(1.0, 0.0, 0.0, 0.0)
+    ),
+    "the loads are held at the attitude of the step's start": _runge_kutta(held="attitude"),
+    "omega-dot is held in the step at that of its start": _runge_kutta(held="omega-dot"),
+}
+
+
+def _explicit(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    return motion.retract(q, h * v), v + h * motion.acceleration(q, v)
+
+
+def _drift_first(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    q = motion.retract(q, h * v)
+    return q, v + h * motion.acceleration(q, v)
+
+
+def _mean_velocity(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    after = v + h * motion.acceleration(q, v)
+    return motion.retract(q, 0.5 * h * (v + after)), after
+
+
+def _mean_omega(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    after = v + h * motion.acceleration(q, v)
+    mean = 0.5 * (v + after)[..., -3:]
+    return motion.retract(q, h * np.concatenate((after[..., :-3], mean), axis=-1)), after
+
+
+def _straight(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    v = v + h * motion.acceleration(q, v)
+    return motion.normalize(q + h * motion.coordinate_rate(q, v)), v
+
+
+def _old_omega(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    after = v + h * motion.acceleration(q, v)
+    mixed = np.concatenate((after[..., :-3], v[..., -3:]), axis=-1)
+    return motion.retract(q, h * mixed), after
+
+
+def _old_velocity(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    after = v + h * motion.acceleration(q, v)
+    mixed = np.concatenate((v[..., :-3], after[..., -3:]), axis=-1)
+    return motion.retract(q, h * mixed), after
+
+
+def _by_series(order: int) -> Step:
+    """The exponential by its series: ``1 - a^2/8`` and ``1/2`` for order 2, a the turn in rad."""
+
+    def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+        v = v + h * motion.acceleration(q, v)
+        turn = h * v[..., -3:]
+        square = np.sum(turn * turn, axis=-1, keepdims=True)
+        first = 1.0 - square / 8.0 if order > 1 else np.ones_like(square)
+        rest = (0.5 - square / 48.0 if order > 2 else 0.5) * turn
+        turned = quaternion_product(q[..., -4:], np.concatenate((first, rest), axis=-1))
+        places = motion.retract(q, h * v)[..., :-4]
+        return motion.normalize(np.concatenate((places, turned), axis=-1)), v
+
+    return step
+
+
+# What says less comes first: on many bodies the velocity of translation is constant.
+EULER: dict[str, Step] = {
+    "the attitude moves by the omega of the step's start": _old_omega,
+    "the position moves by the velocity of the step's start": _old_velocity,
+    "attitude and position move by the velocities of the step's start (explicit Euler)": _explicit,
+    "attitude and position move first, by the velocities of the step's start": _drift_first,
+    "the attitude moves by the mean of the omega before and after": _mean_omega,
+    "attitude and position move by the mean of the velocities before and after": _mean_velocity,
+    "the attitude moves by one straight step of the quaternion, normalised": _straight,
+    "the turn of a step is taken by the second-order series of the exponential": _by_series(2),
+    "the turn of a step is taken by the third-order series of the exponential": _by_series(3),
+}
+OF_SCHEME = {"rk4-quaternion": RUNGE_KUTTA, "semi-implicit-euler": EULER}
+
+
+def slipped(name: str) -> dict[str, Scheme]:
+    """The schemes that a slip makes of one of the reference, by what is wrong."""
+    steps = OF_SCHEME.get(name, {})
+    return {text: replace(SCHEMES[name], step=step) for text, step in steps.items()}
+
+
+def damping_ends(system: System) -> dict[str, End]:
+    """Ends of a step in which the damping, left out of the rest of it, acts by itself."""
+    ratio = np.asarray(inverse(moving_inertia(system)), dtype=float) * float(system.load.damping)
+    rates, axes = np.linalg.eigh(ratio)
+
+    def by(share: Callable[[Array], Array]) -> End:
+        def end(before: State, after: State, h: float | Array) -> State:
+            matrix = (axes * share(rates * np.max(h))) @ axes.T
+            return replace(after, angular_velocity=apply(matrix, after.angular_velocity))
+
+        return end
+
+    return {
+        "after the rest of it, by an explicit step": by(lambda x: 1.0 - x),
+        "after the rest of it, by its exponential": by(lambda x: np.exp(-x)),
+        "after the rest of it, by an implicit step": by(lambda x: 1.0 / (1.0 + x)),
+    }

@@ -1,0 +1,145 @@
+"""Causes in what a run reports: its times, its axes, how it was requested; and silence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from omegadot.diagnosis.equations.evidence import of_forward_dynamics
+from omegadot.diagnosis.models.misreadings import fitted_misreadings
+from omegadot.diagnosis.reported.clock import clock_cause
+from omegadot.diagnosis.reported.requests import again_cause, place_cause
+from omegadot.diagnosis.stepping.slips import OF_SCHEME, slipped
+from omegadot.diagnosis.wording.conditions import only_where
+from omegadot.diagnosis.wording.kinds import agreed, kind_of
+from omegadot.gates.bounds.scales import EPS
+from omegadot.gates.case import Case, Sweep
+from omegadot.gates.rows import Row
+from omegadot.gates.states.equation import random_states
+from omegadot.harness.arguments import case_of
+from omegadot.reference_impl.body_motion import attitude_motion
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import Acceleration, State
+from omegadot.scenarios import scenario
+
+SWEEP = Sweep(0.0371234567, 40, 4)
+CLOCKS = {
+    "late": (lambda t: t + 0.01, "every time is reported 0.01 s late"),
+    "milliseconds": (lambda t: 1e3 * t, "the times are reported in milliseconds"),
+    "slow": (lambda t: 1.001 * t, "the clock runs 0.001 too slow"),
+    "single": (lambda t: t.astype(np.float32).astype(float), "kept in single precision"),
+    "micro": (lambda t: np.floor(t * 1e6) / 1e6, "the times are whole microseconds"),
+    "last": (lambda t: np.append(t[:-1], t[-1] + 0.1), "the last time alone is off"),
+    "missing": (lambda t: t[:-1], "the last sample is missing"),
+    "right": (lambda t: t * (1.0 + EPS), ""),
+}
+
+
+@pytest.mark.parametrize("name", CLOCKS)
+def test_the_fault_of_a_clock_is_named(name: str) -> None:
+    change, phrase = CLOCKS[name]
+    found = clock_cause(change(SWEEP.times), SWEEP, EPS)
+    assert (phrase in found) if phrase else found == ""
+
+
+def body() -> Case:
+    data = {
+        "name": "body",
+        "body": {"mass": 2.0, "inertia": [[1.0, 0.1, 0.2], [0.1, 1.6, -0.15], [0.2, -0.15, 2.1]]},
+        "initial": {"angular_velocity": [0.8, 2.0, -0.5], "linear_velocity": [1.0, -0.5, 3.0]},
+        "run": {"duration": 2.0, "timesteps": [0.02], "sample": 0.1},
+    }
+    return case_of(scenario(data), [])
+
+
+@pytest.fixture(scope="module")
+def states() -> State:
+    return random_states(body(), 40, [1])
+
+
+MISREAD = {
+    "feet": ("position", lambda x: 3.28084 * x, "the position is scaled by 3.28084"),
+    "shifted": ("position", lambda x: x + np.array([0.25, 0.0, 0.0]), "is off by (0.25, 0, 0)"),
+    "down": ("linear_velocity", lambda x: x * np.array([1.0, -1.0, -1.0]), "hold x, -y, -z"),
+    "swapped": ("angular_velocity", lambda x: x[:, [1, 0, 2]], "axes of omega are others"),
+    "quaternion": ("orientation", lambda q: q[:, [0, 1, 3, 2]], "vector part is another"),
+}
+
+
+@pytest.mark.parametrize("name", MISREAD)
+def test_what_makes_one_trajectory_out_of_another_is_found_and_undone(
+    states: State, name: str
+) -> None:
+    field, change, phrase = MISREAD[name]
+    came = replace(states, **{field: change(getattr(states, field))})
+    found = [one for one in fitted_misreadings(came, states) if phrase in one.statement]
+    assert len(found) == 1
+    undone = getattr(found[0].right(came), field)
+    assert np.allclose(undone, getattr(states, field), rtol=1e-12, atol=1e-12)
+
+
+def test_one_vector_alone_has_no_addition(states: State) -> None:
+    came = replace(states[0], position=states[0].position + 1.0)
+    assert not [one for one in fitted_misreadings(came, states[0]) if "is off by" in one.statement]
+
+
+def test_the_place_among_several_states_is_named(states: State) -> None:
+    system = body().system
+    true = forward_dynamics(system, states)
+    angular = true.angular.copy()
+    angular[-1] = angular[-2]
+    found = of_forward_dynamics(system, states, Acceleration(angular, true.linear))
+    assert place_cause(found).endswith("its omega-dot is that of the one before")
+    assert place_cause(of_forward_dynamics(system, states, true)) == ""
+
+
+def test_a_difference_of_a_few_bounds_has_no_cause(states: State) -> None:
+    system = body().system
+    true = forward_dynamics(system, states)
+    bound = of_forward_dynamics(system, states, true).angular_bound
+    few = true.angular + 5.0 * bound[:, None] * np.array([1.0, 0.0, 0.0])
+    assert not of_forward_dynamics(system, states, Acceleration(few, true.linear)).clear
+    many = true.angular + 1e3 * bound[:, None] * np.array([1.0, 0.0, 0.0])
+    assert of_forward_dynamics(system, states, Acceleration(many, true.linear)).clear
+
+
+def test_two_answers_to_one_request_come_before_any_other_cause() -> None:
+    rows = [
+        Row("scheme", "omega", "match", 9.0, "1", 1.0, "fail"),
+        Row("trajectory", "omega", "repeated", 9.0, "1", 1.0, "fail"),
+    ]
+    assert "left over from a run before" in again_cause(rows)
+    assert again_cause(rows[:1]) == ""
+
+
+def test_a_cause_of_a_few_scenarios_is_withheld() -> None:
+    few = "it is stepped by lie-rk4, though rk4-quaternion is declared"
+    other = "omega is held below 3 rad/s"
+    assert kind_of(other) == kind_of("omega is held below 47.5 rad/s, at steps of 0.1 s and longer")
+    assert not agreed(few, {"one": few, "two": other, "three": other})
+    assert not agreed(few, {"one": few, "two": "", "three": ""})
+    assert agreed(other, {"one": few, "two": other, "three": other})
+    assert agreed("the run is sound until t = 1 s", {"one": few, "two": other})
+
+
+def test_few_states_sorted_by_chance_have_no_condition(states: State) -> None:
+    system, few = body().system, states[:8]
+    order = np.argsort(np.linalg.norm(few.angular_velocity, axis=-1))
+    sound = np.ones(8, bool)
+    sound[order[-3:]] = False
+    assert only_where([(system, few, sound)]) == ""
+
+
+@pytest.mark.parametrize("name", OF_SCHEME)
+def test_every_slip_makes_another_scheme(name: str) -> None:
+    """By more than rounding, but for those that nothing shows without loads or translation."""
+    motion = attitude_motion(body().system)
+    q, v = body().initial.orientation, body().initial.angular_velocity
+    due = np.concatenate(SCHEMES[name].step(motion, q, v, 0.05))
+    for text, scheme in slipped(name).items():
+        unseen = "position moves by the velocity" in text or "loads are held" in text
+        end = np.concatenate(scheme.step(motion, q, v, 0.05))
+        assert (np.max(np.abs(end - due)) < 1e-13) == unseen, text
