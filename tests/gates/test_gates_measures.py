@@ -40,6 +40,14 @@ def test_the_sizes_of_a_motion() -> None:
     )
 
 
+def test_a_scheme_may_step_the_angular_momentum() -> None:
+    """One part of J omega turns omega by |J omega| / (lambda rate) = 5 / (1 * 2) of it."""
+    yardstick = Yardstick(DOWN, TIMES, STATES)
+    assert yardstick.per_rounding == 1.0
+    assert yardstick.of_momentum().per_rounding == 2.5
+    assert yardstick.with_eps(2.0**-23).per_rounding == 2.5
+
+
 def test_a_lever_adds_to_speed_and_reach() -> None:
     yardstick = Yardstick(System((OFFSET,)), TIMES, STATES)
     assert (yardstick.speed, yardstick.reach) == (5.0 + 2.0 * 0.5, 3.0 + 0.5)

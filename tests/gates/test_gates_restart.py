@@ -54,7 +54,7 @@ def reported(prepared: Prepared, off: float, integrator: Integrator = ONE_STEP) 
 def bounds(prepared: Prepared) -> tuple[float, float]:
     """Of the last omega in rad/s: twice the round-off bound, as it is and with its growth."""
     sweep, state, _, _ = start(prepared)
-    yardstick = prepared.truth.yardstick
+    yardstick = prepared.truth.yardstick.of_momentum()
     growth = growth_along(yardstick.system, sweep.times, state, yardstick.rate)
     plain, grown = (
         2.0 * yardstick.round_off(sweep.timestep, sweep.sample_steps, g)["omega"][-1]

@@ -66,8 +66,14 @@ class Yardstick:
         In single precision the rounding of every step shows, and what is stepped may be the angular
         momentum: omega is then off by ``|J omega| / lambda``, lambda J's least eigenvalue.
         """
+        other = self.of_momentum() if eps > EPS else copy(self)
+        other.eps = eps
+        return other
+
+    def of_momentum(self) -> Yardstick:
+        """The same sizes for a scheme that may step the angular momentum, rounded at every step."""
         other = copy(self)
-        other.eps, other.per_rounding = eps, self._momentum if eps > EPS else 1.0
+        other.per_rounding = self._momentum
         return other
 
     def distance(self, channel: str, one: State, other: State) -> Array:

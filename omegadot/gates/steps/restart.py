@@ -45,9 +45,9 @@ def row(
     """The largest distance between the two runs, in parts of what rounding allows.
 
     Each lies within the round-off bound of one trajectory, so that they differ by twice that at
-    most.
+    most. A scheme that is not known may step the angular momentum.
     """
-    yardstick = truth.yardstick
+    yardstick = truth.yardstick.of_momentum()
     rest = state[sample:]
     apart = {c: yardstick.distance(c, rest, restarted) for c in CHANNELS}
 
