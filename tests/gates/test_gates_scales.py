@@ -87,3 +87,16 @@ def test_the_centre_of_mass_is_off_by_what_the_rotation_is() -> None:
     turning = float(angular_size(FREE, STATE, ACCELERATION))
     expected = 6.0 + 10.0 + 2.0 * (4.0 + turning) + 2.0 * 5.0
     assert linear_size(FREE, STATE, ACCELERATION) == pytest.approx(expected, rel=8 * EPS)
+
+
+def test_a_lever_between_two_places_in_the_world_is_off_by_a_rounding_of_them() -> None:
+    """Of a body at rest nothing else is left: what an engine adds there is rounding of rounding."""
+    still = replace(STATE, angular_velocity=np.zeros(3), linear_velocity=np.array([0.0, 0.0, 1.0]))
+    rest = Acceleration(np.zeros(3), np.zeros(3))
+    weightless = System((replace(BODY, center_of_mass=np.zeros(3)),))
+    turning = angular_size(weightless, still, rest)
+    for place in (0.0, 400.0):
+        there = replace(still, position=np.array([0.0, place, 0.0]))
+        assert linear_size(weightless, there, rest) == EPS * place * turning
+        assert linear_size(weightless, there, rest, 2.0**-23) == 2.0**-23 * place * turning
+    assert turning > 0.0

@@ -124,7 +124,7 @@ def of_forward_dynamics(
     """Forward dynamics at states, within the equation gate's bounds."""
     true, smallest = forward_dynamics(system, states), body_scale(system).smallest
     sizes = [torque_size(system, states, one) for one in (true, _finite(found, true))]
-    linear = [linear_size(system, states, one) for one in (true, _finite(found, true))]
+    linear = [linear_size(system, states, one, eps) for one in (true, _finite(found, true))]
     bound = ROUNDINGS_PER_EVALUATION * eps
     bounds = (bound * np.maximum(*sizes) / smallest, bound * np.maximum(*linear))
     return Evidence("forward", system, states, found, *bounds, eps)

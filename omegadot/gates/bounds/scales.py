@@ -93,9 +93,16 @@ def angular_size(system: System, state: State, acceleration: Acceleration) -> Ar
     return np.asarray(torque_size(system, state, acceleration) / body_scale(system).smallest)
 
 
-def linear_size(system: System, state: State, acceleration: Acceleration) -> Array:
-    """(...) m/s^2: the terms of the centre of mass's acceleration, added up by size."""
-    rate, lever = norm(state.angular_velocity), body_scale(system).lever
+def linear_size(
+    system: System, state: State, acceleration: Acceleration, eps: float = EPS
+) -> Array:
+    """(...) m/s^2: the terms of the centre of mass's acceleration, added up by size.
+
+    The lever of a free body may be the difference of two places in the world, off by ``eps |x|``.
+    """
+    rate, lever = norm(state.angular_velocity), np.asarray(body_scale(system).lever)
+    if system.load.pivot is None:
+        lever = lever + eps * norm(state.position)
     turning = lever * (rate**2 + angular_size(system, state, acceleration))
     moving = rate * norm(state.linear_velocity)
     return np.asarray(norm(acceleration.linear) + norm(system.load.gravity) + turning + moving)

@@ -124,7 +124,8 @@ def forward_rows(
     linear_momentum: the centre of mass's acceleration, relative to its terms by size.
     """
     true = forward_dynamics(extended(system), extended(states))
-    linear, size = _apart(found.linear, true.linear), linear_size(system, states, in_doubles(true))
+    linear = _apart(found.linear, true.linear)
+    size = linear_size(system, states, in_doubles(true), eps)
     return [
         _omega_dot_row(system, states, found.angular, true, metric, eps),
         _row("linear_momentum", metric, linear, size, ROUNDINGS_PER_EVALUATION * eps),

@@ -170,7 +170,7 @@ def limits(
     moving = norm(v) + lever * spinning
     step, evaluation = ROUNDINGS_PER_STEP * eps, ROUNDINGS_PER_EVALUATION * eps
     of_omega = evaluation * angular_size(system, states, true)
-    of_velocity = evaluation * linear_size(system, states, true)
+    of_velocity = evaluation * linear_size(system, states, true, eps)
     turn = rotation_between(before.orientation, stepped.orientation)
     spin = stepped.angular_velocity - before.angular_velocity
     way, push = stepped.position - before.position, stepped.linear_velocity - before.linear_velocity
