@@ -3,86 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from itertools import islice
 
 import numpy as np
 
 from omegadot.diagnosis.equations.equation_form import Form, same_form
 from omegadot.diagnosis.equations.evidence import Evidence
-from omegadot.diagnosis.equations.families import Family
-from omegadot.diagnosis.equations.hypotheses import wrong_form
-from omegadot.diagnosis.equations.search import Candidate, levels, possible
+from omegadot.diagnosis.equations.held import Held, Scene, Scenes
+from omegadot.diagnosis.equations.search import Candidate, levels
 from omegadot.diagnosis.wording.conditions import LEAST, only_where
-from omegadot.diagnosis.wording.features import Features, in_common
-from omegadot.diagnosis.wording.laws import law_of
-from omegadot.reference_impl.system import Array, Body, System
+from omegadot.diagnosis.wording.features import in_common
 
 QUICK = 3  # levels of one scenario that are quick, and more basic than what another has shown
 MOST_DEEP = 5  # scenarios that are searched to the end; the rest have what these have
 MOST_NAMED = 3  # causes between which a scenario does not decide
-TELLING = 1e-5  # relative: what a number must be known to
-LAWS = {
-    "damping": "the damping",
-    "gravity": "gravity",
-    "torque_body": "the torque in body axes",
-    "torque_world": "the torque in world axes",
-    "pivot": "the pivot",
-    "mass": "the mass in the dynamics",
-}
-
-
-@dataclass(frozen=True)
-class Scene:
-    """What is kept of one scenario. evidence: by where it comes from.  held: the body read
-    back.
-    """
-
-    name: str
-    system: System
-    features: Features
-    evidence: dict[str, Evidence]
-    held: Body | None = None
-
-
-@dataclass
-class Held:
-    """A candidate held against the other scenarios.
-
-    shown: those where it can be seen and fits.  against: where it could be seen, and the engine is
-    right.  pairs: of a family's numbers, requested and acting.  numbers: by scenario, where they
-    had to be others; with these the candidate fits no two of them.
-    """
-
-    candidate: Candidate
-    shown: list[Scene] = field(default_factory=list)
-    against: list[Scene] = field(default_factory=list)
-    contradicted: bool = False
-    pairs: list[tuple[Array, Array]] = field(default_factory=list)
-    numbers: list[tuple[Scene, Array]] = field(default_factory=list)
-    law: str = ""
-
-    @property
-    def strong(self) -> bool:
-        """Whether one rule gives its numbers on every scenario."""
-        return not self.numbers or bool(self.law)
-
-    @property
-    def holds(self) -> bool:
-        """Whether no scenario is against it; numbers may be others, and right, elsewhere."""
-        return not self.contradicted and (not self.against or self.candidate.family is not None)
-
-    def where(self) -> str:
-        """Of numbers that act on some scenarios alone: on which."""
-        if not self.against or self.pairs:
-            return ""
-        shown, against = ([one.features for one in group] for group in (self.shown, self.against))
-        common = in_common(shown, against)
-        if common and len(common) <= 2:
-            return f", but only where {' or where '.join(common)}"
-        if self.numbers:
-            return ""  # what is seen elsewhere is not by these
-        return f", on {len(shown)} of the {len(shown) + len(against)} scenarios that would show it"
 
 
 class _Search:
@@ -103,14 +37,18 @@ class Across:
     """The scenarios of one engine so far, and the causes found among them."""
 
     def __init__(self) -> None:
-        self.scenes: dict[str, Scene] = {}
+        self._all = Scenes()
         self.of_runs: dict[str, dict[str, str]] = {}  # by integrator and scenario
         self._accepted: list[list[Candidate]] = []
         self._weak: list[Candidate] = []
         self._texts: dict[tuple[str, str], str] = {}
         self._chosen: dict[tuple[str, str], Candidate] = {}
-        self._with_another: dict[tuple[tuple[str, ...], str, str], bool] = {}
         self._searches: dict[tuple[str, str], _Search] = {}
+
+    @property
+    def scenes(self) -> dict[str, Scene]:
+        """By name."""
+        return self._all.by_name
 
     def chosen(self, name: str, source: str) -> Candidate | None:
         """The first of the candidates that `cause` names; None where it names none."""
@@ -141,7 +79,7 @@ class Across:
                 text = self._known_elsewhere(scene, source)
                 if text:
                     return text
-            held = [self._held(one, scene, source) for one in _distinct(level)]
+            held = [self._all.held(one, scene, source) for one in _distinct(level)]
             whole = [one for one in held if one.holds]
             strong = [one for one in whole if one.strong]
             strong = [one for one in strong if not one.against] or strong
@@ -172,7 +110,7 @@ class Across:
         evidence = scene.evidence[source]
         for one in self._weak:
             fitted = _fitting(one, evidence)
-            held = self._held(fitted, scene, source) if fitted else None
+            held = self._all.held(fitted, scene, source) if fitted else None
             text = self._worded([held], source) if held and held.holds else ""
             if text:
                 return fitted, text
@@ -191,7 +129,7 @@ class Across:
         evidence = scene.evidence[source]
         for group in self._accepted:
             fits = [one for one in (_fitting(one, evidence) for one in group) if one]
-            held = [self._held(one, scene, source) for one in fits]
+            held = [self._all.held(one, scene, source) for one in fits]
             whole = [one for one in held if one.holds and one.strong]
             text = self._worded(whole, source)
             if text:
@@ -228,82 +166,6 @@ class Across:
                 if 0 < len(texts) <= MOST_NAMED:
                     return f"{text}; there, {' or '.join(texts)}"
         return text
-
-    def _held(self, one: Candidate, scene: Scene, source: str) -> Held:
-        """A candidate against every other scenario with evidence of the same source."""
-        held = Held(one, [scene])
-        for other in self.scenes.values():
-            evidence = other.evidence.get(source)
-            if other is scene or evidence is None or not evidence.finite:
-                continue
-            if held.contradicted:
-                break
-            tried = held.candidate.predicted(evidence)
-            if tried is None:
-                continue
-            if evidence.fits(tried):
-                if evidence.visible(tried):
-                    held.shown.append(other)
-                continue
-            if one.numbers is not None and evidence.clear:
-                self._with_own_numbers(held, other, source)
-            elif not evidence.visible(tried):
-                continue
-            elif bool(np.all(evidence.sound)):
-                held.against.append(other)
-            elif evidence.clear:
-                held.contradicted |= not self._explained(one, other, source)
-        if one.family is not None and one.family.name in LAWS and not one.fixed:
-            held.pairs = self._numbers(one.family, source)
-            if held.pairs:
-                law = law_of(held.pairs, LAWS[one.family.name], one.family.unit)
-                held.law = law
-        own = one.numbers
-        if held.numbers and not held.law and one.family is not None and own is not None:
-            known = [(s.features, s.evidence[source].system, p) for s, p in held.numbers]
-            known.append((scene.features, scene.evidence[source].system, own))
-            held.law = one.family.law(known) if one.family.law else ""
-        return held
-
-    def _with_own_numbers(self, held: Held, other: Scene, source: str) -> None:
-        """Numbers of another scenario: the same where these fit here too, and known better there.
-
-        What is known of them is what fits, on either side.
-        """
-        there = held.candidate.refitted(other.evidence[source])
-        if there is None:
-            held.contradicted = True
-            return
-        back = [one.evidence[source] for one in held.shown]
-        tried = [(one, there.predicted(one)) for one in back]
-        if all(made is not None and one.fits(made) for one, made in tried):
-            held.candidate = there
-        elif there.numbers is not None:
-            held.numbers.append((other, there.numbers))
-        held.shown.append(other)
-
-    def _explained(self, one: Candidate, other: Scene, source: str) -> bool:
-        """Whether a scenario shows this and one more thing that is wrong; worked out once."""
-        key = (one.key, other.name, source)
-        if key not in self._with_another:
-            self._with_another[key] = _with_another(one, other.evidence[source])
-        return self._with_another[key]
-
-    def _numbers(self, family: Family, source: str) -> list[tuple[Array, Array]]:
-        """Requested and acting numbers of a family, on every scenario that has them."""
-        found = list[tuple[Array, Array]]()
-        for scene in self.scenes.values():
-            evidence = scene.evidence.get(source)
-            if evidence is None or not family.starts(evidence.system):
-                continue
-            right = family.right(evidence.system)
-            more = Candidate((), family, right * (1.0 + TELLING)).predicted(evidence)
-            if evidence.fits(evidence.true) and (more is None or not evidence.visible(more)):
-                continue  # it shows nothing of these numbers
-            one = Candidate((), family, right).refitted(evidence)
-            if one is not None and one.numbers is not None:
-                found.append((right, one.numbers))
-        return found
 
     def _worded(self, whole: Sequence[Held], source: str) -> str:
         """Causes that hold everywhere; several where no scenario decides between them."""
@@ -344,15 +206,6 @@ def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:
     if made is not None and evidence.fits(made):
         return one
     return one.refitted(evidence)
-
-
-def _with_another(one: Candidate, evidence: Evidence) -> bool:
-    """Whether a scenario shows this and one more thing that is wrong."""
-    if one.reading is not None or one.terms is not None:
-        return False
-    known = [h for h in possible(evidence) if h.part not in one.parts]
-    made = [wrong_form((*one.fixed, h), evidence.system) for h in known]
-    return bool(evidence.fitting(made))
 
 
 def _distinct(level: Sequence[Candidate]) -> list[Candidate]:

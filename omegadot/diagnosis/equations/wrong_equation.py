@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from omegadot.diagnosis.equations.across import Across, Scene
+from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.describe import description, scenarios_in_common
 from omegadot.diagnosis.equations.evidence import (
     BEYOND_ROUNDING,
@@ -14,6 +14,7 @@ from omegadot.diagnosis.equations.evidence import (
     Evidence,
     of_forward_dynamics,
 )
+from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.quotient import difference_quotient
 from omegadot.diagnosis.models.misreadings import order_text, signed_orders
 from omegadot.diagnosis.reported.requests import place_cause

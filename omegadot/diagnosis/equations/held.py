@@ -1,0 +1,171 @@
+"""A cause that fits one scenario, held against all others of the run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.families import Family
+from omegadot.diagnosis.equations.hypotheses import wrong_form
+from omegadot.diagnosis.equations.search import Candidate, possible
+from omegadot.diagnosis.wording.features import Features, in_common
+from omegadot.diagnosis.wording.laws import law_of
+from omegadot.reference_impl.system import Array, Body, System
+
+TELLING = 1e-5  # relative: what a number must be known to
+LAWS = {
+    "damping": "the damping",
+    "gravity": "gravity",
+    "torque_body": "the torque in body axes",
+    "torque_world": "the torque in world axes",
+    "pivot": "the pivot",
+    "mass": "the mass in the dynamics",
+}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is kept of one scenario. evidence: by where it comes from.  held: the body read
+    back.
+    """
+
+    name: str
+    system: System
+    features: Features
+    evidence: dict[str, Evidence]
+    held: Body | None = None
+
+
+@dataclass
+class Held:
+    """A candidate held against the other scenarios.
+
+    shown: those where it can be seen and fits.  against: where it could be seen, and the engine is
+    right.  pairs: of a family's numbers, requested and acting.  numbers: by scenario, where they
+    had to be others; with these the candidate fits no two of them.
+    """
+
+    candidate: Candidate
+    shown: list[Scene] = field(default_factory=list)
+    against: list[Scene] = field(default_factory=list)
+    contradicted: bool = False
+    pairs: list[tuple[Array, Array]] = field(default_factory=list)
+    numbers: list[tuple[Scene, Array]] = field(default_factory=list)
+    law: str = ""
+
+    @property
+    def strong(self) -> bool:
+        """Whether one rule gives its numbers on every scenario."""
+        return not self.numbers or bool(self.law)
+
+    @property
+    def holds(self) -> bool:
+        """Whether no scenario is against it; numbers may be others, and right, elsewhere."""
+        return not self.contradicted and (not self.against or self.candidate.family is not None)
+
+    def where(self) -> str:
+        """Of numbers that act on some scenarios alone: on which."""
+        if not self.against or self.pairs:
+            return ""
+        shown, against = ([one.features for one in group] for group in (self.shown, self.against))
+        common = in_common(shown, against)
+        if common and len(common) <= 2:
+            return f", but only where {' or where '.join(common)}"
+        if self.numbers:
+            return ""  # what is seen elsewhere is not by these
+        return f", on {len(shown)} of the {len(shown) + len(against)} scenarios that would show it"
+
+
+class Scenes:
+    """The scenarios of one engine so far, by name."""
+
+    def __init__(self) -> None:
+        self.by_name: dict[str, Scene] = {}
+        self._with_another: dict[tuple[tuple[str, ...], str, str], bool] = {}
+
+    def held(self, one: Candidate, scene: Scene, source: str) -> Held:
+        """A candidate against every other scenario with evidence of the same source."""
+        held = Held(one, [scene])
+        for other in self.by_name.values():
+            evidence = other.evidence.get(source)
+            if other is scene or evidence is None or not evidence.finite:
+                continue
+            if held.contradicted:
+                break
+            tried = held.candidate.predicted(evidence)
+            if tried is None:
+                continue
+            if evidence.fits(tried):
+                if evidence.visible(tried):
+                    held.shown.append(other)
+                continue
+            if one.numbers is not None and evidence.clear:
+                self._with_own_numbers(held, other, source)
+            elif not evidence.visible(tried):
+                continue
+            elif bool(np.all(evidence.sound)):
+                held.against.append(other)
+            elif evidence.clear:
+                held.contradicted |= not self._explained(one, other, source)
+        if one.family is not None and one.family.name in LAWS and not one.fixed:
+            held.pairs = self._numbers(one.family, source)
+            if held.pairs:
+                law = law_of(held.pairs, LAWS[one.family.name], one.family.unit)
+                held.law = law
+        own = one.numbers
+        if held.numbers and not held.law and one.family is not None and own is not None:
+            known = [(s.features, s.evidence[source].system, p) for s, p in held.numbers]
+            known.append((scene.features, scene.evidence[source].system, own))
+            held.law = one.family.law(known) if one.family.law else ""
+        return held
+
+    def _with_own_numbers(self, held: Held, other: Scene, source: str) -> None:
+        """Numbers of another scenario: the same where these fit here too, and known better there.
+
+        What is known of them is what fits, on either side.
+        """
+        there = held.candidate.refitted(other.evidence[source])
+        if there is None:
+            held.contradicted = True
+            return
+        back = [one.evidence[source] for one in held.shown]
+        tried = [(one, there.predicted(one)) for one in back]
+        if all(made is not None and one.fits(made) for one, made in tried):
+            held.candidate = there
+        elif there.numbers is not None:
+            held.numbers.append((other, there.numbers))
+        held.shown.append(other)
+
+    def _explained(self, one: Candidate, other: Scene, source: str) -> bool:
+        """Whether a scenario shows this and one more thing that is wrong; worked out once."""
+        key = (one.key, other.name, source)
+        if key not in self._with_another:
+            self._with_another[key] = _with_another(one, other.evidence[source])
+        return self._with_another[key]
+
+    def _numbers(self, family: Family, source: str) -> list[tuple[Array, Array]]:
+        """Requested and acting numbers of a family, on every scenario that has them."""
+        found = list[tuple[Array, Array]]()
+        for scene in self.by_name.values():
+            evidence = scene.evidence.get(source)
+            if evidence is None or not family.starts(evidence.system):
+                continue
+            right = family.right(evidence.system)
+            more = Candidate((), family, right * (1.0 + TELLING)).predicted(evidence)
+            if evidence.fits(evidence.true) and (more is None or not evidence.visible(more)):
+                continue  # it shows nothing of these numbers
+            one = Candidate((), family, right).refitted(evidence)
+            if one is not None and one.numbers is not None:
+                found.append((right, one.numbers))
+        return found
+
+
+def _with_another(one: Candidate, evidence: Evidence) -> bool:
+    """Whether a scenario shows this and one more thing that is wrong."""
+    if one.reading is not None or one.terms is not None:
+        return False
+    known = [h for h in possible(evidence) if h.part not in one.parts]
+    made = [wrong_form((*one.fixed, h), evidence.system) for h in known]
+    return bool(evidence.fitting(made))
