@@ -25,6 +25,9 @@ from omegadot.commands.schemes.command import schemes
 from omegadot.commands.score.command import score
 from omegadot.commands.versions.command import versions
 
+# Windows has no SIGHUP.
+_ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+
 app = typer.Typer(
     name="omegadot",
     help="Check rigid-body physics engines against exact solutions.",
@@ -95,9 +98,12 @@ def main() -> None:
             _without_output()
         print(f"omegadot: {sentence}", file=sys.stderr)
         sys.exit(3 if _is_our_own(error) else 2)
+    finally:
+        ended_by = received[0] if received else signal.SIGINT
+        _as_before(received)
     if code == INTERRUPTED:  # the parser makes this number of Ctrl-C, and prints nothing
         print("omegadot: interrupted.", file=sys.stderr)
-        code = 128 + received[0] if received else INTERRUPTED
+        code = 128 + ended_by
     sys.exit(code if isinstance(code, int) else 0)
 
 
@@ -110,19 +116,28 @@ def _without_output() -> int:
 def _end_like_ctrl_c() -> list[int]:
     """Take SIGTERM and SIGHUP as Ctrl-C is taken, so that what there is gets written.
 
-    The list receives the signal's number. One that is ignored, as under nohup, stays so.
+    The list receives the signal's number; after the first, what there is gets written without
+    another interruption. One that is ignored, as under nohup, stays so.
     """
     received: list[int] = []
 
     def interrupt(number: int, _: object) -> None:
-        received.append(number)
-        raise KeyboardInterrupt
+        if not received:
+            received.append(number)
+            raise KeyboardInterrupt
 
-    for name in ("SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)  # Windows has no SIGHUP
-        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+    for number in _ENDING:
+        if signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, interrupt)
     return received
+
+
+def _as_before(received: list[int]) -> None:
+    """As the command is done: a signal that comes while Python leaves raises nothing there."""
+    received.append(0)
+    for number in _ENDING:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, signal.SIG_DFL)
 
 
 def _is_our_own(error: Exception) -> bool:

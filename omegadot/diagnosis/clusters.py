@@ -134,10 +134,13 @@ def _clusters(judged: JudgedCase) -> Iterator[Cluster]:
     if truth is None:
         return
     for sweep in judged.case.sweeps:
+        runs = _runs(truth, judged.engines, sweep)
+        if not runs:  # of a trace there may be fewer samples than a sweep has
+            continue
         schemes, rate = _schemes(truth, sweep), truth.yardstick.rate
         bound = _bound(truth, sweep, truth.growth[truth.rows(sweep)])
         solution = _MeasuredRun("exact", None, truth.at(sweep), bound)
-        for group in _grouped(_runs(truth, judged.engines, sweep), rate):
+        for group in _grouped(runs, rate):
             names, equal = tuple(run.name for run in group), _named(group, schemes, rate)
             scheme, also = next(iter(equal), None), tuple(equal[1:])
             exact = all(_alike(solution, group, rate))

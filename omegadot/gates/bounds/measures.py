@@ -66,8 +66,8 @@ class Yardstick:
         In single precision the rounding of every step shows, and what is stepped may be the angular
         momentum: omega is then off by ``|J omega| / lambda``, lambda J's least eigenvalue.
         """
-        other = self.of_momentum() if eps > EPS else copy(self)
-        other.eps = eps
+        other = copy(self)
+        other.eps, other.per_rounding = eps, self._momentum if eps > EPS else 1.0
         return other
 
     def of_momentum(self) -> Yardstick:

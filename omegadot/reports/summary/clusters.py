@@ -102,7 +102,7 @@ def _cluster(
     apart = tuple(s for s in scenarios if not all(pair.get(s, True) for pair in pairs))
     together = tuple(s for s in scenarios if s not in apart)
     equal = [
-        {cluster["scheme"], *cluster.get("also", ())} - {None}
+        [name for name in (cluster["scheme"], *cluster.get("also", ())) if name is not None]
         for cluster in clusters
         if cluster["scenario"] in together
         and not cluster.get("exact")
