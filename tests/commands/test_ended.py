@@ -62,7 +62,10 @@ def test_a_signal_writes_what_there_is_beside_an_earlier_record(folder: Path, na
     running, workers = begun(folder)
     number = getattr(signal, name)
     running.send_signal(number)
-    printed, _ = running.communicate(timeout=30.0)
+    try:
+        printed, _ = running.communicate(timeout=60.0)
+    finally:
+        running.kill()
     assert running.returncode == 128 + number
     assert "The earlier record in out is kept: this run was interrupted." in printed
     assert "Traceback" not in printed
