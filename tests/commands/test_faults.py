@@ -24,7 +24,6 @@ from omegadot.harness.random_cases import random_case
 from omegadot.scenarios.random_traits import BLOCK
 
 SEED = 20
-# Until causes are sought for them.
 # Their causes are stated less closely than by these phrases, or not at all.
 UNDIAGNOSED = (
     *("LastIntervalWhole", "StepInMicroseconds", "TurnHeld", "WorldTorqueByFirstAttitude"),
