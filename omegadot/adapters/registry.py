@@ -86,7 +86,7 @@ def build_adapter(target: str, setup: Setup = "physics", via: str = "") -> Adapt
         raise AdapterError(f"{target}: not an adapter; give module:Class or FILE.py:Class.")
     module = _import_target(module_name)
     factory: Callable[..., Adapter] | None = getattr(module, class_name, None)
-    if factory is None:
-        raise AdapterError(f"{target}: {module_name} has no {class_name}; check the class name.")
+    if not callable(factory):
+        raise AdapterError(f"{target}: {module_name} has no class {class_name}; check its name.")
     adapter = factory(setup=setup)
     return through_file(adapter, via) if via else adapter

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import io
 import os
@@ -88,7 +89,7 @@ def main() -> None:
         sys.stdout.flush()
     except (typer.Abort, KeyboardInterrupt):
         code = INTERRUPTED
-    except BrokenPipeError:  # what reads it has enough, as head has
+    except (BrokenPipeError, SystemExit):  # what reads it has enough; the parser ends there
         code = _without_output()
     except Exception as error:
         sentence = _sentence(error)
@@ -96,15 +97,20 @@ def main() -> None:
             raise
         if isinstance(error, OSError):
             _without_output()
-        print(f"omegadot: {sentence}", file=sys.stderr)
+        _print_error(sentence)
         sys.exit(3 if _is_our_own(error) else 2)
     finally:
         ended_by = received[0] if received else signal.SIGINT
         _as_before(received)
     if code == INTERRUPTED:  # the parser makes this number of Ctrl-C, and prints nothing
-        print("omegadot: interrupted.", file=sys.stderr)
+        _print_error("interrupted.")
         code = 128 + ended_by
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _print_error(sentence: str) -> None:
+    with contextlib.suppress(OSError):  # of a full disk the exit code is all that can be reported
+        print(f"omegadot: {sentence}", file=sys.stderr, flush=True)
 
 
 def _without_output() -> int:

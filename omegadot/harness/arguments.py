@@ -112,7 +112,7 @@ def integrators_chosen(choice: EngineChoice, description: Description) -> tuple[
     for wanted in choice.integrators:
         if wanted not in names:
             raise UsageError(
-                f"--engine {choice.name}:{wanted}: {choice.name} {description.version} has no "
+                f"{choice.name}:{wanted}: {choice.name} {description.version} has no "
                 f"integrator {wanted!r}; {nearest(wanted, names)}."
             )
     return tuple(i for i in description.integrators if i.name in (choice.integrators or names))
@@ -127,6 +127,8 @@ def scenarios_of(wanted: Sequence[ScenarioLike]) -> list[Scenario]:
     origin: dict[str, ScenarioLike] = {}
     for given in wanted or builtin_names():
         found = scenario(given)
+        if seen.get(found.name) == found:  # given twice
+            continue
         if found.name in seen:
             raise UsageError(
                 f"{_origin(given)}: its name {found.name!r} is that of "

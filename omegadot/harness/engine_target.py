@@ -34,7 +34,14 @@ def target_of(engine: EngineLike) -> str:
     """
     if not isinstance(engine, str):
         return _target_of_class(engine)
-    return f"{engine}:{_class_in(Path(engine))}" if engine.endswith(".py") else engine
+    if engine.endswith(".py"):
+        return f"{engine}:{_class_in(Path(engine))}"
+    file, _, name = engine.rpartition(":")
+    if file.endswith(".py") and not Path(file).is_file():
+        raise UsageError(f"{file}: no such adapter file; check the path.")
+    if not name or ".py:" in file:
+        raise UsageError(f"{engine}: not one class of one file; give FILE.py:Class.")
+    return engine
 
 
 def _target_of_class(engine: object) -> str:
@@ -68,7 +75,9 @@ def _class_in(path: Path) -> str:
         body = ast.parse(path.read_text(encoding="utf-8")).body
     except OSError:
         raise UsageError(f"{path}: no such adapter file; check the path.") from None
-    except (SyntaxError, ValueError):
+    except SyntaxError as error:
+        raise UsageError(f"{path}, line {error.lineno}: {error.msg}; correct it.") from None
+    except ValueError:  # a null byte, or no UTF-8
         raise UsageError(f"{path}: not a Python file; give FILE.py:Class.") from None
     names = [node.name for node in body if isinstance(node, ast.ClassDef)]
     named = [name for name in names if name.endswith("Adapter")] or names

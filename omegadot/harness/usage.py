@@ -20,9 +20,10 @@ class UsageError(ValueError):
 def nearest(term: str, known: Iterable[str]) -> str:
     """Advice: the nearest valid name, or, where none is near, all of them."""
     names = sorted(set(known))
-    close = difflib.get_close_matches(term, names, 1)
+    by_lower = {name.lower(): name for name in names}
+    close = difflib.get_close_matches(term.lower(), by_lower, 1)
     if close:
-        return f"write {close[0]}"
+        return f"write {by_lower[close[0]]}"
     *first, last = names
     return f"choose {', '.join(first)} or {last}" if first else f"choose {last}"
 

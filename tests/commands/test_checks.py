@@ -21,9 +21,10 @@ from omegadot.commands.check.result import (
 )
 from omegadot.commands.check.select import Arguments, select
 from omegadot.gates.rows import Row
-from omegadot.harness.arguments import case_of
+from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
 from omegadot.scenarios import load_builtin
+from omegadot.scenarios import scenario as omegadot_scenario
 
 MUJOCO = Subject("mujoco", "4.0.0", ("RK4",), ("Euler", "RK4"))
 
@@ -172,6 +173,8 @@ def test_outcomes_stay_apart(name: str, code: int, text: str, tmp_path: Path) ->
         ("mujoco", Arguments(update=True), "--baseline DIR"),
         ("mujoco", Arguments(exceptions=["nowhere.toml"]), "nowhere.toml"),
         ("nowhere.py", Arguments(), "no such adapter file"),
+        ("nowhere.py:Mine", Arguments(), "no such adapter file"),
+        ("mine.py:Mine:rk4", Arguments(), "give FILE.py:Class"),
     ],
 )
 def test_wrong_usage_is_one_sentence(adapter: str, arguments: Arguments, message: str) -> None:
@@ -185,6 +188,23 @@ def test_wrong_usage_is_found_where_the_engine_knows_better(tmp_path: Path) -> N
     result = omegadot("check", "mujoco", "--integrator", "RK5", folder=tmp_path)
     assert (result.code, result.out) == (2, "")
     assert "write RK4" in result.err
+
+
+@pytest.mark.parametrize("name", ["Nope", "np"])
+def test_what_is_no_class_is_named_as_such(name: str, tmp_path: Path) -> None:
+    result = omegadot("check", f"{FAULTY}:{name}", "--scenario", "sphere", folder=tmp_path)
+    assert result.code == 3
+    assert f"has no class {name}; check its name" in result.out
+
+
+def test_a_scenario_given_twice_is_one() -> None:
+    assert len(scenarios_of(["sphere", "sphere"])) == 1
+
+
+def test_two_scenarios_of_one_name_are_refused() -> None:
+    other = omegadot_scenario("sphere", run={"duration": 1.0})
+    with pytest.raises(UsageError, match="of its own"):
+        scenarios_of(["sphere", other])
 
 
 def test_json_gives_every_check_its_parts(tmp_path: Path) -> None:

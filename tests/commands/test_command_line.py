@@ -133,7 +133,6 @@ def test_an_earlier_record_gives_way_and_nothing_else_does(tmp_path: Path) -> No
         (("run", "sphere", "--out", "x" * 300), "cannot be written"),
         (("run", "sphere", "--out", "/dev/null/x"), "cannot be written"),
         (("run", "sphere", "--setup", "racing"), "racing"),
-        (("run", "sphere", "sphere"), "name of its own"),
         (("run", "sphere", "--adapter", "mine"), "no class is named"),
         (("run", "sphere", "--speed"), "--speed"),
         (("run", "sphere", "--timeout", "-1"), "--timeout"),
@@ -161,6 +160,22 @@ def test_an_output_that_is_full_or_closed_is_one_sentence(arguments: str, tmp_pa
     shell = ["sh", "-c", '"$@" >&-', "sh", *command]
     done = subprocess.run(shell, cwd=tmp_path, stderr=subprocess.PIPE, text=True, check=False)
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
+def test_the_exit_code_stands_where_nothing_can_be_reported(tmp_path: Path) -> None:
+    shell = ["sh", "-c", '"$@" 2>/dev/full', "sh", *PROGRAM, "check", "mujocco"]
+    done = subprocess.run(shell, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+
+
+@pytest.mark.parametrize("reader", ["head -1", "true"])
+def test_the_exit_code_of_a_closed_pipe(reader: str, tmp_path: Path) -> None:
+    script = f'("$@"; echo $? >code) | {reader}'
+    shell = ["sh", "-c", script, "sh", *PROGRAM, "scenarios"]
+    done = subprocess.run(shell, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+    assert (tmp_path / "code").read_text() in ("0\n", "3\n")  # 0: all was written before
 
 
 def test_a_reader_that_has_enough_is_no_error(tmp_path: Path) -> None:

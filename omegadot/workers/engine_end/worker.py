@@ -20,7 +20,7 @@ from functools import partial
 from typing import Any, BinaryIO, cast
 
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
-from omegadot.adapters.registry import BUILT_IN, build_adapter
+from omegadot.adapters.registry import BUILT_IN, AdapterError, build_adapter
 from omegadot.workers.engine_end.checked import description_of
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
@@ -72,7 +72,7 @@ def _built(target: str, setup: Setup, via: str) -> tuple[Adapter | None, bytes]:
     """The adapter, with the frame that holds its description; None where it cannot be built."""
     try:
         adapter = build_adapter(target, setup, via)
-    except ImportError as error:
+    except (AdapterError, ImportError) as error:
         missing = {"outcome": "not-installed", "reason": one_line(_text_of(error))}
         return None, encode_frame(missing)
     except BaseException as error:
