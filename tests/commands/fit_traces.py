@@ -1,7 +1,6 @@
 """Traces of bodies that are known, made without the project's own code, and ``omegadot fit``."""
 
 import json
-import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,9 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
-from score_line import Result
-
-from omegadot.commands.cli import main
+from score_line import Result, run_command
 
 AXES = Rotation.from_rotvec([0.3, -0.2, 0.5]).as_matrix()  # of the body, in the gyro's axes
 MOMENTS = np.array([0.5, 0.8, 1.0])
@@ -66,15 +63,7 @@ def write_trace(
 
 def run_fit(capsys: pytest.CaptureFixture[str], *arguments: object) -> Result:
     """``omegadot fit`` with these arguments, in this process."""
-    before = sys.argv
-    sys.argv = ["omegadot", "fit", *map(str, arguments)]
-    try:
-        with pytest.raises(SystemExit) as ended:
-            main()
-    finally:
-        sys.argv = before
-    text = capsys.readouterr()
-    return Result(int(ended.value.code or 0), text.out, text.err)
+    return run_command(capsys, "fit", *arguments)
 
 
 def fitted(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict:

@@ -79,8 +79,13 @@ class Result:
 
 def run_score(capsys: pytest.CaptureFixture[str], *arguments: object) -> Result:
     """``omegadot score`` with these arguments, in this process."""
+    return run_command(capsys, "score", *arguments)
+
+
+def run_command(capsys: pytest.CaptureFixture[str], *arguments: object) -> Result:
+    """``omegadot`` with these arguments, in this process."""
     before = sys.argv
-    sys.argv = ["omegadot", "score", *map(str, arguments)]
+    sys.argv = ["omegadot", *map(str, arguments)]
     try:
         with pytest.raises(SystemExit) as ended:
             main()

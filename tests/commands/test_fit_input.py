@@ -89,6 +89,43 @@ def test_the_scenario_scores_the_trace_that_it_was_fitted_to(tmp_path, capsys, t
     assert tomllib.loads(out.read_text())["run"]["duration"] == TIMES[-1]
 
 
+@pytest.mark.parametrize("unit", ["rad/s", "deg/s"])
+def test_the_bias_is_passed_on_and_subtracted(tmp_path, capsys, unit):
+    """In the axes and the unit of the trace; what remains is noise, at the first sample too."""
+    truth = Truth(bias=np.array([0.03, -0.02, 0.05]))
+    path = write_trace(tmp_path / "gyro.csv", truth, np.linspace(0.0, 12.0, 601), 0.01, 3)
+    if unit == "deg/s":
+        rows = np.loadtxt(path, delimiter=",", skiprows=1)
+        rows[:, 1:] = np.rad2deg(rows[:, 1:])
+        np.savetxt(path, rows, "%.17g", ",", header="time,wx,wy,wz", comments="")
+    axes = ("--rate-unit", unit, "--body-axes", "y,z,x")
+    out = tmp_path / "fitted.toml"
+    result = run_fit(capsys, path, *axes, "--bias", "--no-damping", "--out", out)
+    assert result.code == 0, result.err
+    line = next(line for line in result.out.splitlines() if line.startswith("Score the trace: "))
+    arguments = shlex.split(line.removeprefix("Score the trace: "))[1:]
+    given = next(text for text in arguments if text.startswith("--omega-bias="))
+    found = np.array([float(part) for part in given.partition("=")[2].split(",")])
+    assert np.abs(found * np.deg2rad(1.0) ** (unit == "deg/s") - truth.bias).max() < 0.01
+    score = run_score(capsys, *arguments[1:], "--out", tmp_path / "score")
+    assert "The remaining error of omega looks like noise" in score.out
+    assert "The first sample is not" not in score.out
+    without = [text for text in arguments[1:] if text != given]
+    score = run_score(capsys, *without, "--out", tmp_path / "score")
+    assert "The first sample is not the scenario's state: omega" in score.out
+
+
+def test_units_that_cannot_be_are_questioned(tmp_path, capsys):
+    path = write_trace(tmp_path / "ms.csv", Truth(), TIMES)
+    rows = np.loadtxt(path, delimiter=",", skiprows=1)
+    rows[:, 0] *= 1e3
+    np.savetxt(path, rows, "%.17g", ",", header="time,wx,wy,wz", comments="")
+    result = run_fit(capsys, path)
+    assert result.code == 2
+    assert "read in rad/s and s, the body turns by" in result.err
+    assert "--time-unit" in result.err
+
+
 def test_a_window_in_other_units_is_scored_from_its_start(tmp_path, capsys):
     """Times in ms from 12 s on, omega in deg/s: the options are passed on, with the offset."""
     truth = Truth(damping=0.02)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.commands.fit.estimates import estimates_of
+from omegadot.commands.fit.estimates import Estimates, estimates_of
 from omegadot.commands.fit.models import Terms, compare_models
 from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.samples import samples_of
@@ -89,7 +89,7 @@ def fit(
         compared,
         found_out,
         found,
-        _options(columns, mapped, settings, reading),
+        [*_options(columns, mapped, settings, reading), *_bias(own, reading)],
     )
 
 
@@ -104,6 +104,15 @@ def _options(
         if key != "time-offset" or value != "0":
             found += [f"--{key}", repr(value) if isinstance(value, float) else str(value)]
     return found
+
+
+def _bias(own: Estimates, reading: Reading) -> list[str]:
+    """The option by which `score` subtracts a bias, in the unit and the axes of the trace."""
+    how = reading.how
+    if not np.any(own.bias) or how.omega_frame == "world":
+        return []
+    inner = own.bias @ how.body_axes / how.scale_of("rate")
+    return ["--omega-bias=" + ",".join(f"{part:.6g}" for part in inner)]
 
 
 _READING = (

@@ -59,7 +59,7 @@ def samples_of(reading: Reading) -> Samples:
         )
     turned = None if trace.orientation is None else normalize(trace.orientation)
     found = Samples(file, trace.times, omega, turned, _digits(trace))
-    _check(found)
+    _check(found, f"{reading.how.rate_unit} and {reading.how.time_unit}")
     return found
 
 
@@ -74,8 +74,8 @@ def _digits(trace: Trace) -> tuple[float, float]:
     return omega, turn
 
 
-def _check(found: Samples) -> None:
-    """Raise TraceError where nothing can be fitted."""
+def _check(found: Samples, units: str) -> None:
+    """Raise TraceError where nothing can be fitted. units: in which omega and times were read."""
     count = len(found.times)
     if count < LEAST_SAMPLES:
         raise TraceError(
@@ -87,6 +87,12 @@ def _check(found: Samples) -> None:
             "of its moments, so give a trace of one that turns."
         )
     turned = float(found.data(np.zeros(3)).turned[-1])
+    if turned > np.pi * (count - 1):
+        raise TraceError(
+            f"{found.file}: read in {units}, the body turns by {turned / (count - 1):.3g} rad from "
+            "sample to sample, more than samples can show; give the units of the file with "
+            "--rate-unit and --time-unit."
+        )
     if turned > MOST_TURNED:
         raise TraceError(
             f"{found.file}: the body turns by {turned:.0f} rad; fit a part of at most "

@@ -80,6 +80,10 @@ def score(
     world_origin: Annotated[
         Text, _option("X,Y,Z", "The scenario's world origin, as a position of the trace.")
     ] = None,
+    omega_bias: Annotated[
+        Text,
+        _option("X,Y,Z", "A constant of the gyro, subtracted from omega, in its unit and axes."),
+    ] = None,
     integrator_scheme: Annotated[
         Text, _option("NAME", "Integration scheme that produced the trace.")
     ] = None,

@@ -38,6 +38,7 @@ class Convention:
     the window that is used.
     world_rate: (3,) rad/s, the angular velocity of the trace's world in the scenario's, in the
     trace's axes.  world_origin: (3,) m, the origin of the scenario's world as the trace has it.
+    omega_bias: (3,) rad/s, a constant that is subtracted from omega, in the trace's axes.
     """
 
     time_unit: str = "s"
@@ -57,6 +58,7 @@ class Convention:
     to_time: float | str | None = None
     world_rate: Array = field(default_factory=lambda: np.zeros(3))
     world_origin: Array = field(default_factory=lambda: np.zeros(3))
+    omega_bias: Array = field(default_factory=lambda: np.zeros(3))
 
     def scale_of(self, kind: str) -> float:
         """The SI value of the unit of ``time``, ``angle``, ``rate`` or ``length``."""
@@ -83,7 +85,7 @@ def convention_of(settings: Mapping[str, Any]) -> Convention:
     given = {SETTINGS[key]: value for key, value in settings.items()}
     for name in {"world_axes", "body_axes"} & set(given):
         given[name] = axes_of(given[name], option_of(name))
-    for name in {"world_rate", "world_origin"} & set(given):
+    for name in {"world_rate", "world_origin", "omega_bias"} & set(given):
         given[name] = vector_of(given[name], option_of(name))
     rate = given.get("rate")
     if rate is not None and not (np.isfinite(rate) and rate > 0.0):
@@ -102,6 +104,7 @@ def convention_of(settings: Mapping[str, Any]) -> Convention:
         found,
         **units,
         world_rate=UNITS["rate"][units["rate_unit"]] * found.world_rate,
+        omega_bias=UNITS["rate"][units["rate_unit"]] * found.omega_bias,
         world_origin=UNITS["length"][units["length_unit"]] * found.world_origin,
     )
     axes = found.euler

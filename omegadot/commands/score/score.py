@@ -92,6 +92,7 @@ def score(
     to_time: float | str | None = None,
     world_rate: str | None = None,
     world_origin: str | None = None,
+    omega_bias: str | None = None,
     integrator_scheme: str | None = None,
     timestep: float | None = None,
     attitude: str | None = None,
@@ -109,7 +110,7 @@ def score(
     """Score a trajectory of any simulator, or a log, against a scenario's exact solution.
 
     trace: a CSV or Parquet file.  scenario: what it is a motion of.
-    columns, map_file, and the settings from time_unit to world_origin: how it is to be read,
+    columns, map_file, and the settings from time_unit to omega_bias: how it is to be read,
     as of the command.  integrator_scheme, timestep (s): how it was stepped, where that is known.
     attitude to flip_time: the largest errors allowed, each a text with its unit (``"0.1deg"``).
     name: what the trace is called in the record.  engines: to be run in addition, by name.

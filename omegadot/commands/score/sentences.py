@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 import numpy as np
 
 from omegadot.commands.score.axes_sentences import axes_sentences
@@ -86,11 +88,14 @@ def _late(found: Judged) -> list[str]:
 
 def _start(found: Judged) -> list[str]:
     lines = []
+    noise = found.shift and scatter(found.shift)
+    # Four standard deviations in each axis are still noise.
+    noisy = {found.shift.of: 4.0 * sqrt(3.0) * noise} if found.shift and noise else {}
     if found.trace.times[0] > 0.0:
         lines.append(f"The first sample is {found.trace.times[0]:g} s after the scenario's start.")
     for channel in ("attitude", "omega", "position"):
         error = found.error.get(channel)
-        if error is not None and error[0] > found.bound[channel][0]:
+        if error is not None and error[0] > max(found.bound[channel][0], noisy.get(channel, 0.0)):
             factor, unit = factor_of(found, channel)
             lines.append(
                 f"The first sample is not the scenario's state: {channel} is off by "

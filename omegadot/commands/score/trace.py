@@ -53,7 +53,8 @@ def trace_of(reading: Reading, system: System) -> Trace:
     for name, group in (("angular_velocity", "w"), ("omega_dot", "a")):
         if parts := reading.group(group):
             unit = how.scale_of("rate")
-            moved[name] = _in_body(reading, unit * parts[0], orientation)
+            bias = how.omega_bias if group == "w" else 0.0
+            moved[name] = _in_body(reading, unit * parts[0] - bias, orientation)
             opened[name] = unit * norm(parts[1])
             if how.omega_frame == "world":
                 opened[name] = opened[name] + norm(moved[name]) * opened["orientation"]
