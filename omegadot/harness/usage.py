@@ -46,7 +46,9 @@ def check_number(option: str, value: object, least: float) -> None:
         raise UsageError(f"{option} {value}: give a number {limit}.")
 
 
-def check_count(option: str, value: object, least: int) -> None:
-    """Raise UsageError unless it is a whole number, from `least` on."""
+def check_count(option: str, value: object, least: int, most: int | None = None) -> None:
+    """Raise UsageError unless it is a whole number, from `least` on, up to `most`."""
     if not isinstance(value, Integral) or int(value) < least:
         raise UsageError(f"{option} {value}: give a whole number of at least {least}.")
+    if most is not None and int(value) > most:
+        raise UsageError(f"{option} {value}: give a whole number of at most {most}.")

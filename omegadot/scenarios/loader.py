@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from omegadot.scenarios.errors import Phrase, ScenarioError, describe, printable
 from omegadot.scenarios.files import read_toml
 from omegadot.scenarios.model import Scenario
-from omegadot.scenarios.random_systems import random_of_name
+from omegadot.scenarios.random_systems import LARGEST_SEED, MOST_SYSTEMS, random_of_name
 from omegadot.scenarios.refusals import nearest, scenario_error
 
 BUILTIN = Path(__file__).with_name("builtin")
@@ -66,6 +66,11 @@ def scenario_of(data: Mapping[str, Any], file: str) -> Scenario:
 
 
 def _other_name(name: str) -> str:
+    if name.startswith("random-"):
+        return (
+            f"write random-SEED-INDEX, with a seed of at most {LARGEST_SEED} and an index below "
+            f"{MOST_SYSTEMS}"
+        )
     near = nearest(name, list(builtin_names()))
     if near:
         return f"write {near} if that is what you mean"

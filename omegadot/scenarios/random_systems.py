@@ -24,6 +24,7 @@ from omegadot.scenarios.random_traits import BLOCK, drawn
 
 __all__ = ["BLOCK", "random_names", "random_of_name", "random_scenario"]
 
+LARGEST_SEED, MOST_SYSTEMS = 999_999_999, 1_000_000  # nine digits and six, as in NAME
 NAME = re.compile(r"random-(0|[1-9]\d{0,8})-(0|[1-9]\d{0,5})")
 
 

@@ -172,6 +172,8 @@ def test_outcomes_stay_apart(name: str, code: int, text: str, tmp_path: Path) ->
         ("mujoco:RK4", Arguments(), "--integrator RK4"),
         ("mujoco", Arguments(update=True), "--baseline DIR"),
         ("mujoco", Arguments(exceptions=["nowhere.toml"]), "nowhere.toml"),
+        ("mujoco", Arguments(random=1_000_001), "--random 1000001: give a whole number of at most"),
+        ("mujoco", Arguments(seed=10**9), "--seed 1000000000: give a whole number of at most"),
         ("nowhere.py", Arguments(), "no such adapter file"),
         ("nowhere.py:Mine", Arguments(), "no such adapter file"),
         ("mine.py:Mine:rk4", Arguments(), "give FILE.py:Class"),

@@ -101,7 +101,9 @@ def test_two_bodies_of_a_block_turn_far_and_steadily(seed: int) -> None:
         assert max(one.run.timesteps) * rate > np.pi / 4  # where some engines cap a turn
 
 
-@pytest.mark.parametrize("name", ["random-0", "random-00-1", "random-0-1-2", "random--1-0"])
+@pytest.mark.parametrize(
+    "name", ["random-0", "random-00-1", "random-0-1-2", "random--1-0", "random-0-1000000"]
+)
 def test_other_names_are_no_random_systems(name: str) -> None:
     with pytest.raises(ScenarioError, match="neither a built-in scenario nor a file"):
         scenario(name)

@@ -21,7 +21,7 @@ from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, check_count
 from omegadot.scenarios import Scenario, ScenarioLike, scenario
-from omegadot.scenarios.random_systems import random_names
+from omegadot.scenarios.random_systems import LARGEST_SEED, MOST_SYSTEMS, random_names
 from omegadot.scenarios.random_traits import BLOCK
 
 
@@ -96,7 +96,7 @@ def _drawn(arguments: Arguments, named: set[str]) -> list[Scenario]:
     count = arguments.random
     if count is None:
         count = 0 if arguments.scenarios else BLOCK
-    check_count("--random", count, 0)
-    check_count("--seed", arguments.seed, 0)
+    check_count("--random", count, 0, MOST_SYSTEMS)
+    check_count("--seed", arguments.seed, 0, LARGEST_SEED)
     names = random_names(arguments.seed, count)
     return [scenario(name) for name in names if name not in named]

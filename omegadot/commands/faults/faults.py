@@ -15,6 +15,7 @@ from omegadot.commands.faults.prepared import Pool
 from omegadot.commands.progress import Count, Reporting, reporting
 from omegadot.harness.arguments import several
 from omegadot.harness.usage import UsageError, check_count, nearest
+from omegadot.scenarios.random_systems import LARGEST_SEED, MOST_SYSTEMS
 
 ENGINES = tuple(name for name in BUILT_IN if name != "exact")  # the truth cannot be wrong
 
@@ -58,8 +59,8 @@ def faults(
     random: systems for each fault, those of `check`.  seed: theirs.
     Raises UsageError for an engine that is unknown or not installed.
     """
-    check_count("--random", random, 1)
-    check_count("--seed", seed, 0)
+    check_count("--random", random, 1, MOST_SYSTEMS)
+    check_count("--seed", seed, 0, LARGEST_SEED)
     given: list[str] = several(engines)
     names = list(dict.fromkeys(given)) or ["reference"]
     for name in names:
