@@ -1,6 +1,7 @@
 """The checks: what they are called, what they report, and `omegadot check`."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -145,6 +146,10 @@ def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
     assert "omega_dot: residual" in result.out
     assert "Likely cause: the gyroscopic term is missing." in result.out
     assert "FAIL  nogyroscopic-quick-model" not in result.out
+    explained = re.search(r"What explains the (\d+) failures:\n +(\d+)  (.*)\n", result.out)
+    assert explained is not None
+    assert explained[1] == explained[2] == str(result.out.count("FAIL  "))
+    assert explained[3].startswith("the gyroscopic term is missing (equation and ")
 
 
 @pytest.mark.parametrize(

@@ -55,6 +55,9 @@ def sentence(row: Row) -> str:
     return f"{message} ({row.note})" if row.note else message
 
 
+CAUSE = " Likely cause: "
+
+
 def failure(rows: Sequence[Row], cause: str = "") -> str:
     """The failing rows of one gate: the worst in full, the other channels by name."""
     failing = [row for row in rows if row.verdict == "fail"]
@@ -63,7 +66,7 @@ def failure(rows: Sequence[Row], cause: str = "") -> str:
     message = sentence(worst)
     if others:
         message += f"; {listed(list(others))} {'fail' if len(others) > 1 else 'fails'} as well"
-    return f"{message}. Likely cause: {cause.rstrip('.')}." if cause else f"{message}."
+    return f"{message}.{CAUSE}{cause.rstrip('.')}." if cause else f"{message}."
 
 
 # The answers, besides runs, that a gate of a scenario judges.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import typer
 from rich.console import Console
@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.commands.check.check import CheckResult
+from omegadot.commands.check.judge import CAUSE
 from omegadot.commands.check.result import Check, Result, Verdict, coverage
 from omegadot.commands.check.shrink import Failing
 from omegadot.commands.options import exit_code
@@ -21,6 +22,7 @@ from omegadot.reports.text.numbers import listed, times
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
 STYLES = {"error": "bold magenta", "fail": "bold red", "declared": "yellow", "skip": "dim"}
 WIDTH_WHEN_PIPED = 200
+MOST_CAUSES = 8
 
 
 def _cell(verdicts: Counter[Verdict]) -> Text:
@@ -59,6 +61,26 @@ def _grouped(results: Mapping[Check, Result], verdict: str) -> dict[str, list[Ch
         if result.verdict == verdict:
             found.setdefault(result.message, []).append(check)
     return found
+
+
+def _causes(failures: Mapping[str, Sequence[Check]]) -> list[str]:
+    """How many failures each cause explains, and in which integrators; none where one line says it.
+
+    failures: the checks by their message.
+    """
+    if len(failures) < 2:
+        return []
+    explained: dict[str, list[Check]] = {}
+    for message, checks in failures.items():
+        cause = message.partition(CAUSE)[2].rstrip(".") or "no cause found"
+        explained.setdefault(cause, []).extend(checks)
+    ranked = sorted(explained.items(), key=lambda item: -len(item[1]))
+    lines = [f"What explains the {sum(map(len, explained.values()))} failures:"]
+    for cause, checks in ranked[:MOST_CAUSES]:
+        names = listed(sorted({check.integrator or check.gate for check in checks}))
+        lines.append(f"    {len(checks):4d}  {cause} ({names})")
+    rest = [checks for _, checks in ranked[MOST_CAUSES:]]
+    return lines + [f"    {sum(map(len, rest)):4d}  others, named above"] * bool(rest)
 
 
 def print_json(found: CheckResult) -> None:
@@ -100,6 +122,8 @@ def print_checks(found: CheckResult) -> None:
             for check in checks:
                 console.print(Text(f"{verdict.upper()}  {check.id}", STYLES[verdict]))
             console.print(Text(f"    {message}"))
+    for line in _causes(_grouped(results, "fail")):
+        console.print(Text(line))
     for reason, checks in _grouped(results, "skip").items():
         console.print(Text(f"skip  {times(len(checks), 'check')}: {reason}", "dim"))
     for line in (*found.only_skipped, *(f"Baseline written: {path}" for path in found.baselines)):
