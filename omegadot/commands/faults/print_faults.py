@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Sequence
 from typing import Any
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
 from omegadot.commands.faults.detect import GATES
 from omegadot.commands.faults.faults import FaultsResult
 from omegadot.commands.faults.matrix import POSES, SOUND, Detection, EngineMatrix, of_several
 from omegadot.commands.faults.published_checks import PUBLISHED
+from omegadot.reports.text.text_grid import plain_console
 
 HEADS = ("fault", "built-in", *GATES, "one system", "24 systems", "no scheme", "cause named")
 WIDTH_WHEN_PIPED = 200
@@ -31,7 +30,7 @@ def print_faults(found: FaultsResult, form: str) -> None:
 
 
 def _print_text(matrices: Sequence[EngineMatrix]) -> None:
-    console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
+    console = plain_console(WIDTH_WHEN_PIPED)
     for matrix in matrices:
         title = f"Per cent of the random systems on which each fault over {matrix.engine} is caught"
         table = Table(title=title, title_justify="left", title_style="bold", box=None)

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import json
 import shlex
-import sys
 from pathlib import Path
 
 import numpy as np
 import typer
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.sentences import direction
 from omegadot.reference_impl.system import Array
+from omegadot.reports.text.text_grid import plain_console
 
 WIDTH_WHEN_PIPED = 200
 EPS = float(np.finfo(float).eps)
@@ -29,7 +28,7 @@ def print_json(result: FitResult) -> None:
 
 def print_text(result: FitResult, out: Path | None) -> None:
     """Moments and axes, the other numbers, the models, the sentences, and how to go on."""
-    console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
+    console = plain_console(WIDTH_WHEN_PIPED)
     samples = result.samples
     console.print(
         Text(

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-import sys
 
 import typer
-from rich.console import Console
 from rich.text import Text
 
 from omegadot.commands.schemes.schemes import SchemesResult
@@ -14,7 +12,7 @@ from omegadot.commands.schemes.table import remarks_of, tables_of
 from omegadot.diagnosis.scheme_study.orders import COARSEST
 from omegadot.diagnosis.scheme_study.record import Record
 from omegadot.gates.errors.orders import ORDER_TOLERANCE
-from omegadot.reports.text.text_grid import text_grid
+from omegadot.reports.text.text_grid import plain_console, text_grid
 
 WIDTH_WHEN_PIPED = 240
 _HEAD = """\
@@ -75,7 +73,7 @@ def print_schemes(found: SchemesResult, form: str) -> None:
     if form == "markdown":
         typer.echo(markdown_of(found.record), nl=False)
         return
-    console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
+    console = plain_console(WIDTH_WHEN_PIPED)
     for table in tables_of(found.record):
         if table.rows:
             console.print(text_grid(table.title, table.heads, table.rows))

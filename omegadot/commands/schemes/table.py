@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
 from omegadot.diagnosis.scheme_study.record import Record
 from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reports.text.numbers import short
+from omegadot.reports.text.text_grid import Grid
 
 # Kinds of which one stands for both: damping adds nothing to the name where they agree.
 PAIRS = (("free", "damped"), ("pivoted", "pivoted-damped"))
@@ -81,32 +81,29 @@ def defects_cell(integrator: Record, channel: str) -> str:
 HEADS = tuple(channel.replace("_", " ") for channel in CHANNELS)
 
 
-@dataclass(frozen=True)
-class Table:
-    """A title, the heads of the columns, and the rows."""
-
-    title: str
-    heads: tuple[str, ...]
-    rows: list[tuple[str, ...]]
-
-
-def tables_of(record: Record) -> list[Table]:
+def tables_of(record: Record) -> list[Grid]:
     """Three tables, a row an integrator."""
     who = ("engine", "integrator")
     angle = f"{record['defect_angle']:g}"
-    schemes = Table("Schemes", (*who, "scheme", "stepped in", "match", "declared"), [])
-    orders = Table("Orders: declared (observed)", (*who, *HEADS), [])
+    schemes, orders, defects = (
+        list[tuple[str, ...]](),
+        list[tuple[str, ...]](),
+        list[tuple[str, ...]](),
+    )
     title = f"One-step defect at a step of {angle} rad, and its order"
-    defects = Table(title, (*who, *HEADS), [])
     for engine in record["engines"]:
         for integrator in engine["integrators"]:
             label = (f"{engine['name']} {engine['version']}", integrator["name"])
             namings = [(list(n["kinds"]), _named(n)) for n in integrator["schemes"]]
             found = (_point(integrator), _match(record, integrator), _declared(integrator))
-            schemes.rows.append((*label, labelled(namings), *found))
-            orders.rows.append((*label, *(orders_cell(integrator, c) for c in CHANNELS)))
-            defects.rows.append((*label, *(defects_cell(integrator, c) for c in CHANNELS)))
-    return [schemes, orders, defects]
+            schemes.append((*label, labelled(namings), *found))
+            orders.append((*label, *(orders_cell(integrator, c) for c in CHANNELS)))
+            defects.append((*label, *(defects_cell(integrator, c) for c in CHANNELS)))
+    return [
+        Grid("Schemes", (*who, "scheme", "stepped in", "match", "declared"), schemes),
+        Grid("Orders: declared (observed)", (*who, *HEADS), orders),
+        Grid(title, (*who, *HEADS), defects),
+    ]
 
 
 def _named(naming: Record) -> str:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 
 import typer
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
@@ -20,6 +18,7 @@ from omegadot.commands.score.score import ScoreResult
 from omegadot.commands.score.shift import scatter
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
+from omegadot.reports.text.text_grid import plain_console
 
 STYLES = {"pass": "green", "fail": "bold red", "info": "default"}
 WIDTH_WHEN_PIPED = 200
@@ -28,7 +27,7 @@ MOST_SHOWN = 8  # readings that fit alike
 
 def print_text(result: ScoreResult) -> None:
     """The table of channels, then the sentences, and where the page is."""
-    console = Console(width=None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, highlight=False)
+    console = plain_console(WIDTH_WHEN_PIPED)
     found, times = result.found, result.found.trace.times
     console.print(
         Text(
