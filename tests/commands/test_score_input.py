@@ -134,7 +134,8 @@ W = ("--scenario", BRICK, "--column", "w=p,q,r")
         ((*MAPPED, "--with", "bullet3"), "--with bullet3: no such engine; choose dart"),
         (("--scenario", "nesc-checkcase-3"), "nesc-checkcase-2"),
         (("--scenario", BRICK, "--column", "q=p,q,r,yaw"), "|q| is"),
-        ((*MAPPED, "--map", "none.toml"), "--map none.toml: not readable"),
+        ((*MAPPED, "--map", "none.toml"), "--map none.toml is missing"),
+        ((*MAPPED, "--map", "/dev/zero"), "--map /dev/zero is not a regular file"),
     ],
 )
 def test_wrong_options_are_refused(tmp_path, capsys, arguments, message):
@@ -150,6 +151,8 @@ def test_wrong_options_are_refused(tmp_path, capsys, arguments, message):
         ("columns = 3", "columns must be a table"),
         ("[columns]\nw = [1, 2]", "give a column's name"),
         ("a = ", "not valid TOML"),
+        ("a=" + 5000 * "[" + 5000 * "]", "brackets nested too deep"),
+        ("#" * 1_000_001, "give one of at most 1,000,000 bytes"),
     ],
 )
 def test_a_wrong_map_is_refused(tmp_path, capsys, text, message):
@@ -157,6 +160,12 @@ def test_a_wrong_map_is_refused(tmp_path, capsys, text, message):
     mapped = tmp_path / "map.toml"
     mapped.write_text(text)
     assert message in refused(tmp_path, capsys, path, "--scenario", BRICK, "--map", mapped)
+
+
+def test_a_line_without_end_is_refused(tmp_path, capsys):
+    path, _ = lines(tmp_path)
+    path.write_text(path.read_text() + "1," + "9" * 200_000 + ",3,4,5,6,7\n")
+    assert "has 200,012 characters" in refused(tmp_path, capsys, path, *MAPPED)
 
 
 def test_a_folder_of_something_else_is_left_alone(tmp_path, capsys):

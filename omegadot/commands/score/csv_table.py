@@ -19,11 +19,18 @@ _PREFIX = re.compile(r"\s*(columns|fields|names|header)\s*[:=]\s*", re.IGNORECAS
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+$")
 # So many lines show the delimiter and the decimal sign.
 LOOKED_AT = 50
+LONGEST_LINE = csv.field_size_limit()  # a longer cell is none of a table's
 
 
 def csv_table(file: str, content: bytes) -> Table:
     """The table in a CSV file's bytes. Raises TraceError."""
     texts = text_of(file, content).splitlines()
+    long = next((k for k, text in enumerate(texts, 1) if len(text) > LONGEST_LINE), None)
+    if long is not None:
+        raise TraceError(
+            f"{file}: line {long} has {len(texts[long - 1]):,} characters; give a table of at most "
+            f"{LONGEST_LINE:,} a line."
+        )
     whole = pl.DataFrame({"line": range(1, len(texts) + 1), "text": texts})
     whole = whole.filter(pl.col("text").str.contains(r"\S"))
     is_comment = pl.col("text").str.contains(COMMENT)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, time
@@ -20,6 +19,8 @@ from omegadot.commands.score.stamps import Stamps, counted, in_window, instant, 
 from omegadot.commands.score.table import Column, Table, TraceError
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.errors import ScenarioError
+from omegadot.scenarios.files import read_toml
 
 GivenColumns = Mapping[str, str | Sequence[str]] | Sequence[str]
 """Names by role, ``{"t": "time", "w": ["p", "q", "r"]}``, or texts such as ``w=p,q,r``."""
@@ -133,12 +134,9 @@ def _names(names: str | Sequence[str]) -> list[str]:
 def _read_map(path: Path) -> tuple[Assigned, dict[str, Any]]:
     """Columns and settings of a TOML file. Raises UsageError."""
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise UsageError(f"--map {path}: not readable ({error.strerror or error}).") from error
-    except (ValueError, RecursionError) as error:
-        reason = str(error).splitlines()[0].rstrip(".")
-        raise UsageError(f"--map {path}: not valid TOML ({reason}).") from error
+        data = read_toml(path, f"--map {path}")
+    except ScenarioError as error:
+        raise UsageError(str(error)) from None
     columns = data.pop("columns", {})
     instants = {k: v for k, v in data.items() if isinstance(v, datetime | time)}
     data |= {key: value.isoformat() for key, value in instants.items()}

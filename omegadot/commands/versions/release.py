@@ -76,6 +76,8 @@ def requested_releases(
                 raise UsageError(f"{argument}: {named} is no program; give a Python interpreter.")
             versions.append(version)
             pythons[version] = path
+        elif dots and not (low and high):  # all releases of an engine are gigabytes
+            raise UsageError(f"{argument}: a range has two ends; write 1.2.0..1.4.0.")
         elif dots:
             versions += _within(argument, Span(low, high), releases)
         elif version:
