@@ -176,7 +176,7 @@ WHOLE = '{"schema": 1, "engines": [], "scenarios": [], "tasks": [], "clusters": 
         ('{"schema": 1, "engines": [], "scenarios": []}', "tasks"),
         ('{"schema": 1, "engines": [{}], "scenarios": [], "tasks": []}', r"engines\[0\].name"),
         ('{"schema": 1, "engines": [], "scenarios": [], "tasks": [{}]}', r"tasks\[0\].scenario"),
-        (WHOLE % "7", "clusters must be a list"),
+        (WHOLE % "7", "clusters is 7, expected a valid list"),
         (WHOLE % "[7]", r"clusters\[0\]"),
         (WHOLE % '[{"scenario": "s", "timestep": 1, "members": [3]}]', r"clusters\[0\]"),
         ("[" * 100_000, "JSON"),

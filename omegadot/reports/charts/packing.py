@@ -8,6 +8,7 @@ import numpy as np
 
 from omegadot.reference_impl.system import Array
 from omegadot.reports.charts.chart_library import pack
+from omegadot.reports.record.run_json import plain
 
 # What a logarithmic axis cannot show, zero among it, is drawn at the floor, with a label.
 FLOOR_DECADE, CEILING_DECADE = -17, 20
@@ -23,7 +24,7 @@ def rounded(value: float | None, digits: int = 4) -> float | None:
 
 def pack_json(value: object) -> str:
     """`pack` of the value as compact, strict JSON."""
-    return pack(json.dumps(value, separators=(",", ":"), allow_nan=False).encode())
+    return pack(json.dumps(plain(value), separators=(",", ":"), allow_nan=False).encode())
 
 
 def codes_of(values: Array) -> Array:

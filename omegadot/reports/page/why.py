@@ -122,7 +122,8 @@ def _largest(rows: list[dict[str, Any]], channel: str) -> Value:
 
 def _order_cell(rows: list[dict[str, Any]], channel: str) -> Value:
     """The range of the orders that were judged; – where no sweep shows one."""
-    judged = [r for r in rows if r["channel"] == channel and r["verdict"] in _JUDGED]
+    own = [r for r in rows if r["channel"] == channel and r["verdict"] in _JUDGED]
+    judged = [r for r in own if r["value"] is not None]
     if not judged:
         return Value("–")
     low, high = (f"{pick(r['value'] for r in judged):.2f}" for pick in (min, max))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import os
 import secrets
 import shutil
@@ -14,7 +15,8 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.record import schema
-from omegadot.reports.record.run_json import check_run, dump_json, read_run
+from omegadot.reports.record.run_json import dump_json, read_run
+from omegadot.reports.record.run_model import check_run
 from omegadot.reports.record.schema import Field, RecordError
 
 RUN, PAGE = "run.json", "report.html"
@@ -87,7 +89,7 @@ def write_record(record: Record, folder: Path, page: str) -> None:
     check_folder(folder)
     folder = folder.resolve()
     text = dump_json(record.run)
-    check_run(record.run, RUN)
+    check_run(json.loads(text), RUN)
     metrics = schema.conform(record.metrics, schema.METRICS, METRICS)
     trajectories = schema.conform(record.trajectories, schema.TRAJECTORIES, TRAJECTORIES)
     fresh = folder.with_name(f".{folder.name}.{secrets.token_hex(6)}.new")

@@ -46,18 +46,23 @@ class RecordError(ValueError):
 
 @dataclass(frozen=True)
 class Field:
-    """One column. unit: SI, "1" for a pure number, None where a unit makes no sense."""
+    """One column. unit: SI, "1" for a pure number, None where a unit makes no sense.
+
+    least: the smallest number that may stand there, where all must be finite.
+    """
 
     dtype: type[pl.String] | type[pl.Float64]
     unit: str | None = None
     nullable: bool = False
     allowed: tuple[str, ...] | None = None
+    least: float | None = None
 
 
 _TEXT = Field(pl.String)
+_SMALLEST = 5e-324  # above zero
 _KNOBS = {
-    "timestep": Field(pl.Float64, "s", nullable=True),
-    "accuracy": Field(pl.Float64, "1", nullable=True),
+    "timestep": Field(pl.Float64, "s", nullable=True, least=_SMALLEST),
+    "accuracy": Field(pl.Float64, "1", nullable=True, least=_SMALLEST),
 }
 
 METRICS: Mapping[str, Field] = {
@@ -88,7 +93,7 @@ TRAJECTORIES: Mapping[str, Field] = {
     "setup": Field(pl.String, allowed=SETUPS),
     "integrator": _TEXT,
     **_KNOBS,
-    "time": Field(pl.Float64, "s"),
+    "time": Field(pl.Float64, "s", least=0.0),
     **_vector("q", "1", "wxyz"),
     **_vector("w", "rad/s"),
     **_vector("a", "rad/s^2"),
@@ -119,7 +124,7 @@ def conform(frame: pl.DataFrame, fields: Mapping[str, Field], where: str) -> pl.
     """The frame with exactly these columns, in order and cast.
 
     Raises RecordError naming `where` and the column that is missing, of another type, null where a
-    value must stand, or holding a value the contract does not allow.
+    value must stand, or holding a number or a value the contract does not allow.
     """
     missing = [name for name in fields if name not in frame.columns]
     if missing:
@@ -132,6 +137,11 @@ def conform(frame: pl.DataFrame, fields: Mapping[str, Field], where: str) -> pl.
         column = frame.get_column(name)
         if not field.nullable and column.null_count():
             raise RecordError(f"{where}: the column {name!r} has empty values, it must have none.")
+        if field.least is not None:
+            wrong = column.filter(~(column.is_finite() & (column >= field.least)))
+            if len(wrong):
+                kind = "no positive number" if field.least else "no number from 0 on"
+                raise RecordError(f"{where}: the column {name!r} holds {wrong[0]:g}, {kind}.")
         if field.allowed is not None:
             unknown = column.filter(~column.is_in(field.allowed))
             if len(unknown):

@@ -1,0 +1,140 @@
+"""What ``run.json`` holds, by name and type. Keys that are not named here may stand as well."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic_core import PydanticCustomError
+
+from omegadot.reports.record import schema
+from omegadot.reports.record.schema import RecordError
+from omegadot.scenarios.errors import describe
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
+Text = str | None
+Texts = list[str] | None
+Verdict = Literal[*schema.VERDICTS]  # type: ignore[valid-type]
+Outcome = Literal[*schema.OUTCOMES]  # type: ignore[valid-type]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(strict=True, extra="allow")
+
+
+class _Integrator(_Table):
+    name: str
+    scheme: Text = None
+    orders: dict[str, Number | None] | None = None
+    knob: Text = None
+    note: Text = None
+    coordinates: Text = None
+
+
+class _Engine(_Table):
+    name: str
+    version: Text = None
+    integrators: list[_Integrator] | None = None
+    precision: Text = None
+    conventions: Texts = None
+    switched_off: Texts = None
+    features: Texts = None
+    licence: Text = None
+    links: Texts = None
+    importers: Texts = None
+    installed: bool | None = None
+    reason: Text = None
+    via: Text = None
+
+
+class _System(_Table):
+    mass: Annotated[Number, Field(gt=0.0)]
+    center_of_mass: Vector
+    inertia: Matrix
+    gravity: Vector
+    pivot: Vector | None
+    damping: Number
+    torque_body: Vector
+    torque_world: Vector
+
+    @field_validator("inertia")
+    @classmethod
+    def _positive(cls, tensor: list[list[float]]) -> list[list[float]]:
+        if not np.all(np.linalg.eigvalsh(np.array(tensor)) > 0.0):
+            raise PydanticCustomError("tensor", "a positive definite tensor")
+        return tensor
+
+
+class _Definition(_Table):
+    body: dict[str, Any] | None = None
+
+
+class _Scenario(_Table):
+    name: str
+    title: Text = None
+    shows: Text = None
+    source: Text = None
+    definition: _Definition | None = None
+    system: _System | None = None
+
+
+class _Task(_Table):
+    scenario: str
+    engine: str
+    engine_version: Text = None
+    setup: Text = None
+    integrator: Text
+    timestep: Number | None = None
+    accuracy: Number | None = None
+    outcome: Outcome
+    reason: Text = None
+    gates: dict[str, Verdict] | None = None
+    why: Text = None
+    scheme: Text = None
+
+
+class _Cluster(_Table):
+    scenario: str
+    timestep: Number
+    scheme: Text = None
+    members: list[str]
+    also: Texts = None
+    exact: bool = False
+
+
+class _Run(_Table):
+    """Records from before there were clusters have none."""
+
+    engines: list[_Engine]
+    scenarios: list[_Scenario]
+    tasks: list[_Task]
+    clusters: list[_Cluster] = []
+    omegadot: Text = None
+    created: Text = None
+    command: Texts = None
+    seed: int | None = None
+    seconds: Number | None = None
+    complete: bool | None = None
+    headline: Text = None
+    machine: dict[str, str | Number | None] | None = None
+    versions: dict[str, Text] | None = None
+    worker_deaths: list[dict[str, str]] | None = None
+    stale_exceptions: list[Any] | None = None
+
+
+def check_run(run: object, where: str) -> None:
+    """Raise RecordError, one sentence, unless it is what `run.json` holds."""
+    try:
+        _Run.model_validate(run)
+    except ValidationError as problem:
+        first = problem.errors(include_url=False)[0]
+        key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in first["loc"])
+        if first["type"] == "missing":
+            raise RecordError(f"{where}: {key[1:]} is missing; run again.") from None
+        expected = first["msg"].removeprefix("Input should be ")
+        raise RecordError(
+            f"{where}: {key[1:]} is {describe(first['input'])}, expected {expected}; run again."
+        ) from None
