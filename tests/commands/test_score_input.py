@@ -131,6 +131,8 @@ W = ("--scenario", BRICK, "--column", "w=p,q,r")
         ((*MAPPED, "--timestep", "-1"), "not a positive number"),
         ((*MAPPED, "--name", ""), "--name is empty"),
         ((*MAPPED, "--name", "exact"), "an engine has this name"),
+        ((*MAPPED, "--name", "mujoco"), "an engine has this name"),
+        ((*MAPPED, "--name", "a\x1b[31m"), "a name of printable characters"),
         ((*MAPPED, "--with", "bullet3"), "--with bullet3: no such engine; choose dart"),
         (("--scenario", "nesc-checkcase-3"), "nesc-checkcase-2"),
         (("--scenario", BRICK, "--column", "q=p,q,r,yaw"), "|q| is"),

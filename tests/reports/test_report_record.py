@@ -2,6 +2,8 @@
 
 import json
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -228,3 +230,24 @@ def test_columns_of_nulls_and_of_another_order_are_cast(record):
 def test_json_is_strict_and_takes_what_numpy_gives():
     given = {"a": np.float64("nan"), "b": [float("inf"), np.arange(2)], "c": frozenset("yx")}
     assert json.loads(dump_json(given)) == {"a": None, "b": [None, [0, 1]], "c": ["x", "y"]}
+
+
+@pytest.mark.parametrize("killed", ["between", "before"])
+def test_what_a_killed_process_left_is_recovered(folder, monkeypatch, killed):
+    """Killed between the two renames, the earlier record is put back; before them, it stands."""
+    gone = subprocess.run(
+        [sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True, check=True
+    )
+    name = f".{folder.name}.{int(gone.stdout)}-{'0' * 12}"
+    before = (folder / "run.json").read_bytes()
+    if killed == "between":
+        folder.rename(folder.with_name(f"{name}.old"))
+    folder.with_name(f"{name}.new").mkdir()
+    strange = folder.with_name(f".{folder.name}.mine")
+    strange.mkdir()
+    check_folder(folder)  # it may be being written
+    assert folder.with_name(f"{name}.new").exists()
+    monkeypatch.setattr(record_module, "SECONDS_TO_WRITE", 0.0)
+    check_folder(folder)
+    assert (folder / "run.json").read_bytes() == before
+    assert {path.name for path in folder.parent.iterdir()} == {folder.name, strange.name}

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from omegadot.adapters.registry import registered
 from omegadot.commands.progress import Reporting, reporting
 from omegadot.commands.run.result import RunInterrupted, RunResult, result_of
 from omegadot.commands.score.convention import SETTINGS
@@ -28,8 +29,6 @@ from omegadot.harness.usage import UsageError
 from omegadot.reports.record.record import check_folder
 from omegadot.reports.run_record import RunRecord
 from omegadot.scenarios import ScenarioLike
-
-RESERVED = ("exact", "reference")
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -147,6 +146,8 @@ def _choices(name: str, engines: Sequence[EngineLike]) -> list[EngineChoice]:
     choices = engine_choices(engines, option="--with") if engines else []
     if not name.strip():
         raise UsageError("--name is empty; give the trace a name.")
-    if name in (*RESERVED, *(choice.name for choice in choices)):
+    if not name.isprintable():
+        raise UsageError(f"--name {name!r}: give the trace a name of printable characters.")
+    if name in (*registered(), *(choice.name for choice in choices)):
         raise UsageError(f"--name {name}: an engine has this name; give the trace another.")
     return choices

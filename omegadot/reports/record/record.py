@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import glob
 import itertools
 import json
 import os
+import re
 import secrets
 import shutil
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import polars as pl
+import psutil
 
 from omegadot.reports.record import schema
 from omegadot.reports.record.run_json import dump_json, read_run
@@ -21,6 +26,8 @@ from omegadot.reports.record.schema import Field, RecordError
 
 RUN, PAGE = "run.json", "report.html"
 METRICS, TRAJECTORIES = "metrics.parquet", "trajectories.parquet"
+SECONDS_TO_WRITE = 60.0
+_LEFT = re.compile(r"\.(\d+)-[0-9a-f]{12}\.(new|old)")
 _REPEATING = ("timestep", "accuracy", "time")
 FILES = (RUN, METRICS, TRAJECTORIES, PAGE)
 
@@ -44,6 +51,7 @@ def check_folder(folder: Path) -> None:
     if Path.cwd().is_relative_to(folder):
         raise RecordError(f"{folder}: is the current directory or holds it; name a new folder.")
     _try_to_write(folder)
+    _recover(folder)
     if not folder.exists():
         return
     if not folder.is_dir():
@@ -62,13 +70,36 @@ def check_folder(folder: Path) -> None:
 
 def _try_to_write(folder: Path) -> None:
     """Make and remove a folder beside this one, as `write_record` will do at the end."""
-    trial = folder.with_name(f".{folder.name}.{secrets.token_hex(6)}.new")
+    trial = _beside(folder)
     try:
         trial.mkdir(parents=True)
         trial.rmdir()
     except OSError as error:
         reason = error.strerror or str(error)
         raise RecordError(f"{folder}: cannot be written ({reason}); name another.") from error
+
+
+def _beside(folder: Path) -> Path:
+    """A hidden folder that no one else has: `_recover` knows by its name whose it was."""
+    return folder.with_name(f".{folder.name}.{os.getpid()}-{secrets.token_hex(6)}.new")
+
+
+def _recover(folder: Path) -> None:
+    """Finish what a process left that was killed as it wrote: the earlier record is put back."""
+    with contextlib.suppress(OSError):
+        for left in folder.parent.glob(f".{glob.escape(folder.name)}.*"):
+            found = _LEFT.fullmatch(left.name[len(folder.name) + 1 :])
+            # Another machine may share the disk; no record takes so long to write.
+            if found is None or psutil.pid_exists(int(found[1])) or _age(left) < SECONDS_TO_WRITE:
+                continue
+            if found[2] == "old" and not folder.exists():
+                os.replace(left, folder)
+            else:
+                shutil.rmtree(left, ignore_errors=True)
+
+
+def _age(path: Path) -> float:
+    return time.time() - path.stat().st_ctime
 
 
 def unfinished_name(folder: Path) -> Path:
@@ -92,7 +123,7 @@ def write_record(record: Record, folder: Path, page: str) -> None:
     check_run(json.loads(text), RUN)
     metrics = schema.conform(record.metrics, schema.METRICS, METRICS)
     trajectories = schema.conform(record.trajectories, schema.TRAJECTORIES, TRAJECTORIES)
-    fresh = folder.with_name(f".{folder.name}.{secrets.token_hex(6)}.new")
+    fresh = _beside(folder)
     try:
         fresh.mkdir(parents=True)
         (fresh / RUN).write_text(text, encoding="utf-8")
