@@ -3,6 +3,7 @@
 import os
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -81,3 +82,23 @@ def test_workers_die_with_a_harness_that_is_killed(folder: Path) -> None:
     running.wait()
     assert gone(workers)
     assert not (folder / "out").exists()
+
+
+INTERRUPTED_IN_IMPORT = """
+import sys
+
+class Interrupts:
+    def find_spec(self, name, path, target=None):
+        if name == "omegadot.commands.cli":
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Interrupts())
+from omegadot.__main__ import main
+main()
+"""
+
+
+def test_an_interruption_while_it_is_loaded_is_one_line() -> None:
+    command = [sys.executable, "-c", INTERRUPTED_IN_IMPORT]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "omegadot: interrupted.\n")
