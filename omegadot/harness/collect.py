@@ -88,6 +88,7 @@ def _judged_entry(
         diagnosed.add(key)
         likeliest = cause(judged)
     if likeliest:
+        entry["cause"] = likeliest
         entry["why"] = f"likely cause: {likeliest}" + (f" ({judged.why})" if judged.why else "")
     return entry
 
@@ -97,7 +98,8 @@ def _unstepped_entry(labels: Labels, found: EngineCase, cause: Cause) -> dict[st
     model = found.result.model
     entry = _answered_entry(labels, found, model.outcome, model.reason, (), "it has no integrator")
     likeliest = cause(None) if "fail" in entry["gates"].values() else ""
-    return {**entry, "why": f"likely cause: {likeliest}"} if likeliest else entry
+    found_out = {"cause": likeliest, "why": f"likely cause: {likeliest}"}
+    return {**entry, **found_out} if likeliest else entry
 
 
 def _unjudged_entries(

@@ -93,6 +93,7 @@ class _Task(_Table):
     reason: Text = None
     gates: dict[str, Verdict] | None = None
     why: Text = None
+    cause: Text = None
     scheme: Text = None
 
 

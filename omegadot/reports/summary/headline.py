@@ -6,6 +6,8 @@ from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.summary import YARDSTICKS, Cell, Summary
 from omegadot.reports.text.numbers import first, knob, listed, quantity, times
 
+_MORE = "The errors over time differ more. "
+
 
 def headline(summary: Summary) -> str:
     """Which engines agree with the equations and how closely, which fail where: one sentence."""
@@ -78,8 +80,9 @@ def _spread(engines: dict[str, list[Cell]]) -> str:
     best = min((r.best for r in ranges if r.best.scenario == largest.scenario), key=size)
     if best.value == largest.value:
         return ""
+    more = "" if any(c.status == "fail" for own in engines.values() for c in own) else _MORE
     return (
-        "The errors over time differ more. At the finest step the attitude error on "
+        f"{more}At the finest step the attitude error on "
         f"{largest.scenario} ranges from {_run(best)} to {_run(largest)}."
     )
 

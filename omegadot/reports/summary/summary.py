@@ -15,6 +15,7 @@ import polars as pl
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.run_json import impossible_bodies
+from omegadot.reports.summary.failures import failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
 
 # From the worst to the best. A skip is never a pass, and neither is a run that was not judged.
@@ -88,6 +89,7 @@ class Missing:
 class Summary:
     """The record at a glance.
 
+    failures: a sentence on each failing engine.
     truths: by kind of exact solution, the number of scenarios.  notes: a sentence on each body
     whose inertia is impossible, each process that ended by itself, each engine without integrators.
     """
@@ -98,6 +100,7 @@ class Summary:
     cells: Mapping[tuple[str, Column], Cell]
     runs: Counter[str]
     missing: tuple[Missing, ...]
+    failures: tuple[str, ...]
     truths: Counter[str]
     notes: tuple[str, ...]
 
@@ -142,6 +145,7 @@ def summarise(record: Record) -> Summary:
         cells,
         Counter(task_status(task) for task in tasks),
         _missing(record.run),
+        failures_of(record),
         _truths(record.trajectories),
         (*impossible_bodies(record.run["scenarios"]), *_ended(record.run), *_unstepped(record.run)),
     )

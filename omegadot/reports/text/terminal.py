@@ -50,6 +50,8 @@ def print_summary(record: Record, console: Console | None = None) -> None:
         console.print(Text(_missing_line(missing), style=_NOT_RUN))
     console.print(Text(_counts(summary)))
     console.print(Text(headline(summary), style="bold"))
+    for line in summary.failures:
+        console.print(Text(line, _STYLES["fail"]))
     console.print(Text(" ".join(remarks(summary) + truth(summary))))
 
 

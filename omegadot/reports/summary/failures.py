@@ -1,0 +1,68 @@
+"""The failing engines, a sentence each: where, by how much, how often, and the likeliest cause."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+import polars as pl
+
+from omegadot.reports.record.record import Record
+from omegadot.reports.record.schema import GATES
+from omegadot.reports.text.numbers import engine_name, magnitude, quantity, short, times
+
+UNKNOWN = "none is known"
+
+
+def failures_of(record: Record) -> tuple[str, ...]:
+    """Of every failing engine, the first gate that fails and its worst measure."""
+    who = ("engine", "engine_version", "setup")
+    rows = record.metrics.filter(pl.col("verdict") == "fail").to_dicts()
+    several = Counter(name for name, *_ in {tuple(row[key] for key in who) for row in rows})
+    found: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+    for row in rows:
+        found.setdefault(tuple(row[key] for key in who), []).append(row)
+    sentences = []
+    for (engine, version, setup), own in found.items():
+        name = engine_name(engine, version if several[engine] > 1 else "", setup)
+        tasks = [t for t in record.run["tasks"] if t["engine"] == engine]
+        sentences.append(f"{name}: {_worst(own)}{_extent(tasks)}{_likeliest(tasks)}.")
+    return tuple(sentences)
+
+
+def _worst(rows: list[dict[str, Any]]) -> str:
+    """The worst measure of the first gate that fails; later gates fail for the same reason."""
+    gate = min((row["gate"] for row in rows), key=GATES.index)
+    row = max((row for row in rows if row["gate"] == gate), key=_excess)
+    channel = row["channel"].replace("omega_dot", "omega-dot")
+    what = f"{channel} {row['metric']}".replace("_", " ")
+    by = f" {row['integrator']}" if row["integrator"] else ""
+    text = f"the {gate} gate fails on {row['scenario']}{by}, {what} "
+    text += quantity(row["value"], row["unit"])
+    excess = _excess(row)
+    if row["bound"] is not None and 1.0 < excess < float("inf"):
+        text += f", {short(excess)} times its bound"
+    return text
+
+
+def _excess(row: Mapping[str, Any]) -> float:
+    """How many times its bound a measure is; orders, which are too low, come last."""
+    if row["metric"] == "observed_order":
+        return 0.0
+    return magnitude(row["value"]) / row["bound"] if row["bound"] else magnitude(row["value"])
+
+
+def _extent(tasks: list[Mapping[str, Any]]) -> str:
+    failing = [t for t in tasks if "fail" in (t.get("gates") or {}).values()]
+    return f" ({len(failing)} of {times(len(tasks), 'run')} fail)" if failing else ""
+
+
+def _likeliest(tasks: list[Mapping[str, Any]]) -> str:
+    """The cause that explains most runs, with how many others there are."""
+    causes = Counter(t["cause"] for t in tasks if t.get("cause"))
+    known = [(cause, n) for cause, n in causes.most_common() if not cause.startswith(UNKNOWN)]
+    if not known:
+        return ""
+    more = f"; {times(len(known) - 1, 'other cause')} elsewhere" if len(known) > 1 else ""
+    return f". Likely cause: {known[0][0].rstrip('.')}{more}"

@@ -1,0 +1,61 @@
+"""The failing engines at the top of the page, in the terminal and in a comment."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from synthetic_record import metric, with_metrics
+
+from omegadot.reports.page.page import draw_page
+from omegadot.reports.record.record import Record
+from omegadot.reports.summary.summary import summarise
+from omegadot.reports.text.markdown import markdown_of
+from omegadot.reports.text.terminal import print_summary
+
+FAILING = ("dart", "semi-implicit")
+
+
+def failing(record: Record, cause: str = "the gyroscopic term is missing") -> Record:
+    """DART's equation and its runs on one scenario fail; a later gate by more than the first."""
+    where = ("sphere", *FAILING, 0.02)
+    rows = (
+        metric(*where, "trajectory", "attitude", "error_max", 3.0, verdict="fail"),
+        metric(*where, "equation", "omega_dot", "residual", 2e-3, verdict="fail"),
+        metric(*where, "equation", "omega_dot", "residual_on_path", 1e-3, verdict="fail"),
+        metric(*where, "scheme", "omega", "observed_order", 0.1, verdict="fail"),
+    )
+    tasks = [
+        {**task, "gates": {**task["gates"], "equation": "fail"}, "cause": cause}
+        if (task["engine"], task["scenario"]) == ("dart", "sphere")
+        else task
+        for task in record.run["tasks"]
+    ]
+    return with_metrics(replace(record, run={**record.run, "tasks": tasks}), *rows)
+
+
+def test_a_failing_engine_is_one_sentence(record: Record) -> None:
+    (line,) = summarise(failing(record)).failures
+    assert line == (
+        "dart: the equation gate fails on sphere semi-implicit, omega-dot residual 2.0e-3, 2.0e10 "
+        "times its bound (3 of 6 runs fail). Likely cause: the gyroscopic term is missing."
+    )
+    assert summarise(record).failures == ()
+
+
+def test_a_cause_that_is_not_known_is_not_named(record: Record) -> None:
+    (line,) = summarise(failing(record, "none is known; omega-dot is off in x alone")).failures
+    assert "cause" not in line
+
+
+def test_it_stands_wherever_the_run_is_summed_up(
+    record: Record, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = failing(record)
+    (line,) = summarise(found).failures
+    page = draw_page(found)
+    assert page.index("<h1>") < page.index(line) < page.index("Verdicts")
+    print_summary(found)
+    assert line in capsys.readouterr().out
+    assert "gyroscopic term is missing" in markdown_of(found)
+    assert "The errors over time differ more" not in page  # it follows an agreement alone
