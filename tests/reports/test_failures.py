@@ -55,6 +55,8 @@ def test_it_stands_wherever_the_run_is_summed_up(
     (line,) = summarise(found).failures
     page = draw_page(found)
     assert page.index("<h1>") < page.index(line) < page.index("Verdicts")
+    table = page[page.index("Engine by engine") :]
+    assert table.index(">dart ") < table.index(">mujoco ")  # the record has mujoco first
     print_summary(found)
     assert line in capsys.readouterr().out
     assert "gyroscopic term is missing" in markdown_of(found)

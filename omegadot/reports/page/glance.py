@@ -21,13 +21,14 @@ Detailed = tuple[str, str]
 
 
 def glances(summary: Summary, metrics: pl.DataFrame, sources: Sources) -> list[dict[str, Any]]:
-    """One row an engine over all scenarios; the yardsticks are left out where anything else ran.
+    """One row an engine over all scenarios, failing ones first; the yardsticks are left out where anything else ran.
 
     best and worst: of its integrators, at their finest step.  error_source: whether its errors are
     those of the declared schemes.
     """
     engines = [c for c in summary.columns if c.engine not in YARDSTICKS] or list(summary.columns)
-    return [_glance(column, summary, metrics, sources) for column in engines]
+    rows = [_glance(column, summary, metrics, sources) for column in engines]
+    return sorted(rows, key=lambda row: row["status"] != "fail")
 
 
 def _glance(
