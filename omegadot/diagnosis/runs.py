@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from omegadot.diagnosis.reported.clock import clock_cause
+from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import ReportedRun, reported_run, reported_run_guesses
-from omegadot.diagnosis.reported.run_causes import CAUSES_REPORTED, begin_apart
-from omegadot.diagnosis.reported.sample_causes import intervals, omega_dot_late, one_field
-from omegadot.diagnosis.stepping.restarts import restart_cause
-from omegadot.diagnosis.stepping.wrong_steps import (
-    CAUSES_OF_STEPPING,
-    CAUSES_OF_UNKNOWN,
-    MOST_STEPS,
-    precision_reported,
+from omegadot.diagnosis.reported.run_causes import (
+    CAUSES_REPORTED,
+    SEEN,
+    another_start,
+    begin_apart,
+    misread,
 )
+from omegadot.diagnosis.reported.sample_causes import (
+    intervals,
+    not_unit,
+    omega_dot_late,
+    one_field,
+)
+from omegadot.diagnosis.stepping.restarts import restart_cause
+from omegadot.diagnosis.stepping.wrong_steps import is_telling, stepping_causes
 from omegadot.diagnosis.wording.kinds import is_fact, kind_of
 from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
@@ -24,9 +32,23 @@ from omegadot.harness.judge import JudgedRun, is_finite
 MOST_TRIED = 1000  # steps of a second run, in which a cause is looked for again
 
 
+@dataclass(frozen=True)
+class RunCauses:
+    """Causes of which each alone makes the runs of one integrator on a scenario.
+
+    telling: whether the motion has enough in it that what else it could be is ruled out.
+    """
+
+    texts: tuple[str, ...] = ()
+    telling: bool = True
+
+
+NOTHING = RunCauses()
+
+
 def run_causes(
     case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
-) -> list[str]:
+) -> RunCauses:
     """Of the failed run of the fewest steps in which one is found: hypotheses are stepped again."""
     truth = truth.in_precision(result.precision)
     failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
@@ -35,33 +57,36 @@ def run_causes(
         if answer is not None and answer.ok:
             text = clock_cause(answer.result["time"], run.sweep, truth.yardstick.eps)
             if text:
-                return [text]
+                return RunCauses((text,))
     several = _of_several_schemes(case, truth, result, runs) if failed else ""
     if several:
-        return [several]
+        return RunCauses((several,))
     for run in sorted(failed, key=lambda run: run.sweep.steps):
-        text = _of_run(case, truth, result, run)
-        if text and _explains_others(text, case, truth, result, run, failed):
-            return [text + _at_long_steps(runs)]
-        if text:
-            return []
-    return []
+        found = _of_run(case, truth, result, run)
+        if found.texts:
+            kept = _of_others(found, case, truth, result, run, failed)
+            return replace(kept, texts=tuple(t + _at_long_steps(runs) for t in kept.texts))
+    return NOTHING
 
 
-def _explains_others(
-    text: str,
+def _of_others(
+    found: RunCauses,
     case: Case,
     truth: Truth,
     result: CaseResult,
     run: JudgedRun,
     failed: Sequence[JudgedRun],
-) -> bool:
-    """Whether the next failed run, if it is short, has the same cause, by other numbers maybe."""
+) -> RunCauses:
+    """Those that make the next failed run as well, if it is short, by other numbers maybe."""
     longer = [one for one in failed if run.sweep.steps < one.sweep.steps <= MOST_TRIED]
-    if not longer or is_fact(text):
-        return True
+    if not longer or all(map(is_fact, found.texts)):
+        return found
     other = _of_run(case, truth, result, min(longer, key=lambda one: one.sweep.steps))
-    return kind_of(other) == kind_of(text) or is_fact(other)
+    if other.texts and all(map(is_fact, other.texts)):
+        return found
+    kinds = set(map(kind_of, other.texts))
+    both = tuple(text for text in found.texts if kind_of(text) in kinds)
+    return RunCauses(both, found.telling or other.telling)
 
 
 def _of_several_schemes(
@@ -91,40 +116,41 @@ def _at_long_steps(runs: Sequence[JudgedRun]) -> str:
     return f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s are sound"
 
 
-def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> str:
+def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> RunCauses:
     """Causes in what one run reports, then in its stepping, then in where it is sound.
 
     Where nothing but the omega-dot reported along it failed, only that is looked at.
     """
     reported = reported_run(case, truth, result, run)
     if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
-        return omega_dot_late(case, truth, result, run)
+        text = omega_dot_late(case, truth, result, run)
+        return RunCauses((text,)) if text else NOTHING
     if reported is not None:
         return _of_reported(reported, result)
-    text = next(_of_guesses(case, truth, result, run), "")
-    return text or restart_cause(truth, result, run)
-
-
-def _of_reported(reported: ReportedRun, result: CaseResult) -> str:
-    if not reported.is_declared and reported.is_own:
-        return ""  # nothing in this run is wrong
-    if len(reported.time) == len(reported.sweep.times) and is_finite(reported.state):
-        text = precision_reported(reported)
-        if text:
-            return text
-    if begin_apart(reported, result):
-        return "runs begin at other states than the one given: one is left over from a run before"
-    tried = list(CAUSES_REPORTED)
-    if len(reported.time) == len(reported.sweep.times):
-        if is_finite(reported.state) and reported.sweep.steps <= MOST_STEPS:
-            tried += CAUSES_OF_STEPPING if reported.is_declared else CAUSES_OF_UNKNOWN
-        tried += (intervals, one_field)
-    return next(filter(None, (cause(reported) for cause in tried)), "")
-
-
-def _of_guesses(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> Iterator[str]:
-    """By the schemes of the reference that come nearest, where none is declared."""
+    # By the schemes of the reference that come nearest, where none is declared.
     for guess in reported_run_guesses(case, truth, result, run):
-        text = _of_reported(guess, result)
-        if text:
-            yield text
+        found = _of_reported(guess, result)
+        if found.texts:
+            return found
+    text = restart_cause(truth, result, run)
+    return RunCauses((text,)) if text else NOTHING
+
+
+def _of_reported(reported: ReportedRun, result: CaseResult) -> RunCauses:
+    if not reported.is_declared and reported.is_own:
+        return NOTHING  # nothing in this run is wrong
+    whole = len(reported.time) == len(reported.sweep.times)
+    finite = whole and is_finite(reported.state)
+    seen = precision_reported(reported) if finite else ""
+    if not seen and begin_apart(reported, result):
+        seen = "runs begin at other states than the one given: one is left over from a run before"
+    seen = seen or next(filter(None, (cause(reported) for cause in SEEN)), "")
+    if seen:
+        return RunCauses((seen,))
+    found = [*misread(reported), *filter(None, (cause(reported) for cause in CAUSES_REPORTED))]
+    found += stepping_causes(reported) if finite else ()
+    if found:
+        return RunCauses(tuple(dict.fromkeys(found)), is_telling(reported))
+    last = (not_unit, another_start, *((intervals, one_field) if whole else ()))
+    text = next(filter(None, (cause(reported) for cause in last)), "")
+    return RunCauses((text,), is_telling(reported)) if text else NOTHING

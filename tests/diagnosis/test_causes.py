@@ -11,8 +11,9 @@ import pytest
 from omegadot.diagnosis.equations.across import Across, Scene
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
 from omegadot.diagnosis.equations.wrong_equation import FORWARD, equation_causes, inverse_causes
+from omegadot.diagnosis.stepping.jumps import jump_cause
 from omegadot.diagnosis.stepping.trace import Trace, trace_causes
-from omegadot.diagnosis.stepping.vanishing_steps import jump_cause, vanishing_steps
+from omegadot.diagnosis.stepping.vanishing_steps import vanishing_steps
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.case import Case

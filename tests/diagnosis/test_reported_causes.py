@@ -119,10 +119,20 @@ def test_a_cause_of_a_few_scenarios_is_withheld() -> None:
     few = "it is stepped by lie-rk4, though rk4-quaternion is declared"
     other = "omega is held below 3 rad/s"
     assert kind_of(other) == kind_of("omega is held below 47.5 rad/s, at steps of 0.1 s and longer")
-    assert not agreed(few, {"one": few, "two": other, "three": other})
-    assert not agreed(few, {"one": few, "two": "", "three": ""})
-    assert agreed(other, {"one": few, "two": other, "three": other})
-    assert agreed("the run is sound until t = 1 s", {"one": few, "two": other})
+    one, two, none = ((few,), True), ((other,), True), ((), True)
+    assert agreed((few,), {"one": one, "two": two, "three": two}) == []
+    assert agreed((few,), {"one": one, "two": none, "three": none}) == []
+    assert agreed((other,), {"one": one, "two": two, "three": two}) == [other]
+    assert agreed(("the run is sound until t = 1 s",), {"one": one, "two": two}) != []
+
+
+def test_a_motion_that_decides_nothing_names_no_cause_of_its_own() -> None:
+    """A steady spin is the same by most schemes: what it shows is named where another shows it."""
+    one, two = "it is stepped by lie-rk4, though heun is declared", "every step is too long"
+    steady = ((one, two), False)
+    assert agreed((one, two), {"steady": steady}) == []
+    assert agreed((one, two), {"steady": steady, "tumbling": ((two,), True)}) == [two]
+    assert agreed((one, two), {"tumbling": ((one, two), True)}) == [one, two]
 
 
 def test_few_states_sorted_by_chance_have_no_condition(states: State) -> None:

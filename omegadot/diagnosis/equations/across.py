@@ -38,7 +38,8 @@ class Across:
 
     def __init__(self) -> None:
         self._all = Scenes()
-        self.of_runs: dict[str, dict[str, str]] = {}  # by integrator and scenario
+        # by integrator and scenario: each cause alone explains the runs; whether they are telling
+        self.of_runs: dict[str, dict[str, tuple[tuple[str, ...], bool]]] = {}
         self._accepted: list[list[Candidate]] = []
         self._weak: list[Candidate] = []
         self._texts: dict[tuple[str, str], str] = {}
