@@ -99,7 +99,7 @@ class Across:
                     return text
         if not weak:
             weakest, weak = self._weak_elsewhere(scene, source)
-        elif weakest is not None and weakest.family is not None:
+        elif weakest is not None and weakest.numbers is not None:
             self._weak.append(weakest)
         if weak and weakest is not None:
             self._chosen[name, source] = weakest

@@ -12,6 +12,9 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.system import Array
 
+CLEAR = 10.0  # times what is allowed: a part of omega-dot is distinguished from another
+LEAST = 3  # states at which it is
+
 
 def kinematic_causes(steps: VanishingSteps) -> list[str]:
     """What attitude or position moves by in place of omega or the velocity; none where it is right.
@@ -105,6 +108,8 @@ def omega_share_cause(steps: VanishingSteps) -> str:
         return ""
     found, bound = better(steps.rates["omega"])
     true = steps.rates["omega"].expected
+    if np.count_nonzero(norm(true) > CLEAR * SLACK * bound) < LEAST:
+        return ""
     for k, when in ((0.5, "before"), (1.5, "after")):
         if np.all(norm(found - k * true) <= SLACK * bound) and np.any(true):
             return (
