@@ -114,6 +114,8 @@ class IntegratorCauses:
 
     def _of_omega(self, steps: VanishingSteps) -> list[str]:
         """Omega is of another time than the rest, or the equation that it follows is another."""
+        if not steps.evidence.clear:
+            return []
         share = omega_share_cause(steps)
         if share and not self._turned_wrong and not self._brief:
             return [share]

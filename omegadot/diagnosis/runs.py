@@ -21,8 +21,10 @@ from omegadot.diagnosis.reported.sample_causes import (
     omega_dot_late,
     one_field,
 )
+from omegadot.diagnosis.stepping.other_schemes import slips_of
 from omegadot.diagnosis.stepping.restarts import restart_cause
-from omegadot.diagnosis.stepping.wrong_steps import is_telling, stepping_causes
+from omegadot.diagnosis.stepping.slips import OF_SCHEME
+from omegadot.diagnosis.stepping.wrong_steps import is_steppable, is_telling, stepping_causes
 from omegadot.diagnosis.wording.kinds import is_fact, kind_of
 from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
@@ -128,12 +130,25 @@ def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> Run
     if reported is not None:
         return _of_reported(reported, result)
     # By the schemes of the reference that come nearest, where none is declared.
-    for guess in reported_run_guesses(case, truth, result, run):
+    guesses = reported_run_guesses(case, truth, result, run)
+    for guess in guesses:
         found = _of_reported(guess, result)
         if found.texts:
             return found
+    found = _of_other_slips(guesses)
+    if found.texts:
+        return found
     text = restart_cause(truth, result, run)
     return RunCauses((text,)) if text else NOTHING
+
+
+def _of_other_slips(guesses: Sequence[ReportedRun]) -> RunCauses:
+    """A slip in a scheme that is far from the run for it."""
+    if not guesses or any(one.is_own for one in guesses) or not is_steppable(guesses[0]):
+        return NOTHING
+    tried = {one.integrator.scheme for one in guesses}
+    texts = [t for name in OF_SCHEME if name not in tried for t in slips_of(guesses[0], name)]
+    return RunCauses(tuple(texts), is_telling(guesses[0])) if texts else NOTHING
 
 
 def _of_reported(reported: ReportedRun, result: CaseResult) -> RunCauses:
@@ -148,9 +163,11 @@ def _of_reported(reported: ReportedRun, result: CaseResult) -> RunCauses:
     if seen:
         return RunCauses((seen,))
     found = [*misread(reported), *filter(None, (cause(reported) for cause in CAUSES_REPORTED))]
-    found += stepping_causes(reported) if finite else ()
+    found += stepping_causes(reported)
     if found:
         return RunCauses(tuple(dict.fromkeys(found)), is_telling(reported))
-    last = (not_unit, another_start, *((intervals, one_field) if whole else ()))
+    # Beside a guess it is its error that one quantity shows, where the motion is the same by many.
+    alone = (one_field,) if reported.is_declared or is_telling(reported) else ()
+    last = (not_unit, another_start, *((intervals, *alone) if whole else ()))
     text = next(filter(None, (cause(reported) for cause in last)), "")
     return RunCauses((text,), is_telling(reported)) if text else NOTHING

@@ -144,7 +144,8 @@ def possible(evidence: Evidence) -> list[Hypothesis]:
 
 
 def _with_terms(evidence: Evidence, kinds: Sequence[Terms]) -> list[Candidate]:
-    usable = [one for one in kinds if not (one.reported and evidence.source == STEPS)]
+    steps = evidence.source == STEPS
+    usable = [one for one in kinds if not (one.reported if steps else one.stepped)]
     found = [(terms, terms.fit(evidence)) for terms in usable]
     return [Candidate(terms=terms, numbers=p) for terms, p in found if p is not None]
 

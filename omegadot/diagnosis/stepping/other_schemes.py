@@ -61,15 +61,24 @@ def other_ends(reported: ReportedRun) -> list[str]:
     ]
 
 
-def slips(reported: ReportedRun) -> list[str]:
-    """The declared scheme with one slip in it, or with the damping split off.
+def slips_of(reported: ReportedRun, name: str) -> list[str]:
+    """A scheme with one slip in it, whatever is declared or guessed; what states less first.
 
-    Of several slips the first states the least: they differ in what this motion does not have.
+    All that fit: some differ in what this motion does not have.
     """
-    name = reported.integrator.scheme or ""
-    for text, scheme in slipped(name).items():
-        if reported.agrees(reported.state, reported.stepped(scheme)):
-            return [f"it is stepped by {name}, but {text}"]
+    return [
+        f"it is stepped by {name}, but {text}"
+        for text, scheme in slipped(name).items()
+        if reported.integrator.coordinates in scheme.coordinates
+        and reported.agrees(reported.state, reported.stepped(scheme))
+    ]
+
+
+def slips(reported: ReportedRun) -> list[str]:
+    """The declared scheme with one slip in it, or with the damping split off."""
+    found = slips_of(reported, reported.integrator.scheme or "")
+    if found:
+        return found
     system = reported.case.system
     if not float(system.load.damping):
         return []

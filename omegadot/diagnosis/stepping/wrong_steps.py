@@ -12,6 +12,7 @@ from omegadot.diagnosis.stepping.limits import asleep, clipped, held, speed, sti
 from omegadot.diagnosis.stepping.other_equations import other_equations
 from omegadot.diagnosis.stepping.other_schemes import other_ends, other_schemes, slips
 from omegadot.gates.bounds.scales import norm
+from omegadot.harness.judge import is_finite
 
 MOST_STEPS = 5000  # causes are tried by stepping again, and a step takes about 0.1 ms
 LEAST_SAMPLES = 4  # of fewer many mistakes make the same
@@ -20,7 +21,7 @@ STEADY = 1e-6  # rad: the axis of a steady spin turns by less
 
 def stepping_causes(reported: ReportedRun) -> Iterator[str]:
     """Every one that makes this run; a scheme that is a guess is not wrong by itself."""
-    if reported.sweep.steps > MOST_STEPS:
+    if not is_steppable(reported):
         return
     yield from filter(None, (asleep(reported), still(reported)))
     if reported.is_declared:
@@ -31,6 +32,12 @@ def stepping_causes(reported: ReportedRun) -> Iterator[str]:
     with_number = (longer, damped, clipped, held, speed)
     yield from filter(None, (cause(reported) for cause in with_number))
     yield from other_equations(reported)
+
+
+def is_steppable(reported: ReportedRun) -> bool:
+    """Whether a run is whole and short enough to be stepped again."""
+    whole = len(reported.time) == len(reported.sweep.times)
+    return whole and reported.sweep.steps <= MOST_STEPS and is_finite(reported.state)
 
 
 def is_telling(reported: ReportedRun) -> bool:

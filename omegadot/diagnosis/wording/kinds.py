@@ -66,7 +66,9 @@ def agreed(here: Sequence[str], over_cases: Mapping[str, tuple[Sequence[str], bo
     if most < SHARE * count:
         return []
     best = [text for text in here if kinds[kind_of(text)] == most and kind_of(text) in deciding]
-    return best if len(best) <= MOST_NAMED else []
+    # of several slips in one scheme the first states the least
+    plain = list({text.partition(", but ")[0]: text for text in reversed(best)}.values())[::-1]
+    return plain if len(plain) <= MOST_NAMED else []
 
 
 def either(texts: Sequence[str]) -> list[str]:

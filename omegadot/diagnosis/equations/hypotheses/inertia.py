@@ -102,6 +102,11 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
             lambda f, s: _both(own_inertia(s) + diagonal(_about(s))),
         )
         yield of_form(
+            "the parallel-axis theorem is taken with a mass of 1 kg",
+            "inertia",
+            lambda f, s: _both(own_inertia(s) + _about(s) / float(s.body.mass)),
+        )
+        yield of_form(
             "the parallel-axis theorem is applied twice",
             "inertia",
             lambda f, s: _both(2.0 * f.spin - own_inertia(s)),
