@@ -150,6 +150,6 @@ def test_every_slip_makes_another_scheme(name: str) -> None:
     q, v = body().initial.orientation, body().initial.angular_velocity
     due = np.concatenate(SCHEMES[name].step(motion, q, v, 0.05))
     for text, scheme in slipped(name).items():
-        unseen = "position moves by the velocity" in text or "loads are held" in text
+        unseen = text.startswith("the position moves") or "loads" in text
         end = np.concatenate(scheme.step(motion, q, v, 0.05))
         assert (np.max(np.abs(end - due)) < 1e-13) == unseen, text
