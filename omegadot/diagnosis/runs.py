@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.reported.clock import clock_cause
 from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import ReportedRun, reported_run, reported_run_guesses
@@ -163,11 +164,12 @@ def _of_reported(reported: ReportedRun, result: CaseResult) -> RunCauses:
     if seen:
         return RunCauses((seen,))
     found = [*misread(reported), *filter(None, (cause(reported) for cause in CAUSES_REPORTED))]
-    found += stepping_causes(reported)
+    clear = not (whole and reported.agrees(reported.state, reported.own, slack=BEYOND_ROUNDING))
+    found += stepping_causes(reported) if clear else ()
     if found:
         return RunCauses(tuple(dict.fromkeys(found)), is_telling(reported))
     # Beside a guess it is its error that one quantity shows, where the motion is the same by many.
     alone = (one_field,) if reported.is_declared or is_telling(reported) else ()
-    last = (not_unit, another_start, *((intervals, *alone) if whole else ()))
+    last = (not_unit, another_start, *((intervals, *alone) if whole and clear else ()))
     text = next(filter(None, (cause(reported) for cause in last)), "")
     return RunCauses((text,), is_telling(reported)) if text else NOTHING

@@ -105,7 +105,19 @@ def _late(reported: ReportedRun) -> str:
     ended = reported.agrees(reported.state[last], late[last], last)
     if ended and reported.agrees(reported.state[before], reported.own[before], before):
         return "the last step is missing: the end is the state one step before"
+    if reported.agrees(reported.state[before], reported.own[before], before):
+        return _last_in_full(reported)
     return ""
+
+
+def _last_in_full(reported: ReportedRun) -> str:
+    """A last interval that is shorter than the others is stepped as long as these."""
+    numbers, last = reported.sweep.sample_steps, slice(-1, None)
+    end = reported.stepped_on(reported.state[-2:-1])
+    if numbers[-1] - numbers[-2] == reported.sweep.every:
+        return ""
+    text = "the last interval, shorter than the others, is stepped in full: the end is too late"
+    return text if reported.agrees(reported.state[last], end, last, slack=2.0) else ""
 
 
 def another_start(reported: ReportedRun) -> str:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from omegadot.diagnosis.reported.clock import GRIDS
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.growth import changes
@@ -16,6 +17,7 @@ MOST_TRIES = 8
 CONVERGES = 0.3  # what a try must leave of the distance before it
 # A fitted run has come out of a search that ends within rounding, and bounds are of one run.
 SLACK = 4.0
+WHOLE = 1e-9  # relative: what a fitted step is known to
 STILL = 1e-6  # a factor of the step that leaves nothing of it
 
 
@@ -54,7 +56,18 @@ def longer(reported: ReportedRun) -> str:
     part = search(reported, lambda k: reported.stepped(timestep=h * (1.0 + k)), 1e-6)
     if part is None or part == 0.0 or abs(1.0 + part) < STILL:
         return ""
-    return f"steps are {100 * abs(part):.4g} % too {'long' if part > 0 else 'short'}"
+    text = f"steps are {100 * abs(part):.4g} % too {'long' if part > 0 else 'short'}"
+    return f"{text}{_grid(h, h * (1.0 + part))}"
+
+
+def _grid(requested: float, taken: float) -> str:
+    """The unit in whole numbers of which a step is taken, where the requested one is not."""
+    for unit, what in GRIDS.items():
+        near, due = round(taken / unit), requested / unit
+        whole = abs(taken / unit - near) < WHOLE * near
+        if whole and abs(due - near) <= 1.0 and abs(due - round(due)) > 10 * WHOLE * near:
+            return f": rounded to whole {what}"
+    return ""
 
 
 def damped(reported: ReportedRun) -> str:

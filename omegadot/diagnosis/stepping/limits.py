@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from omegadot.diagnosis.reported.run import ReportedRun
-from omegadot.diagnosis.stepping.fitted import SLACK, search
+from omegadot.diagnosis.stepping.fitted import search
 from omegadot.diagnosis.stepping.step_ends import (
     End,
     clipped_at,
@@ -89,8 +89,11 @@ def turn_held(reported: ReportedRun) -> str:
     greatest = float(np.max(norm(rotation_between(q[:-1], q[1:])))) / every
     if not 0.0 < greatest < np.pi / every:
         return ""
-    for angle in (float(f"{greatest:.6g}"), greatest):
-        stepped = reported.stepped(with_end(reported.declared, turn_within(angle)))
-        if reported.agrees(reported.state, stepped, slack=SLACK):
-            return f"the turn of a step is held within {angle:.6g} rad"
-    return ""
+
+    def stepped(more: float) -> State:
+        return reported.stepped(with_end(reported.declared, turn_within(greatest * (1.0 + more))))
+
+    more = search(reported, stepped, 1e-6)
+    return (
+        "" if more is None else f"the turn of a step is held within {greatest * (1 + more):.6g} rad"
+    )

@@ -24,6 +24,7 @@ FACTS = (
     "one time, that of",
     "the clock runs",
     "does not move in the run",
+    "is stepped in full",
 )
 MOST_NAMED = 3  # between which nothing decides
 SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
@@ -33,7 +34,8 @@ def kind_of(text: str) -> str:
     """A cause without its numbers, and without where it shows."""
     for end in (", but only where", ", at steps of", ", on "):
         text = text.partition(end)[0]
-    return NUMBER.sub("#", text)
+    same = text.replace("too short", "too long").partition(": rounded to")[0]
+    return NUMBER.sub("#", same)
 
 
 def is_fact(text: str) -> bool:
