@@ -16,7 +16,7 @@ from omegadot.diagnosis.equations.evidence import (
 )
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.quotient import difference_quotient
-from omegadot.diagnosis.models.misreadings import order_text, signed_orders
+from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orders
 from omegadot.diagnosis.reported.requests import place_cause
 from omegadot.diagnosis.wording.digits import factor
 from omegadot.diagnosis.wording.features import features_of

@@ -9,7 +9,8 @@ import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.hypotheses import hypotheses
-from omegadot.diagnosis.models.misreadings import fitted_misreadings, misreadings
+from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
+from omegadot.diagnosis.models.misreadings import misreadings
 from omegadot.diagnosis.models.tensors import other_tensors
 from omegadot.diagnosis.wording.digits import factor, number, vector
 from omegadot.diagnosis.wording.laws import law_of

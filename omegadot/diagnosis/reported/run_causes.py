@@ -6,13 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.models.misreadings import (
-    ADDED,
-    NOT_UNIT,
-    OF_ANY_STATE,
-    fitted_misreadings,
-    misreadings,
-)
+from omegadot.diagnosis.models.fitted_misreadings import ADDED, fitted_misreadings
+from omegadot.diagnosis.models.misreadings import NOT_UNIT, OF_ANY_STATE, misreadings
 from omegadot.diagnosis.reported.precision import digits_reported
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.reported.sample_causes import ALONE, half_step

@@ -11,6 +11,7 @@ from omegadot.diagnosis.reported.clock import GRIDS
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.growth import changes
+from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State
 
 MOST_TRIES = 8
@@ -18,15 +19,18 @@ CONVERGES = 0.3  # what a try must leave of the distance before it
 # A fitted run has come out of a search that ends within rounding, and bounds are of one run.
 SLACK = 4.0
 WHOLE = 1e-9  # relative: what a fitted step is known to
+FAR = 0.1  # relative: a number that a search from the right one may not reach
 STILL = 1e-6  # a factor of the step that leaves nothing of it
 
 
-def search(reported: ReportedRun, stepped: Callable[[float], State], delta: float) -> float | None:
+def search(
+    reported: ReportedRun, stepped: Callable[[float], State], delta: float, start: float = 0.0
+) -> float | None:
     """The number with which a run comes to the reported one, by Gauss-Newton; None if none does.
 
     delta: a small change of the number, of which one per cent is still distinguished from rounding.
     """
-    rate, found = reported.truth.yardstick.rate, 0.0
+    rate, found = reported.truth.yardstick.rate, start
 
     def apart(state: State) -> Array:
         return np.ravel(changes(state, reported.state, rate))
@@ -53,11 +57,23 @@ def search(reported: ReportedRun, stepped: Callable[[float], State], delta: floa
 def longer(reported: ReportedRun) -> str:
     """Every step is too long or too short by a part."""
     h = reported.sweep.timestep
-    part = search(reported, lambda k: reported.stepped(timestep=h * (1.0 + k)), 1e-6)
+    part = search(
+        reported, lambda k: reported.stepped(timestep=h * (1.0 + k)), 1e-6, _turned(reported)
+    )
     if part is None or part == 0.0 or abs(1.0 + part) < STILL:
         return ""
     text = f"steps are {100 * abs(part):.4g} % too {'long' if part > 0 else 'short'}"
     return f"{text}{_grid(h, h * (1.0 + part))}"
+
+
+def _turned(reported: ReportedRun) -> float:
+    """By which part the first interval turns too far: a first guess of a step that is far off."""
+    with np.errstate(all="ignore"):
+        came, due = (
+            norm(rotation_between(*x.orientation[:2])) for x in (reported.state, reported.own)
+        )
+        part = float(came / due) - 1.0
+    return part if np.isfinite(part) and abs(part) > FAR and part > -1.0 else 0.0
 
 
 def _grid(requested: float, taken: float) -> str:

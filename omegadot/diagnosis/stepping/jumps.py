@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.diagnosis.models.misreadings import fitted_misreadings, misreadings
+from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
+from omegadot.diagnosis.models.misreadings import misreadings
 from omegadot.diagnosis.stepping.vanishing_steps import LEFT, VanishingSteps, stays
 from omegadot.diagnosis.wording.conditions import only_where
 from omegadot.diagnosis.wording.digits import limits

@@ -6,11 +6,18 @@ from collections.abc import Callable
 
 import numpy as np
 
-from omegadot.diagnosis.equations.terms.parts import along_omega, gyroscopic, solved, world
+from omegadot.diagnosis.equations.terms.parts import (
+    along_omega,
+    by_rows,
+    gyroscopic,
+    rows,
+    solved,
+    world,
+)
 from omegadot.diagnosis.equations.terms.terms import AXES, Terms
 from omegadot.diagnosis.wording.digits import number, vector
 from omegadot.reference_impl.loads import gravity_torque
-from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, State, System
 
 CLOSE = 1e-5  # relative: a factor is the whole number that is meant
@@ -31,10 +38,10 @@ def _mixture(what: str) -> Callable[[System, Array], str]:
         near = np.round(matrix)
         whole = float(np.max(np.abs(matrix - near))) < CLOSE
         if whole and np.array_equal(near @ near.T, np.eye(3)):
-            shown = [_signed(row) for row in near]
-            return f"the components of {what} are others: x, y, z hold {', '.join(shown)}"
-        rows = "; ".join(vector(row) for row in matrix)
-        return f"{what} is multiplied by the matrix ({rows})"
+            axes = ", ".join(_signed(row) for row in near)
+            return f"the components of {what} are others: x, y, z hold {axes}"
+        shown = "; ".join(vector(row) for row in matrix)
+        return f"{what} is multiplied by the matrix ({shown})"
 
     return text
 
@@ -42,6 +49,13 @@ def _mixture(what: str) -> Callable[[System, Array], str]:
 def _signed(row: Array) -> str:
     axis = int(np.argmax(np.abs(row)))
     return f"{'-' if row[axis] < 0.0 else ''}{AXES[axis]}"
+
+
+def _world_damping(system: System, states: State) -> Array:
+    """The damping's components in world axes, each alone, as omega-dot (3, n, 3)."""
+    q, torque = states.orientation, -float(system.load.damping) * states.angular_velocity
+    parts = rows(rotate(q, torque))
+    return np.stack([solved(system, rotate_inverse(q, one)) for one in parts])
 
 
 def _powers(system: System, states: State) -> Array:
@@ -99,6 +113,12 @@ MIXED: tuple[Terms, ...] = (
         "world torque components",
         lambda s, x, a: _components(s, world(s, x, np.asarray(s.load.torque_world)[None])[0]),
         _mixture("the torque in world axes, taken to body axes,"),
+    ),
+    Terms(
+        "damping rows in world",
+        lambda s, x, a: _world_damping(s, x),
+        by_rows("the damping in world axes"),
+        by_rows=True,
     ),
     Terms("powers of omega", lambda s, x, a: _powers(s, x), _powers_text),
     Terms(
