@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.reported.clock import clock_cause
@@ -32,6 +32,8 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun, is_finite
 
+ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
+LIMIT = "is held"
 MOST_TRIED = 1000  # steps of a second run, in which a cause is looked for again
 
 
@@ -68,7 +70,7 @@ def run_causes(
         found = _of_run(case, truth, result, run)
         if found.texts:
             kept = _of_others(found, case, truth, result, run, failed)
-            return replace(kept, texts=tuple(t + _at_long_steps(runs) for t in kept.texts))
+            return _at_long_steps(kept, runs)
     return NOTHING
 
 
@@ -108,15 +110,21 @@ def _of_several_schemes(
     return f"runs with different steps are of different schemes: {', '.join(parts)}"
 
 
-def _at_long_steps(runs: Sequence[JudgedRun]) -> str:
-    """Where the longer steps alone fail, between which steps it begins."""
+def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
+    """Where the longer steps alone fail, between which steps it begins.
+
+    What acts in every step alike is not the cause then, and a limit is one on any motion.
+    """
     failed, sound = (
         [r.sweep.timestep for r in runs if any(row.verdict == "fail" for row in r.rows) is wrong]
         for wrong in (True, False)
     )
     if not failed or not sound or max(sound) >= min(failed):
-        return ""
-    return f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s are sound"
+        return found
+    where = f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s are sound"
+    kept = [text for text in found.texts if not text.startswith(ALIKE)]
+    limit = len(kept) == 1 and LIMIT in kept[0]
+    return RunCauses(tuple(text + where for text in kept), found.telling or limit)
 
 
 def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> RunCauses:

@@ -38,6 +38,7 @@ def _turned(field: str, turn: Callable[[Array, Array], Array]) -> Change:
 
 
 def changed(field: str, change: Callable[[Array], Array]) -> Change:
+    """One quantity of a state, changed."""
     return lambda state: replace(state, **{field: change(getattr(state, field))})
 
 

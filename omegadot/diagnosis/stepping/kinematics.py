@@ -35,7 +35,9 @@ def _wrong_rates(steps: VanishingSteps) -> dict[str, dict[str, Array]]:
     q, w, v = states.orientation, states.angular_velocity, states.linear_velocity
     lever = rotate(q, cross(w, system.body.center_of_mass))
     attitude = {
-        "the attitude turns by omega taken in world axes": rotate_inverse(q, w),
+        "the attitude turns by omega taken in world axes, multiplied from the left": (
+            rotate_inverse(q, w)
+        ),
         "the attitude turns by R omega taken in body axes": rotate(q, w),
         "the attitude turns the wrong way": -w,
     }
