@@ -95,7 +95,9 @@ class IntegratorCauses:
         if steps is None or steps.sound:
             return self._of_trajectories()
         found = self._of_steps(steps) or self._of_trajectories()
-        last = found or either([jump_cause(steps)]) or either(kinematic_causes(steps))
+        last = (
+            found or either([jump_cause(steps, self._beginning)]) or either(kinematic_causes(steps))
+        )
         return last or either([still_cause(steps)]) or ([] if steps.still else self._known(steps))
 
     def _of_steps(self, steps: VanishingSteps) -> list[str]:
@@ -104,7 +106,7 @@ class IntegratorCauses:
         if common:
             return [common]
         if jumps(steps):
-            return [] if self._declares else either([jump_cause(steps)])
+            return [] if self._declares else either([jump_cause(steps, self._beginning)])
         if steps.still:
             return []
         moved = moves_by_cause(steps)
@@ -155,7 +157,10 @@ class IntegratorCauses:
             self._of_runs = NOTHING
             # In single precision much fits a run within its rounding, and decides little.
             if self._result is not None and self._result.precision != "float32":
-                self._of_runs = run_causes(self._case, self._truth, self._result, self._runs)
+                # a wrong equation shows in steps that vanish, and from more states
+                wrong = self.steps is None or not np.all(self.steps.evidence.sound)
+                how = (self._case, self._truth, self._result, self._runs)
+                self._of_runs = run_causes(*how, equations=wrong)
                 over[self._case.name] = (self._of_runs.texts, self._of_runs.telling)
         return either(agreed(self._of_runs.texts, over))
 

@@ -52,9 +52,16 @@ NOTHING = RunCauses()
 
 
 def run_causes(
-    case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+    case: Case,
+    truth: Truth,
+    result: CaseResult,
+    runs: Sequence[JudgedRun],
+    equations: bool = True,
 ) -> RunCauses:
-    """Of the failed run of the fewest steps in which one is found: hypotheses are stepped again."""
+    """Of the failed run of the fewest steps in which one is found: hypotheses are stepped again.
+
+    equations: whether the equation that is stepped may be another than the right one.
+    """
     truth = truth.in_precision(result.precision)
     failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
     for run in failed:
@@ -67,9 +74,9 @@ def run_causes(
     if several:
         return RunCauses((several,))
     for run in sorted(failed, key=lambda run: run.sweep.steps):
-        found = _of_run(case, truth, result, run)
+        found = _of_run(case, truth, result, run, equations)
         if found.texts:
-            kept = _of_others(found, case, truth, result, run, failed)
+            kept = _of_others(found, case, truth, result, run, failed, equations)
             return _at_long_steps(kept, runs)
     return NOTHING
 
@@ -81,12 +88,14 @@ def _of_others(
     result: CaseResult,
     run: JudgedRun,
     failed: Sequence[JudgedRun],
+    equations: bool,
 ) -> RunCauses:
     """Those that make the next failed run as well, if it is short, by other numbers maybe."""
     longer = [one for one in failed if run.sweep.steps < one.sweep.steps <= MOST_TRIED]
     if not longer or all(map(is_fact, found.texts)):
         return found
-    other = _of_run(case, truth, result, min(longer, key=lambda one: one.sweep.steps))
+    second = min(longer, key=lambda one: one.sweep.steps)
+    other = _of_run(case, truth, result, second, equations)
     if other.texts and all(map(is_fact, other.texts)):
         return found
     kinds = set(map(kind_of, other.texts))
@@ -127,7 +136,9 @@ def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
     return RunCauses(tuple(text + where for text in kept), found.telling or limit)
 
 
-def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> RunCauses:
+def _of_run(
+    case: Case, truth: Truth, result: CaseResult, run: JudgedRun, equations: bool
+) -> RunCauses:
     """Causes in what one run reports, then in its stepping, then in where it is sound.
 
     Where nothing but the omega-dot reported along it failed, only that is looked at.
@@ -137,11 +148,11 @@ def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> Run
         text = omega_dot_late(case, truth, result, run)
         return RunCauses((text,)) if text else NOTHING
     if reported is not None:
-        return _of_reported(reported, result)
+        return _of_reported(reported, result, equations)
     # By the schemes of the reference that come nearest, where none is declared.
     guesses = reported_run_guesses(case, truth, result, run)
     for guess in guesses:
-        found = _of_reported(guess, result)
+        found = _of_reported(guess, result, equations)
         if found.texts:
             return found
     found = _of_other_slips(guesses)
@@ -160,7 +171,7 @@ def _of_other_slips(guesses: Sequence[ReportedRun]) -> RunCauses:
     return RunCauses(tuple(texts), is_telling(guesses[0])) if texts else NOTHING
 
 
-def _of_reported(reported: ReportedRun, result: CaseResult) -> RunCauses:
+def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> RunCauses:
     if not reported.is_declared and reported.is_own:
         return NOTHING  # nothing in this run is wrong
     whole = len(reported.time) == len(reported.sweep.times)
@@ -173,7 +184,7 @@ def _of_reported(reported: ReportedRun, result: CaseResult) -> RunCauses:
         return RunCauses((seen,))
     found = [*misread(reported), *filter(None, (cause(reported) for cause in CAUSES_REPORTED))]
     clear = not (whole and reported.agrees(reported.state, reported.own, slack=BEYOND_ROUNDING))
-    found += stepping_causes(reported) if clear else ()
+    found += stepping_causes(reported, equations) if clear else ()
     if found:
         return RunCauses(tuple(dict.fromkeys(found)), is_telling(reported))
     # Beside a guess it is its error that one quantity shows, where the motion is the same by many.

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
-from omegadot.diagnosis.models.misreadings import fitted_misreadings
+from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
 from omegadot.diagnosis.reported.clock import clock_cause
 from omegadot.diagnosis.reported.requests import again_cause, place_cause
 from omegadot.diagnosis.stepping.slips import OF_SCHEME, slipped
@@ -21,6 +21,7 @@ from omegadot.gates.states.equation import random_states
 from omegadot.harness.arguments import case_of
 from omegadot.reference_impl.body_motion import attitude_motion
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import quaternion_product, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.scenarios import scenario
@@ -60,12 +61,17 @@ def states() -> State:
     return random_states(body(), 40, [1])
 
 
+MOUNT = np.array([np.cos(0.2), 0.0, 0.0, np.sin(0.2)])
+TURN = rotation_matrix(np.array([0.8, 0.1, -0.5, 0.3]) / np.sqrt(0.99))
 MISREAD = {
     "feet": ("position", lambda x: 3.28084 * x, "the position is scaled by 3.28084"),
     "shifted": ("position", lambda x: x + np.array([0.25, 0.0, 0.0]), "is off by (0.25, 0, 0)"),
     "down": ("linear_velocity", lambda x: x * np.array([1.0, -1.0, -1.0]), "hold x, -y, -z"),
     "swapped": ("angular_velocity", lambda x: x[:, [1, 0, 2]], "axes of omega are others"),
     "quaternion": ("orientation", lambda q: q[:, [0, 1, 3, 2]], "vector part is another"),
+    "turned": ("angular_velocity", lambda w: w @ TURN, "omega is turned by one rotation"),
+    "mounted": ("orientation", lambda q: quaternion_product(q, MOUNT + 0.0 * q), "in body axes"),
+    "surveyed": ("orientation", lambda q: quaternion_product(MOUNT + 0.0 * q, q), "in world axes"),
 }
 
 
@@ -75,10 +81,22 @@ def test_what_makes_one_trajectory_out_of_another_is_found_and_undone(
 ) -> None:
     field, change, phrase = MISREAD[name]
     came = replace(states, **{field: change(getattr(states, field))})
-    found = [one for one in fitted_misreadings(came, states) if phrase in one.statement]
+    known = fitted_misreadings(came, states)
+    found = [one for one in known if phrase in one.statement and ", and the" not in one.statement]
     assert len(found) == 1
     undone = getattr(found[0].right(came), field)
     assert np.allclose(undone, getattr(states, field), rtol=1e-12, atol=1e-12)
+
+
+def test_position_and_velocity_may_be_misread_together(states: State) -> None:
+    """As of a world with one axis the other way."""
+    mirror = np.array([1.0, -1.0, 1.0])
+    parts = {"position": states.position * mirror, "linear_velocity": -states.linear_velocity}
+    came = replace(states, **parts)
+    both = next(one for one in fitted_misreadings(came, states) if ", and the" in one.statement)
+    undone = both.right(came)
+    assert np.array_equal(undone.position, states.position)
+    assert np.allclose(undone.linear_velocity, states.linear_velocity, rtol=1e-12)
 
 
 def test_one_vector_alone_has_no_addition(states: State) -> None:

@@ -150,13 +150,17 @@ class Across:
         """Where the equation holds at some states: what fits the others, and which these are."""
         evidence = scene.evidence[source]
         wrong = np.flatnonzero(~evidence.sound)
-        if not 0 < len(wrong) < len(evidence.sound):
-            return ""
         every = [e for one in self.scenes.values() if (e := one.evidence.get(source))]
         parts = [(e.system, e.states, e.sound) for e in every]
+        # where nothing of the kind acts, every state is right, and shows nothing
+        shown = [part for part in parts if not np.all(part[2])]
+        mixed = sum(bool(np.any(right)) for _, _, right in shown)
+        if not len(wrong) or not mixed:
+            return ""
         alone = [(evidence.system, evidence.states, evidence.sound)]
         few = sum(not np.all(right) for _, _, right in parts) < 2
-        where = only_where(parts) or (only_where(alone) if few else "")
+        where = only_where(parts) or (only_where(shown) if mixed > 1 else "")
+        where = where or (only_where(alone) if few else "")
         if not where:
             return ""
         text = f"the equation holds at some states, and is wrong only where {where}"

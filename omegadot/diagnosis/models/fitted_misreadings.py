@@ -23,6 +23,7 @@ ADDED = "the same at every sample"
 LEAST = 3  # samples that have the same addition
 CLOSE = 1e-6  # relative: a factor that is none
 LOOSE = 1e-3  # relative: what is fitted is tried, where it is as close as this
+PLAIN = 3  # digits of a factor that is tried first: single precision leaves little more
 DECIMALS = 6  # of an axis
 
 
@@ -54,7 +55,8 @@ def _fitted(field: str, reported: State, meant: State) -> Iterator[Misreading]:
         return
     k = float(np.sum(came * due) / np.sum(due * due)) if size > 0.0 else 0.0
     if k and np.max(np.abs(came - k * due)) <= LOOSE * abs(k) * size and abs(k - 1.0) > CLOSE:
-        yield Misreading(f"{what} is scaled by {factor(k)}", _by(field, k))
+        for number in dict.fromkeys((float(f"{k:.{PLAIN}g}"), k)):
+            yield Misreading(f"{what} is scaled by {factor(number)}", _by(field, number))
     more = np.mean(came - due, axis=0)
     several = came.ndim > 1 and len(came) >= LEAST  # any one vector is another and a rest
     if several and np.max(np.abs(came - due - more)) <= LOOSE * float(norm(more)):
@@ -71,6 +73,8 @@ def _turned_axes(field: str, what: str, came: Array, due: Array) -> Iterator[Mis
     if not sizes[1] > CLOSE * sizes[0]:
         return
     turn = right.T @ np.diag([1.0, 1.0, np.linalg.det(right.T @ left.T)]) @ left.T
+    if np.max(np.abs(turn - np.eye(3))) <= CLOSE:
+        return
     if np.max(np.abs(came - due @ turn.T)) <= LOOSE * float(np.max(np.abs(due))):
         axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
         angle = float(np.arctan2(norm(axis), np.trace(turn) - 1.0))

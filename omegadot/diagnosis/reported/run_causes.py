@@ -11,6 +11,7 @@ from omegadot.diagnosis.models.misreadings import NOT_UNIT, OF_ANY_STATE, misrea
 from omegadot.diagnosis.reported.precision import digits_reported
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.reported.sample_causes import ALONE, half_step
+from omegadot.diagnosis.wording.kinds import kind_of
 from omegadot.gates.bounds.scales import norm
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.energy import rotational_kinetic_energy
@@ -63,11 +64,16 @@ def misread(reported: ReportedRun) -> list[str]:
         if reported.agrees(replace(came, orientation=turned), own, later):
             text = "the attitude of a run is relative to its start, or starts from the identity"
             found.append(text)
+        unsigned = own.orientation.copy()
+        unsigned[:, 0] = np.abs(unsigned[:, 0])
+        if reported.agrees(came, replace(own, orientation=unsigned), later):
+            found.append("the quaternion's scalar part is reported without its sign")
     for one in OF_ANY_STATE if not found else ():
         start = one.right(reported.case.initial)
         if reported.agrees(one.right(reported.state), reported.stepped(initial=start)):
             found.append(f"on the way in and on the way out, {one.statement}")
-    plain = [text for text in found if "axes of" not in text]
+    kinds = {kind_of(text): text for text in reversed(found)}
+    plain = [text for text in found if "axes of" not in text and text in kinds.values()]
     return plain or found[:1]
 
 

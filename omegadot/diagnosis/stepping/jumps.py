@@ -8,13 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
-from omegadot.diagnosis.models.misreadings import misreadings
+from omegadot.diagnosis.models.misreadings import Misreading, misreadings
+from omegadot.diagnosis.stepping.follows import Beginning
 from omegadot.diagnosis.stepping.vanishing_steps import LEFT, VanishingSteps, stays
 from omegadot.diagnosis.wording.conditions import only_where
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.rotations import quaternion_product
+from omegadot.reference_impl.rotations import attitude_angle, quaternion_product
 from omegadot.reference_impl.system import Array
+
+NEARER = 0.5  # of what a misread run is off by: a coarse scheme leaves something too
 
 
 def jumps(steps: VanishingSteps) -> bool:
@@ -22,7 +25,7 @@ def jumps(steps: VanishingSteps) -> bool:
     return not np.all(stays(steps, steps.start))
 
 
-def jump_cause(steps: VanishingSteps) -> str:
+def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str:
     """What a step does to a state however short it is: limits, sleep, rounding; "" without any."""
     before, after = steps.states, steps.start
     if not jumps(steps):
@@ -35,7 +38,7 @@ def jump_cause(steps: VanishingSteps) -> str:
         return f"{text}: only where {where}" if where else text
     for one in (*misreadings(steps.system), *fitted_misreadings(after, before)):
         if np.all(stays(steps, one.right(after))):
-            return f"in the run, {one.statement}"
+            return f"in the run, {one.statement}" if _undone(one, beginning) else ""
     relative = replace(after, orientation=quaternion_product(before.orientation, after.orientation))
     if np.all(stays(steps, relative)):
         return "the attitude of a run is relative to its start, or starts from the identity"
@@ -54,6 +57,28 @@ def jump_cause(steps: VanishingSteps) -> str:
                 return text
     where = only_where([(steps.system, before, stays(steps, after))])
     return f"a step changes the state, however short it is, only where {where}" if where else ""
+
+
+def _undone(one: Misreading, beginning: Beginning | None) -> bool:
+    """Whether a misreading holds along a run as well: undone, it is nearer to the exact motion.
+
+    Where a step of no length has the attitude of the run's start, any sample of a run may have it.
+    """
+    if beginning is None or len(beginning.times) < 3:
+        return True
+    came, exact = beginning.reported[1:], beginning.exact[1:]
+    undone = one.right(came)
+    for name, due in vars(exact).items():
+        before, after = (getattr(state, name) for state in (came, undone))
+        if np.array_equal(before, after):
+            continue
+        if name == "orientation":
+            far, near = (np.max(attitude_angle(q, due)) for q in (before, after))
+        else:
+            far, near = (np.max(norm(x - due)) for x in (before, after))
+        if near > NEARER * far:
+            return False
+    return True
 
 
 def _limit(

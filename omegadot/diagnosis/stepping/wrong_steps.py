@@ -19,8 +19,11 @@ LEAST_SAMPLES = 4  # of fewer many mistakes make the same
 STEADY = 1e-6  # rad: the axis of a steady spin turns by less
 
 
-def stepping_causes(reported: ReportedRun) -> Iterator[str]:
-    """Every one that makes this run; a scheme that is a guess is not wrong by itself."""
+def stepping_causes(reported: ReportedRun, equations: bool) -> Iterator[str]:
+    """Every one that makes this run; a scheme that is a guess is not wrong by itself.
+
+    equations: whether the equation that is stepped may be another than the right one.
+    """
     if not is_steppable(reported):
         return
     yield from filter(None, (asleep(reported), still(reported)))
@@ -31,7 +34,7 @@ def stepping_causes(reported: ReportedRun) -> Iterator[str]:
     yield from slips(reported)
     with_number = (longer, damped, clipped, held, speed)
     yield from filter(None, (cause(reported) for cause in with_number))
-    yield from other_equations(reported)
+    yield from other_equations(reported) if equations else ()
 
 
 def is_steppable(reported: ReportedRun) -> bool:
