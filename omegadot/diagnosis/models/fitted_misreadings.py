@@ -27,16 +27,18 @@ PLAIN = 3  # digits of a factor that is tried first: single precision leaves lit
 DECIMALS = 6  # of an axis
 
 
-def fitted_misreadings(reported: State, meant: State) -> Iterator[Misreading]:
+def fitted_misreadings(
+    reported: State, meant: State, together: bool = True
+) -> Iterator[Misreading]:
     """What makes the vectors of one trajectory out of another's: a factor, an addition, an order.
 
     Each is found in one quantity and has to be tried: the others must be right, and all samples.
-    Position and velocity may be misread together.
+    together: position and velocity may be misread both, each in its way.
     """
     found = {field: list(_fitted(field, reported, meant)) for field in FIELDS}
     for one in found.values():
         yield from one
-    for first in found["position"]:
+    for first in found["position"] if together else ():
         for second in found["linear_velocity"]:
             yield Misreading(f"{first.statement}, and {second.statement}", _both(first, second))
     yield from _other_quaternion(reported.orientation, meant.orientation)

@@ -174,7 +174,7 @@ def _state(case: Case, requested: State, back: State, eps: float) -> list[str]:
     failed = failures(back)
     if not failed:
         return []
-    for one in (*misreadings(case.system), *fitted_misreadings(back, requested)):
+    for one in (*misreadings(case.system), *fitted_misreadings(back, requested, together=False)):
         if not failures(one.right(back)):
             return [one.statement]
     single = State(*(f.astype(np.float32).astype(float) for f in vars(requested).values()))

@@ -38,7 +38,8 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
         return f"{text}: only where {where}" if where else text
     for one in (*misreadings(steps.system), *fitted_misreadings(after, before)):
         if np.all(stays(steps, one.right(after))):
-            return f"in the run, {one.statement}" if _undone(one, beginning) else ""
+            text = _along(one, beginning)
+            return f"in the run, {text}" if text else ""
     relative = replace(after, orientation=quaternion_product(before.orientation, after.orientation))
     if np.all(stays(steps, relative)):
         return "the attitude of a run is relative to its start, or starts from the identity"
@@ -59,26 +60,33 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
     return f"a step changes the state, however short it is, only where {where}" if where else ""
 
 
-def _undone(one: Misreading, beginning: Beginning | None) -> bool:
-    """Whether a misreading holds along a run as well: undone, it is nearer to the exact motion.
+def _along(one: Misreading, beginning: Beginning | None) -> str:
+    """A misreading as text, if it holds along a run as well; "" if it does not.
 
-    Where a step of no length has the attitude of the run's start, any sample of a run may have it.
+    Undone, it is nearer to the exact motion. A step of no length has the attitude of the run's
+    start, with which any sample of a run may be turned.
     """
     if beginning is None or len(beginning.times) < 3:
-        return True
+        return one.statement
     came, exact = beginning.reported[1:], beginning.exact[1:]
-    undone = one.right(came)
+    first = 0.0 * came.orientation + beginning.reported.orientation[:1]
+    at_start = one.right(replace(came, orientation=first))
+    undone, text = one.right(came), one.statement
     for name, due in vars(exact).items():
-        before, after = (getattr(state, name) for state in (came, undone))
-        if np.array_equal(before, after):
+        far, near, other = (_apart(name, getattr(x, name), due) for x in (came, undone, at_start))
+        if np.array_equal(getattr(came, name), getattr(undone, name)):
             continue
-        if name == "orientation":
-            far, near = (np.max(attitude_angle(q, due)) for q in (before, after))
-        else:
-            far, near = (np.max(norm(x - due)) for x in (before, after))
+        if name != "orientation" and other < NEARER * near:
+            near, text = other, f"{one.statement} of the run's start"
         if near > NEARER * far:
-            return False
-    return True
+            return ""
+    return text
+
+
+def _apart(name: str, one: Array, other: Array) -> float:
+    with np.errstate(all="ignore"):
+        apart = attitude_angle(one, other) if name == "orientation" else norm(one - other)
+    return float(np.max(apart))
 
 
 def _limit(

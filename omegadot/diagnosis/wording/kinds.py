@@ -45,7 +45,7 @@ def is_fact(text: str) -> bool:
 
 def is_of_one_run(text: str) -> bool:
     """Whether it holds of a run that is another when it is requested again."""
-    kept = ("the last step is missing", "left over", "one before", "does not begin at")
+    kept = ("the last step is missing", "left over", "one before", "does not begin at", "its sign")
     return is_fact(text) or any(one in text for one in kept)
 
 
