@@ -83,7 +83,8 @@ class Across:
             held = [self._all.held(one, scene, source) for one in _distinct(level)]
             whole = [one for one in held if one.holds]
             strong = [one for one in whole if one.strong]
-            strong = [one for one in strong if not one.against] or strong
+            least = min((len(one.against) for one in strong), default=0)
+            strong = [one for one in strong if len(one.against) == least]
             text = self._worded(strong, source)
             if text:
                 self._accepted.append([one.candidate for one in strong])

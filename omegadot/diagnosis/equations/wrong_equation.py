@@ -208,6 +208,9 @@ def _other_bodies(
         "inverse dynamics use the inertia about the centre of mass, not about the pivot": by(
             np.asarray(body), np.asarray(body)
         ),
+        "inverse dynamics have the products of inertia with the wrong sign": by(
+            2.0 * diagonal - inertia, 2.0 * diagonal - inertia
+        ),
         "inverse dynamics invert the inertia": by(np.asarray(inverse(inertia)), inertia),
         "inverse dynamics give the torque of the acceleration that the loads cause": lambda: (
             inverse_dynamics(system, states, forward_dynamics(system, states))

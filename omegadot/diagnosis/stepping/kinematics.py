@@ -41,6 +41,10 @@ def _wrong_rates(steps: VanishingSteps) -> dict[str, dict[str, Array]]:
         "the attitude turns by R omega taken in body axes": rotate(q, w),
         "the attitude turns the wrong way": -w,
     }
+    for axis, sign in zip("xyz", 1.0 - 2.0 * np.eye(3), strict=True):
+        attitude[f"the attitude turns by omega with {axis} reversed"] = sign * w
+    for order, what in (([1, 0, 2], "x and y"), ([0, 2, 1], "y and z"), ([2, 1, 0], "z and x")):
+        attitude[f"the attitude turns by omega with {what} swapped"] = w[:, order]
     if system.load.pivot is not None:
         return {"attitude": attitude}
     position = {
