@@ -18,6 +18,7 @@ from omegadot.diagnosis.stepping.kinematics import (
     omega_share_cause,
     omega_still_cause,
     still_cause,
+    velocity_share_cause,
 )
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
@@ -140,7 +141,8 @@ class IntegratorCauses:
                 followed = follows(self._case.system, self._beginning, one, steps.eps)
                 self._followed[one.key] = followed
             if self._followed[one.key] is False:
-                return [f"in the first step of a run alone, {text}"]
+                first = f"in the first step of a run alone, {text}"
+                return either([velocity_share_cause(steps), first])
         return [f"in the steps, {text}"]
 
     def _known(self, steps: VanishingSteps) -> list[str]:

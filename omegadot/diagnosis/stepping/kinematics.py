@@ -108,6 +108,20 @@ def omega_still_cause(steps: VanishingSteps) -> str:
     return text if still else ""
 
 
+def velocity_share_cause(steps: VanishingSteps) -> str:
+    """The velocity alone moves by a part of its rate, as where it is of another time."""
+    if steps.system.load.pivot is not None:
+        return ""
+    sound = [np.all(steps.rates[c].shares() <= 1.0) for c in ("attitude", "omega", "position")]
+    limit = steps.rates["linear_momentum"]
+    found, bound = better(limit)
+    clear = np.count_nonzero(norm(limit.expected) > CLEAR * SLACK * bound) >= LEAST
+    for k, when in ((0.5, "before"), (1.5, "after")) if all(sound) and clear else ():
+        if np.all(norm(found - k * limit.expected) <= SLACK * bound):
+            return f"the linear velocity is reported as of half a step {when}"
+    return ""
+
+
 def omega_share_cause(steps: VanishingSteps) -> str:
     """Omega alone moves by a part of omega-dot, as where it is of another time than the rest."""
     if not all(np.all(one.shares() <= 1.0) for c, one in steps.rates.items() if c == "attitude"):
