@@ -22,24 +22,11 @@ from omegadot.diagnosis.equations.wrong_equation import (
     RELOADED,
     equation_causes,
     inverse_causes,
-    known_difference,
     scene_of,
 )
+from omegadot.diagnosis.integrator import IntegratorCauses, fails, source_of
 from omegadot.diagnosis.models.wrong_model import lever_causes, model_causes
-from omegadot.diagnosis.reported.requests import again_cause, batch_cause
-from omegadot.diagnosis.runs import run_causes
-from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, follows
-from omegadot.diagnosis.stepping.vanishing_steps import (
-    VanishingSteps,
-    jump_cause,
-    jumps,
-    kinematic_cause,
-    moves_by_cause,
-    omega_share_cause,
-    omega_still_cause,
-    vanishing_steps,
-)
-from omegadot.diagnosis.wording.kinds import agreed, is_of_one_run
+from omegadot.diagnosis.reported.requests import batch_cause
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
@@ -47,14 +34,11 @@ from omegadot.gates.states.equation import (
     EvaluationStates,
     evaluation_states_of,
 )
-from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.judge_engine import shared_rows
 from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase
-from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.system import State
 
 
 class CaseCauses:
@@ -71,30 +55,26 @@ class CaseCauses:
         runs: Sequence[JudgedRun],
     ) -> None:
         self._across, self._case, self._states = across, case, evaluation_states
-        self._result: CaseResult | None = result
-        self._truth, self._runs = truth, list(runs)
         self._answers = replace(result, runs={}, first_steps={}, restarts={})
-        self._steps = _steps_of(case, result)
-        self._of_runs: dict[str, list[str]] = {}
-        self._again = {one.integrator.name: "" for one in runs}
-        for one in runs:
-            self._again[one.integrator.name] = self._again[one.integrator.name] or again_cause(
-                one.rows
-            )
-        self._followed: dict[tuple[str, tuple[str, ...]], bool | None] = {}
-        self._beginnings = _beginnings_of(truth, result, runs)
+        by_name: dict[str, list[JudgedRun]] = {}
+        for run in runs:
+            by_name.setdefault(run.integrator.name, []).append(run)
+        self._integrators = {
+            name: IntegratorCauses(across, case, truth, result, own)
+            for name, own in by_name.items()
+        }
         self._shared_rows = [row for row in shared if row.verdict == "fail"]
         scene = scene_of(case, evaluation_states, result)
-        for name, steps in self._steps.items():
-            scene.evidence[_source(name)] = steps.evidence
+        for name, integrator in self._integrators.items():
+            if integrator.steps is not None:
+                scene.evidence[source_of(name)] = integrator.steps.evidence
         across.add(scene)
 
     def release(self) -> None:
         """Work out what needs the trajectories, and let go of them."""
-        failed = {r.integrator.name for r in self._runs if _fails(r)}
-        for name in failed if not self._shared_rows else ():
-            self._of_run(name)
-        self._result, self._runs = None, []
+        with np.errstate(all="ignore"):
+            for one in self._integrators.values():
+                one.release(wanted=not self._shared_rows)
 
     def sentences(self, integrator: str | None) -> list[str]:
         """The causes, the most basic first; of one integrator, or of what all runs share.
@@ -105,7 +85,7 @@ class CaseCauses:
         with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
             if self._shared_rows:
                 return self._shared()
-            return [] if integrator is None else self._of_run(integrator)
+            return [] if integrator is None else self._integrators[integrator].sentences()
 
     def text(self, run: JudgedRun | None) -> str:
         """The causes of one run, or of what all runs share, as one text."""
@@ -140,119 +120,8 @@ class CaseCauses:
             return inverse_causes(*known, torque, eps)
         return lever_causes(*model)
 
-    def _of_run(self, name: str) -> list[str]:
-        """Of the steps as they vanish and of the run itself.
-
-        What a declared scheme makes of a wrong state is known better by stepping again than by
-        the steps as they vanish; a wrong equation is known better by these.
-        """
-        steps, declared = self._steps.get(name), self._declares(name)
-        if self._again[name]:
-            seen = self._of_trajectories(name)
-            return [one for one in seen if is_of_one_run(one)] or [self._again[name]]
-        found: list[str] = []
-        if steps is not None and not steps.sound:
-            common = steps.common_cause() or omega_share_cause(steps)
-            found = [common] if common else []
-            if not found and not declared and jumps(steps):
-                found = _of_states(steps)
-            if not found and not jumps(steps) and not steps.still:
-                moved = moves_by_cause(steps)
-                if moved.startswith("either"):  # which of two, a whole run may show
-                    return self._of_trajectories(name) or [moved]
-                found = [moved] if moved else self._of_equation(name, steps)
-        if not found:
-            found = self._of_trajectories(name)
-            over = self._across.of_runs.get(name, {})
-            found = [one for one in found if agreed(one, over)]
-        if found or steps is None or steps.sound:
-            return found
-        return _of_states(steps) or ([] if steps.still else self._known(name))
-
-    def _of_equation(self, name: str, steps: VanishingSteps) -> list[str]:
-        """By which equation the limit of vanishing steps is another; nothing where it is right."""
-        if np.all(steps.evidence.sound) or not steps.turns:
-            return []
-        where = (self._case.name, _source(name))
-        text, one = self._across.cause(*where), self._across.chosen(*where)
-        if not text:
-            still = omega_still_cause(steps)
-            return (self._of_trajectories(name) or [still]) if still else []
-        begun = self._beginnings.get(name)
-        if one is not None and begun is not None:
-            key = (name, one.key)
-            if key not in self._followed:
-                self._followed[key] = follows(self._case.system, begun, one, steps.eps)
-            followed = self._followed[key]
-            if followed is False:
-                return [f"in the first step of a run alone, {text}"]
-        return [f"in the steps, {text}"]
-
-    def _known(self, name: str) -> list[str]:
-        """What is known of the steps' equation where nothing fits."""
-        if np.all(self._steps[name].evidence.sound):
-            return []
-        known = known_difference(self._across, self._case.name, _source(name))
-        return [f"in the steps, {one}" for one in known]
-
-    def _declares(self, name: str) -> bool:
-        return any(i.name == name and i.scheme in SCHEMES for i in self._answers.integrators)
-
-    def _of_trajectories(self, name: str) -> list[str]:
-        # In single precision much fits a run within its rounding, and little is told apart.
-        if self._answers.precision == "float32":
-            return []
-        if name not in self._of_runs and self._result is not None:
-            runs = [run for run in self._runs if run.integrator.name == name]
-            self._of_runs[name] = run_causes(self._case, self._truth, self._result, runs)
-            here = "; ".join(self._of_runs[name])
-            self._across.of_runs.setdefault(name, {})[self._case.name] = here
-        return self._of_runs.get(name, [])
-
 
 AFTER_ANOTHER = "something of a system that was loaded before is left over"
-
-
-def _source(integrator: str) -> str:
-    return f"steps of {integrator}"
-
-
-def _fails(run: JudgedRun) -> bool:
-    return any(row.verdict == "fail" for row in run.rows)
-
-
-def _steps_of(case: Case, result: CaseResult) -> dict[str, VanishingSteps]:
-    tolerated = {one.name: tolerated_by(one) for one in result.integrators}
-    return {
-        name: vanishing_steps(
-            case.system, probe, State(**answer.result), eps_of(result.precision), tolerated[name]
-        )
-        for name, (probe, answer) in result.first_steps.items()
-        if answer.ok
-    }
-
-
-def _of_states(steps: VanishingSteps) -> list[str]:
-    """What steps do to states, however short they are."""
-    found = jump_cause(steps) or kinematic_cause(steps)
-    return [found] if found else []
-
-
-def _beginnings_of(
-    truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
-) -> dict[str, Beginning]:
-    """The first samples of every failed integrator's run with the shortest steps."""
-    found = dict[str, Beginning]()
-    for run in sorted(runs, key=lambda run: -run.sweep.timestep):
-        answer = result.runs.get((run.integrator.name, run.sweep.knob))
-        if not _fails(run) or answer is None or not answer.ok:
-            continue
-        times, state = run.sweep.times, State(**answer.result["state"])
-        if len(state.position) == len(times):
-            first = slice(0, SAMPLES + 1)
-            parts = (times[first], state[first], truth.at(run.sweep)[first])
-            found[run.integrator.name] = Beginning(*parts)
-    return found
 
 
 class Causes:
@@ -311,7 +180,7 @@ def diagnose(
     shared = shared_rows(case, evaluation_states, result)
     causes = CaseCauses(Across(), case, truth, evaluation_states, result, shared, runs)
     found = causes.sentences(None)
-    names = dict.fromkeys(run.integrator.name for run in _by_length(runs) if _fails(run))
+    names = dict.fromkeys(run.integrator.name for run in _by_length(runs) if fails(run))
     for name in names if not found else ():
         found = causes.sentences(name)
         if found:

@@ -2,32 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 
+from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.reported.clock import clock_cause
+from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import ReportedRun, reported_run, reported_run_guesses
-from omegadot.diagnosis.reported.run_causes import CAUSES_REPORTED, begin_apart
-from omegadot.diagnosis.reported.sample_causes import intervals, omega_dot_late, one_field
-from omegadot.diagnosis.stepping.restarts import restart_cause
-from omegadot.diagnosis.stepping.wrong_steps import (
-    CAUSES_OF_STEPPING,
-    CAUSES_OF_UNKNOWN,
-    MOST_STEPS,
-    precision_reported,
+from omegadot.diagnosis.reported.run_causes import (
+    CAUSES_REPORTED,
+    SEEN,
+    another_start,
+    begin_apart,
+    misread,
 )
+from omegadot.diagnosis.reported.sample_causes import (
+    intervals,
+    not_unit,
+    omega_dot_late,
+    one_field,
+)
+from omegadot.diagnosis.stepping.other_schemes import slips_of
+from omegadot.diagnosis.stepping.restarts import restart_cause
+from omegadot.diagnosis.stepping.slips import OF_SCHEME
+from omegadot.diagnosis.stepping.wrong_steps import is_steppable, is_telling, stepping_causes
 from omegadot.diagnosis.wording.kinds import is_fact, kind_of
 from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun, is_finite
 
+ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
+LIMIT = "is held"
 MOST_TRIED = 1000  # steps of a second run, in which a cause is looked for again
 
 
+@dataclass(frozen=True)
+class RunCauses:
+    """Causes of which each alone makes the runs of one integrator on a scenario.
+
+    telling: whether the motion has enough in it that what else it could be is ruled out.
+    """
+
+    texts: tuple[str, ...] = ()
+    telling: bool = True
+
+
+NOTHING = RunCauses()
+
+
 def run_causes(
-    case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
-) -> list[str]:
-    """Of the failed run of the fewest steps in which one is found: hypotheses are stepped again."""
+    case: Case,
+    truth: Truth,
+    result: CaseResult,
+    runs: Sequence[JudgedRun],
+    equations: bool = True,
+) -> RunCauses:
+    """Of the failed run of the fewest steps in which one is found: hypotheses are stepped again.
+
+    equations: whether the equation that is stepped may be another than the right one.
+    """
     truth = truth.in_precision(result.precision)
     failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
     for run in failed:
@@ -35,33 +69,38 @@ def run_causes(
         if answer is not None and answer.ok:
             text = clock_cause(answer.result["time"], run.sweep, truth.yardstick.eps)
             if text:
-                return [text]
+                return RunCauses((text,))
     several = _of_several_schemes(case, truth, result, runs) if failed else ""
     if several:
-        return [several]
+        return RunCauses((several,))
     for run in sorted(failed, key=lambda run: run.sweep.steps):
-        text = _of_run(case, truth, result, run)
-        if text and _explains_others(text, case, truth, result, run, failed):
-            return [text + _at_long_steps(runs)]
-        if text:
-            return []
-    return []
+        found = _of_run(case, truth, result, run, equations)
+        if found.texts:
+            kept = _of_others(found, case, truth, result, run, failed, equations)
+            return _at_long_steps(kept, runs)
+    return NOTHING
 
 
-def _explains_others(
-    text: str,
+def _of_others(
+    found: RunCauses,
     case: Case,
     truth: Truth,
     result: CaseResult,
     run: JudgedRun,
     failed: Sequence[JudgedRun],
-) -> bool:
-    """Whether the next failed run, if it is short, has the same cause, by other numbers maybe."""
+    equations: bool,
+) -> RunCauses:
+    """Those that make the next failed run as well, if it is short, by other numbers maybe."""
     longer = [one for one in failed if run.sweep.steps < one.sweep.steps <= MOST_TRIED]
-    if not longer or is_fact(text):
-        return True
-    other = _of_run(case, truth, result, min(longer, key=lambda one: one.sweep.steps))
-    return kind_of(other) == kind_of(text) or is_fact(other)
+    if not longer or all(map(is_fact, found.texts)):
+        return found
+    second = min(longer, key=lambda one: one.sweep.steps)
+    other = _of_run(case, truth, result, second, equations)
+    if other.texts and all(map(is_fact, other.texts)):
+        return found
+    kinds = set(map(kind_of, other.texts))
+    both = tuple(text for text in found.texts if kind_of(text) in kinds)
+    return RunCauses(both, found.telling or other.telling)
 
 
 def _of_several_schemes(
@@ -80,51 +119,76 @@ def _of_several_schemes(
     return f"runs with different steps are of different schemes: {', '.join(parts)}"
 
 
-def _at_long_steps(runs: Sequence[JudgedRun]) -> str:
-    """Where the longer steps alone fail, between which steps it begins."""
+def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
+    """Where the longer steps alone fail, between which steps it begins.
+
+    What acts in every step alike is not the cause then, and a limit is one on any motion.
+    """
     failed, sound = (
         [r.sweep.timestep for r in runs if any(row.verdict == "fail" for row in r.rows) is wrong]
         for wrong in (True, False)
     )
     if not failed or not sound or max(sound) >= min(failed):
-        return ""
-    return f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s are sound"
+        return found
+    where = f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s are sound"
+    kept = [text for text in found.texts if not text.startswith(ALIKE)]
+    limit = len(kept) == 1 and LIMIT in kept[0]
+    return RunCauses(tuple(text + where for text in kept), found.telling or limit)
 
 
-def _of_run(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> str:
+def _of_run(
+    case: Case, truth: Truth, result: CaseResult, run: JudgedRun, equations: bool
+) -> RunCauses:
     """Causes in what one run reports, then in its stepping, then in where it is sound.
 
     Where nothing but the omega-dot reported along it failed, only that is looked at.
     """
     reported = reported_run(case, truth, result, run)
     if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
-        return omega_dot_late(case, truth, result, run)
+        text = omega_dot_late(case, truth, result, run)
+        return RunCauses((text,)) if text else NOTHING
     if reported is not None:
-        return _of_reported(reported, result)
-    text = next(_of_guesses(case, truth, result, run), "")
-    return text or restart_cause(truth, result, run)
+        return _of_reported(reported, result, equations)
+    # By the schemes of the reference that come nearest, where none is declared.
+    guesses = reported_run_guesses(case, truth, result, run)
+    for guess in guesses:
+        found = _of_reported(guess, result, equations)
+        if found.texts:
+            return found
+    found = _of_other_slips(guesses)
+    if found.texts:
+        return found
+    text = restart_cause(truth, result, run)
+    return RunCauses((text,)) if text else NOTHING
 
 
-def _of_reported(reported: ReportedRun, result: CaseResult) -> str:
+def _of_other_slips(guesses: Sequence[ReportedRun]) -> RunCauses:
+    """A slip in a scheme that is far from the run for it."""
+    if not guesses or any(one.is_own for one in guesses) or not is_steppable(guesses[0]):
+        return NOTHING
+    tried = {one.integrator.scheme for one in guesses}
+    texts = [t for name in OF_SCHEME if name not in tried for t in slips_of(guesses[0], name)]
+    return RunCauses(tuple(texts), is_telling(guesses[0])) if texts else NOTHING
+
+
+def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> RunCauses:
     if not reported.is_declared and reported.is_own:
-        return ""  # nothing in this run is wrong
-    if len(reported.time) == len(reported.sweep.times) and is_finite(reported.state):
-        text = precision_reported(reported)
-        if text:
-            return text
-    if begin_apart(reported, result):
-        return "runs begin at other states than the one given: one is left over from a run before"
-    tried = list(CAUSES_REPORTED)
-    if len(reported.time) == len(reported.sweep.times):
-        if is_finite(reported.state) and reported.sweep.steps <= MOST_STEPS:
-            tried += CAUSES_OF_STEPPING if reported.is_declared else CAUSES_OF_UNKNOWN
-        tried += (intervals, one_field)
-    return next(filter(None, (cause(reported) for cause in tried)), "")
-
-
-def _of_guesses(case: Case, truth: Truth, result: CaseResult, run: JudgedRun) -> Iterator[str]:
-    """By the schemes of the reference that come nearest, where none is declared."""
-    for guess in reported_run_guesses(case, truth, result, run):
-        text = _of_reported(guess, result)
-        if text:
-            yield text
+        return NOTHING  # nothing in this run is wrong
+    whole = len(reported.time) == len(reported.sweep.times)
+    finite = whole and is_finite(reported.state)
+    seen = precision_reported(reported) if finite else ""
+    if not seen and begin_apart(reported, result):
+        seen = "runs begin at other states than the one given: one is left over from a run before"
+    seen = seen or next(filter(None, (cause(reported) for cause in SEEN)), "")
+    if seen:
+        return RunCauses((seen,))
+    found = [*misread(reported), *filter(None, (cause(reported) for cause in CAUSES_REPORTED))]
+    clear = not (whole and reported.agrees(reported.state, reported.own, slack=BEYOND_ROUNDING))
+    found += stepping_causes(reported, equations) if clear else ()
+    if found:
+        return RunCauses(tuple(dict.fromkeys(found)), is_telling(reported))
+    # Beside a guess it is its error that one quantity shows, where the motion is the same by many.
+    alone = (one_field,) if reported.is_declared or is_telling(reported) else ()
+    last = (not_unit, another_start, *((intervals, *alone) if whole and clear else ()))
+    text = next(filter(None, (cause(reported) for cause in last)), "")
+    return RunCauses((text,), is_telling(reported)) if text else NOTHING

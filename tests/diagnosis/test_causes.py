@@ -7,256 +7,26 @@ from typing import Any
 
 import numpy as np
 import pytest
+from wrong_equations import CASES, EQUATIONS, PIVOT, case, gyroscopic, mirrored_center
 
 from omegadot.diagnosis.equations.across import Across, Scene
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
 from omegadot.diagnosis.equations.wrong_equation import FORWARD, equation_causes, inverse_causes
+from omegadot.diagnosis.stepping.jumps import jump_cause
 from omegadot.diagnosis.stepping.trace import Trace, trace_causes
-from omegadot.diagnosis.stepping.vanishing_steps import jump_cause, vanishing_steps
+from omegadot.diagnosis.stepping.vanishing_steps import vanishing_steps
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_acceleration, random_states
 from omegadot.gates.steps.vanishing_step import DOUBLE, Probe
-from omegadot.harness.arguments import case_of
-from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.loads import damping_torque, gravity_torque
+from omegadot.reference_impl.loads import damping_torque
 from omegadot.reference_impl.motion import (
-    center_of_mass_acceleration,
-    forward_dynamics,
     inverse_dynamics,
 )
-from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import stack, step_body
-from omegadot.reference_impl.symmetric import apply, inverse
-from omegadot.reference_impl.system import Acceleration, Array, State, System
-from omegadot.scenarios import scenario
-
-TENSOR = [[1.0, 0.1, 0.2], [0.1, 1.6, -0.15], [0.2, -0.15, 2.1]]
-RUN = {"duration": 2.0, "timesteps": [0.02, 0.01], "sample": 0.1}
-
-
-def case(name: str, load: dict[str, Any], mass: float = 2.0, tensor: Any = TENSOR) -> Case:
-    initial: dict[str, Any] = {"orientation": [0.5, 0.1, -0.7, 0.4]}
-    initial["angular_velocity"] = [0.8, 2.0, -0.5]
-    if "pivot" not in load:
-        initial |= {"position": [0.4, -1.0, 2.0], "linear_velocity": [1.0, -0.5, 3.0]}
-    body = {"mass": mass, "inertia": tensor, "center_of_mass": [0.05, -0.2, 0.1]}
-    data = {"name": name, "body": body, "initial": initial, "load": load, "run": RUN}
-    return case_of(scenario(data), [])
-
-
-GRAVITY, PIVOT = [1.0, -2.0, -9.0], [0.3, 0.1, -0.2]
-BODY_TORQUE = {"frame": "body", "value": [0.4, -0.9, 0.6]}
-WORLD_TORQUE = {"frame": "world", "value": [-0.7, 0.2, 0.5]}
-CASES = (
-    case("free", {}),
-    case("falling", {"gravity": GRAVITY}, 3.1),
-    case("damped", {"damping": 0.3}),
-    case("damped-more", {"damping": 1.7, "torque": BODY_TORQUE}, 0.7),
-    case("damped-most", {"damping": 2.9, "gravity": GRAVITY}),
-    case("driven", {"torque": BODY_TORQUE}, 1.3),
-    case("driven-in-world", {"torque": WORLD_TORQUE}),
-    case("top", {"gravity": GRAVITY, "pivot": PIVOT}),
-    case("falling-slowly", {"gravity": [0.3, 0.1, 1.1]}),
-    case("falling-fast", {"gravity": [-31.0, 17.0, 5.0]}),
-    case("top-damped", {"gravity": GRAVITY, "pivot": PIVOT, "damping": 0.4}, 1.7),
-    case("top-driven", {"pivot": PIVOT, "torque": WORLD_TORQUE}, 0.9),
-    case("top-driven-damped", {"pivot": PIVOT, "torque": BODY_TORQUE, "damping": 0.2}),
-)
-
-
-def with_torque(system: System, states: State, torque: Array) -> Acceleration:
-    """The right accelerations with one more torque."""
-    true = forward_dynamics(system, states)
-    angular = true.angular + apply(inverse(moving_inertia(system)), torque)
-    if system.load.pivot is None:
-        return Acceleration(angular, true.linear)
-    return Acceleration(angular, center_of_mass_acceleration(system, states, angular))
-
-
-def gyroscopic(system: System, states: State) -> Array:
-    w = states.angular_velocity
-    return cross(w, apply(moving_inertia(system), w))
-
-
-def damping_as_rate(system: System, states: State) -> Acceleration:
-    w, d = states.angular_velocity, system.load.damping
-    return with_torque(system, states, d * w - apply(moving_inertia(system), d * w))
-
-
-def rate_and_no_gyroscopic_term(system: System, states: State) -> Acceleration:
-    w, d = states.angular_velocity, system.load.damping
-    more = d * w - apply(moving_inertia(system), d * w)
-    return with_torque(system, states, more + gyroscopic(system, states))
-
-
-def mirrored_center(system: System, states: State) -> Acceleration:
-    return with_torque(system, states, -2.0 * gravity_torque(system, states))
-
-
-def armature(system: System, states: State) -> Acceleration:
-    true = forward_dynamics(system, states)
-    inertia = moving_inertia(system)
-    angular = np.linalg.solve(inertia + 1e-6 * np.eye(3), (inertia @ true.angular.T)).T
-    if system.load.pivot is None:
-        return Acceleration(angular, true.linear)
-    return Acceleration(angular, center_of_mass_acceleration(system, states, angular))
-
-
-def under(**change: Any) -> Any:
-    def found(system: System, states: State) -> Acceleration:
-        made = {name: of(system) for name, of in change.items()}
-        return forward_dynamics(replace(system, load=replace(system.load, **made)), states)
-
-    return found
-
-
-def products_in_another_order(system: System, states: State) -> Acceleration:
-    tensor = np.array(system.body.inertia)
-    tensor[0, 1] = tensor[1, 0] = system.body.inertia[0, 2]
-    tensor[0, 2] = tensor[2, 0] = system.body.inertia[0, 1]
-    body = replace(system.body, inertia=tensor)
-    return forward_dynamics(replace(system, bodies=(body,)), states)
-
-
-def mass_in_single_precision(system: System, states: State) -> Acceleration:
-    mass = np.asarray(float(np.float32(system.body.mass)))
-    body = replace(system.body, mass=mass)
-    return forward_dynamics(replace(system, bodies=(body,)), states)
-
-
-def spatial(system: System, states: State) -> Acceleration:
-    true = forward_dynamics(system, states)
-    turning = rotate(states.orientation, states.angular_velocity)
-    return Acceleration(true.angular, true.linear - cross(turning, states.linear_velocity))
-
-
-def no_gyroscopic_term_when_fast(system: System, states: State) -> Acceleration:
-    fast = np.sum(states.angular_velocity**2, axis=-1, keepdims=True) > 9.0
-    return with_torque(system, states, np.where(fast, gyroscopic(system, states), 0.0))
-
-
-def cubic_damping(system: System, states: State) -> Acceleration:
-    w = states.angular_velocity
-    return with_torque(system, states, -0.01 * np.sum(w * w, axis=-1, keepdims=True) * w)
-
-
-def gyroscopic_without_x(system: System, states: State) -> Acceleration:
-    return with_torque(system, states, gyroscopic(system, states) * np.array([1.0, 0.0, 0.0]))
-
-
-def gyroscopic_of_world_omega(system: System, states: State) -> Acceleration:
-    turned = rotate(states.orientation, states.angular_velocity)
-    wrong = cross(turned, apply(moving_inertia(system), turned))
-    return with_torque(system, states, gyroscopic(system, states) - wrong)
-
-
-def constant_rate(system: System, states: State) -> Acceleration:
-    rate = np.array([0.0, 0.0, 2e-3]) + 0.0 * states.angular_velocity
-    return with_torque(system, states, apply(moving_inertia(system), rate))
-
-
-def turning_world(system: System, states: State) -> Acceleration:
-    turn = rotate_inverse(states.orientation, np.array([0.0, 0.0, 7.292e-5]))
-    rate = cross(states.angular_velocity, turn)
-    return with_torque(system, states, apply(moving_inertia(system), rate))
-
-
-def torque_turned_back(system: System, states: State) -> Acceleration:
-    world = system.load.torque_world
-    wrong, right = (turn(states.orientation, world) for turn in (rotate, rotate_inverse))
-    return with_torque(system, states, wrong - right)
-
-
-def scaled_moment(system: System, states: State) -> Acceleration:
-    tensor = np.array(system.body.inertia) + np.diag([0.0, 0.0, 0.03 * system.body.inertia[2, 2]])
-    body = replace(system.body, inertia=tensor)
-    return forward_dynamics(replace(system, bodies=(body,)), states)
-
-
-def accelerometer(system: System, states: State) -> Acceleration:
-    true = forward_dynamics(system, states)
-    return Acceleration(true.angular, true.linear - system.load.gravity)
-
-
-def air_drag(system: System, states: State) -> Acceleration:
-    true, v = forward_dynamics(system, states), states.linear_velocity
-    if system.load.pivot is not None:
-        return true
-    speed = np.linalg.norm(v, axis=-1, keepdims=True)
-    return Acceleration(true.angular, true.linear - 0.03 * speed * v)
-
-
-def weaker_with_height(system: System, states: State) -> Acceleration:
-    true, g = forward_dynamics(system, states), system.load.gravity
-    if system.load.pivot is not None:
-        return true
-    return Acceleration(true.angular, true.linear - 3e-7 * g * states.position[:, 2:])
-
-
-def quartic_damping(system: System, states: State) -> Acceleration:
-    w = states.angular_velocity
-    return with_torque(system, states, -0.01 * np.sum(w * w, axis=-1, keepdims=True) ** 1.5 * w)
-
-
-EQUATIONS: dict[str, tuple[Any, str]] = {
-    "rate": (damping_as_rate, "the damping acts as a rate"),
-    "rate-no-gyro": (rate_and_no_gyroscopic_term, "the gyroscopic term is missing"),
-    "mirrored": (mirrored_center, "the centre of mass is mirrored"),
-    "armature": (armature, "1e-06 kg m^2 is added to the inertia's diagonal"),
-    "clamp": (
-        under(damping=lambda s: np.minimum(s.load.damping, 1.0)),
-        "the damping is limited to 1 N m s/rad",
-    ),
-    "elif": (
-        under(torque_body=lambda s: s.load.torque_body * (s.load.damping == 0.0)),
-        "is missing",
-    ),
-    "pivot-no-damping": (
-        under(damping=lambda s: s.load.damping * (s.load.pivot is None)),
-        "the damping is missing, but only where the body is pivoted",
-    ),
-    "gravity-down": (
-        under(gravity=lambda s: np.array([0.0, 0.0, -np.linalg.norm(s.load.gravity)])),
-        "gravity points along -z, whatever direction was requested",
-    ),
-    "products": (products_in_another_order, "the products of inertia are in another order"),
-    "mass-float32": (mass_in_single_precision, "the mass is kept in single precision"),
-    "spatial": (spatial, "the linear acceleration is the spatial one"),
-    "fast": (no_gyroscopic_term_when_fast, "there, the gyroscopic term is missing"),
-    "row": (gyroscopic_without_x, "of the gyroscopic term the x component is missing"),
-    "world-omega": (gyroscopic_of_world_omega, "formed with omega in world axes"),
-    "constant": (constant_rate, "omega-dot has a constant (0, 0, 0.002) rad/s^2 in body axes"),
-    "turning": (
-        turning_world,
-        "omega x c in it with c = (0, 0, 7.292e-05) rad/s, constant in world",
-    ),
-    "torque-back": (torque_turned_back, "turned into the body by the transposed rotation"),
-    "moment": (scaled_moment, "the moment of inertia zz is scaled by 1.03"),
-    "accelerometer": (accelerometer, "the linear acceleration leaves gravity out"),
-    "drag": (air_drag, "the acceleration has -0.03 |v| v in it"),
-    "height": (
-        weaker_with_height,
-        "gravity changes with the place: by -3e-07 of it a metre along z",
-    ),
-    "gravity-up": (
-        under(gravity=lambda s: s.load.gravity[[0, 2, 1]] * np.array([1.0, 1.0, -1.0])),
-        "gravity has other axes: x, y, z hold x, z, -y of what was requested",
-    ),
-    "gravity-size": (
-        under(gravity=lambda s: s.load.gravity / (np.linalg.norm(s.load.gravity) or 1.0) * 9.81),
-        "the size of gravity is 9.81 m/s^2, whatever was requested",
-    ),
-    "cubic": (cubic_damping, "a torque of -0.01 |omega|^2 omega N m acts"),
-    "quartic": (quartic_damping, "by a torque along omega, by an amount that goes as |omega|^4"),
-    "world-torque": (
-        under(torque_world=lambda s: 0.5 * s.load.torque_world),
-        "the torque in world axes is scaled by 0.5",
-    ),
-}
+from omegadot.reference_impl.system import State
 
 
 def causes_over(found: Any, cases: tuple[Case, ...] = CASES) -> dict[str, str]:

@@ -11,6 +11,7 @@ from functools import cached_property
 from pathlib import Path
 
 from omegadot.adapters.registry import registered
+from omegadot.commands.check.judge import CAUSE
 from omegadot.commands.check.result import Check, Result, Subject, Tally
 from omegadot.commands.check.select import Arguments, Selection, select
 from omegadot.commands.check.shrink import SECONDS, Failing, kinds_of_failure
@@ -115,8 +116,8 @@ def check(
                 count.advance()
         finally:
             suite.finish()
+        results = {one: result.settled for one, result in results.items()}
         failing = _shrunk(engine, selection, results, report) if shrink else []
-    results = {one: result.settled for one, result in results.items()}
     tally = Tally()
     for one, result in results.items():
         tally.add(one.engine, result.verdict, result.message)
@@ -146,7 +147,9 @@ def _shrunk(
         choice = next(choice for choice in selection.choices if choice.name == one.engine)
         how = (selection.arguments.timeout, SEED, shlex.join(line))
         share = max(0.0, deadline - time.monotonic()) / (len(kinds) - number)
-        found.append(shrink_check(one, cases[one.scenario], choice, *how, seconds=share))
+        small = shrink_check(one, cases[one.scenario], choice, *how, seconds=share)
+        cause = results[one].message.partition(CAUSE)[2]
+        found.append(small and replace(small, cause=cause))
         if count:
             count.advance()
     return [one for one in found if one is not None]

@@ -24,6 +24,7 @@ from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
 from omegadot.reports.text.numbers import listed, short
 from omegadot.workers.harness_end.process import Answer
 
+CAUSE = "Likely cause: "
 # Their notes are the whole sentence, with the figures in it.
 NOTE_ALONE = ("match", "observed_order", "sample_times")
 # For these the note is clearer than the figure, a fraction of its bound.
@@ -55,9 +56,6 @@ def sentence(row: Row) -> str:
     return f"{message} ({row.note})" if row.note else message
 
 
-CAUSE = " Likely cause: "
-
-
 def failure(rows: Sequence[Row], cause: str = "") -> str:
     """The failing rows of one gate: the worst in full, the other channels by name."""
     failing = [row for row in rows if row.verdict == "fail"]
@@ -66,7 +64,7 @@ def failure(rows: Sequence[Row], cause: str = "") -> str:
     message = sentence(worst)
     if others:
         message += f"; {listed(list(others))} {'fail' if len(others) > 1 else 'fails'} as well"
-    return f"{message}.{CAUSE}{cause.rstrip('.')}." if cause else f"{message}."
+    return f"{message}. {CAUSE}{cause.rstrip('.')}." if cause else f"{message}."
 
 
 # The answers, besides runs, that a gate of a scenario judges.

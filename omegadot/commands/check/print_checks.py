@@ -96,6 +96,7 @@ def print_json(found: CheckResult) -> None:
             {
                 "check": one.check.id,
                 "message": one.message,
+                "cause": one.cause,
                 "has": one.has,
                 "scenario": one.toml,
                 "command": one.command,
@@ -142,5 +143,7 @@ def _print_failing(console: Console, found: Failing) -> None:
     searched = "" if found.finished else f" (the search ended after {found.trials} systems)"
     console.print(Text(f"Smallest failing system of {found.check.id}{searched}:", "bold"))
     console.print(Text(f"    It has {left}. {found.message}"))
+    if found.cause:
+        console.print(Text(f"    Likely cause, found on {found.check.scenario}: {found.cause}"))
     console.print(Text(f"    Save as {found.scenario.name}.toml, then: {found.command}"))
     console.print(Text(found.toml))

@@ -36,7 +36,8 @@ class Failing:
 
     check: the one that was shrunk.  message: what fails of the simplest.  has: what is left in it.
     trials: systems tried.  finished: nothing simpler was left to try within the budget.
-    command: runs it alone, once `toml` is in the file that it names.
+    command: runs it alone, once `toml` is in the file that it names.  cause: the likely one of the
+    check before it was shrunk, which decides between more causes; "" without any.
     """
 
     check: Check
@@ -46,6 +47,7 @@ class Failing:
     trials: int
     finished: bool
     command: str
+    cause: str = ""
 
     @property
     def toml(self) -> str:

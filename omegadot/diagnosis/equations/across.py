@@ -38,7 +38,8 @@ class Across:
 
     def __init__(self) -> None:
         self._all = Scenes()
-        self.of_runs: dict[str, dict[str, str]] = {}  # by integrator and scenario
+        # by integrator and scenario: each cause alone explains the runs; whether they are telling
+        self.of_runs: dict[str, dict[str, tuple[tuple[str, ...], bool]]] = {}
         self._accepted: list[list[Candidate]] = []
         self._weak: list[Candidate] = []
         self._texts: dict[tuple[str, str], str] = {}
@@ -82,7 +83,8 @@ class Across:
             held = [self._all.held(one, scene, source) for one in _distinct(level)]
             whole = [one for one in held if one.holds]
             strong = [one for one in whole if one.strong]
-            strong = [one for one in strong if not one.against] or strong
+            least = min((len(one.against) for one in strong), default=0)
+            strong = [one for one in strong if len(one.against) == least]
             text = self._worded(strong, source)
             if text:
                 self._accepted.append([one.candidate for one in strong])
@@ -98,7 +100,7 @@ class Across:
                     return text
         if not weak:
             weakest, weak = self._weak_elsewhere(scene, source)
-        elif weakest is not None and weakest.family is not None:
+        elif weakest is not None and weakest.numbers is not None:
             self._weak.append(weakest)
         if weak and weakest is not None:
             self._chosen[name, source] = weakest
@@ -149,13 +151,17 @@ class Across:
         """Where the equation holds at some states: what fits the others, and which these are."""
         evidence = scene.evidence[source]
         wrong = np.flatnonzero(~evidence.sound)
-        if not 0 < len(wrong) < len(evidence.sound):
-            return ""
         every = [e for one in self.scenes.values() if (e := one.evidence.get(source))]
         parts = [(e.system, e.states, e.sound) for e in every]
+        # where nothing of the kind acts, every state is right, and shows nothing
+        shown = [part for part in parts if not np.all(part[2])]
+        mixed = sum(bool(np.any(right)) for _, _, right in shown)
+        if not len(wrong) or not mixed:
+            return ""
         alone = [(evidence.system, evidence.states, evidence.sound)]
         few = sum(not np.all(right) for _, _, right in parts) < 2
-        where = only_where(parts) or (only_where(alone) if few else "")
+        where = only_where(parts) or (only_where(shown) if mixed > 1 else "")
+        where = where or (only_where(alone) if few else "")
         if not where:
             return ""
         text = f"the equation holds at some states, and is wrong only where {where}"

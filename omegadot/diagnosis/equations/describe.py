@@ -92,7 +92,7 @@ def _power(x: Array, y: Array) -> float | None:
         return None
     slope, start = np.polyfit(np.log(x[used]), np.log(y[used]), 1)
     left = np.log(y[used]) - slope * np.log(x[used]) - start
-    return float(slope) if float(np.max(np.abs(left))) < CLEAN * 100 else None
+    return float(slope) if float(np.max(np.abs(left))) < 10 * CLEAN else None
 
 
 def scenarios_in_common(failing: Sequence[Features], passing: Sequence[Features]) -> str:

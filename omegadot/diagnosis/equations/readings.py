@@ -54,6 +54,16 @@ def _reported() -> Iterator[Reading]:
         q = e.states.orientation
         return _pushed(e, rotate(q, wanted) - rotate_inverse(q, wanted))
 
+    def torque_of_first(e: Evidence) -> Acceleration:
+        wanted, q = e.system.load.torque_world, e.states.orientation
+        return _pushed(e, rotate_inverse(0.0 * q + q[:1], wanted) - rotate_inverse(q, wanted))
+
+    def gravity_of_first(e: Evidence) -> Acceleration:
+        q, pull = e.states.orientation, e.system.load.gravity * e.system.body.mass
+        more = rotate_inverse(0.0 * q + q[:1], pull) - rotate_inverse(q, pull)
+        held = e.system.load.pivot is not None
+        return _pushed(e, cross(lever(e.system), more) if held else 0 * more)
+
     def gravity_back(e: Evidence) -> Acceleration:
         """On a pivot; a free body's centre of mass falls without being turned."""
         q, pull = e.states.orientation, e.system.load.gravity * e.system.body.mass
@@ -81,6 +91,9 @@ def _reported() -> Iterator[Reading]:
         "the torque in world axes is turned into the body by the transposed rotation", torque_back
     )
     yield Reading("gravity is turned into the body by the transposed rotation", gravity_back)
+    by_first = "is turned into the body by the attitude of a batch's first state"
+    yield Reading(f"the torque in world axes {by_first}", torque_of_first)
+    yield Reading(f"gravity {by_first}", gravity_of_first)
     yield Reading("omega-dot looks like world axes: it matches after R^T", turned)
     yield Reading("omega-dot looks turned twice: it matches after R", back)
     yield Reading("omega-dot has the wrong sign", negative)

@@ -20,7 +20,7 @@ from omegadot.diagnosis.equations.families import (
 )
 from omegadot.diagnosis.equations.hypotheses import Hypothesis, hypotheses, wrong_form
 from omegadot.diagnosis.equations.readings import READINGS, Reading
-from omegadot.diagnosis.equations.terms import FEW, MORE, Terms
+from omegadot.diagnosis.equations.terms import FEW, MORE, MOST, Terms
 from omegadot.diagnosis.wording.digits import vector
 from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.system import Acceleration, Array, System
@@ -131,6 +131,7 @@ def levels(evidence: Evidence, deep: bool = True) -> Iterator[list[Candidate]]:
         yield _fitted(evidence, THREE_NUMBERS) + _with_terms(evidence, MORE)
         yield _fitted(evidence, EXTRA)
         yield _mixed(evidence, known, seen)
+        yield _with_terms(evidence, MOST)
         yield _fitted(evidence, SIX_NUMBERS)
     else:
         yield unlikely
@@ -143,7 +144,8 @@ def possible(evidence: Evidence) -> list[Hypothesis]:
 
 
 def _with_terms(evidence: Evidence, kinds: Sequence[Terms]) -> list[Candidate]:
-    usable = [one for one in kinds if not (one.reported and evidence.source == STEPS)]
+    steps = evidence.source == STEPS
+    usable = [one for one in kinds if not (one.reported if steps else one.stepped)]
     found = [(terms, terms.fit(evidence)) for terms in usable]
     return [Candidate(terms=terms, numbers=p) for terms, p in found if p is not None]
 

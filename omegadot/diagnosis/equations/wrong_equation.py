@@ -16,7 +16,7 @@ from omegadot.diagnosis.equations.evidence import (
 )
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.quotient import difference_quotient
-from omegadot.diagnosis.models.misreadings import order_text, signed_orders
+from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orders
 from omegadot.diagnosis.reported.requests import place_cause
 from omegadot.diagnosis.wording.digits import factor
 from omegadot.diagnosis.wording.features import features_of
@@ -207,6 +207,9 @@ def _other_bodies(
         ),
         "inverse dynamics use the inertia about the centre of mass, not about the pivot": by(
             np.asarray(body), np.asarray(body)
+        ),
+        "inverse dynamics have the products of inertia with the wrong sign": by(
+            2.0 * diagonal - inertia, 2.0 * diagonal - inertia
         ),
         "inverse dynamics invert the inertia": by(np.asarray(inverse(inertia)), inertia),
         "inverse dynamics give the torque of the acceleration that the loads cause": lambda: (

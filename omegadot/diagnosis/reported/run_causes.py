@@ -6,14 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.models.misreadings import (
-    ADDED,
-    OF_ANY_STATE,
-    fitted_misreadings,
-    misreadings,
-)
+from omegadot.diagnosis.models.fitted_misreadings import ADDED, fitted_misreadings
+from omegadot.diagnosis.models.misreadings import NOT_UNIT, OF_ANY_STATE, misreadings
+from omegadot.diagnosis.reported.precision import digits_reported
 from omegadot.diagnosis.reported.run import ReportedRun
-from omegadot.diagnosis.reported.sample_causes import ALONE, digits_reported, half_step, not_unit
+from omegadot.diagnosis.reported.sample_causes import ALONE, half_step
+from omegadot.diagnosis.wording.kinds import kind_of
 from omegadot.gates.bounds.scales import norm
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.energy import rotational_kinetic_energy
@@ -32,7 +30,8 @@ def begin_apart(reported: ReportedRun, result: CaseResult) -> bool:
     return any(not reported.agrees(start, starts[0], first) for start in starts[1:])
 
 
-def _not_finite(reported: ReportedRun) -> str:
+def not_finite(reported: ReportedRun) -> str:
+    """From when on numbers are not finite; "" where all are."""
     finite = {name: np.isfinite(f).all(-1) for name, f in vars(reported.state).items()}
     bad = np.flatnonzero(~np.logical_and.reduce(list(finite.values())))
     if not len(bad):
@@ -44,29 +43,38 @@ def _not_finite(reported: ReportedRun) -> str:
     return f"{' and '.join(names)}: not finite from t = {reported.time[bad[0]]:.4g} s{until}"
 
 
-def _misread(reported: ReportedRun) -> str:
+def misread(reported: ReportedRun) -> list[str]:
+    """Conventions in which all samples are the declared run's: every one that fits."""
     if reported.agrees(reported.state, reported.own):
-        return ""
+        return []
     later, own = slice(1, None), reported.own[1:]  # the start may be passed on as it was given
-    came = reported.state[1:]
+    came, found = reported.state[1:], list[str]()
     if len(own.position) > 1 and not reported.agrees(came, own, later):
         begins = reported.agrees(reported.state[:1], reported.own[:1], slice(0, 1))
-        for one in (*misreadings(reported.case.system), *fitted_misreadings(came, own)):
+        known = (one for one in misreadings(reported.case.system) if one is not NOT_UNIT)
+        for one in (*known, *fitted_misreadings(came, own)):
             if ADDED in one.statement and not begins:
                 continue  # it is a run from another state as well
             if reported.agrees(one.right(came), own, later):
-                return f"in the run, {one.statement}"
+                found.append(f"in the run, {one.statement}")
         first = reported.case.initial.orientation
         turned = quaternion_product(
             np.broadcast_to(first, came.orientation.shape), came.orientation
         )
         if reported.agrees(replace(came, orientation=turned), own, later):
-            return "the attitude of a run is relative to its start, or starts from the identity"
-    for one in OF_ANY_STATE:
+            text = "the attitude of a run is relative to its start, or starts from the identity"
+            found.append(text)
+        unsigned = own.orientation.copy()
+        unsigned[:, 0] = np.abs(unsigned[:, 0])
+        if reported.agrees(came, replace(own, orientation=unsigned), later):
+            found.append("the quaternion's scalar part is reported without its sign")
+    for one in OF_ANY_STATE if not found else ():
         start = one.right(reported.case.initial)
         if reported.agrees(one.right(reported.state), reported.stepped(initial=start)):
-            return f"on the way in and on the way out, {one.statement}"
-    return ""
+            found.append(f"on the way in and on the way out, {one.statement}")
+    kinds = {kind_of(text): text for text in reversed(found)}
+    plain = [text for text in found if "axes of" not in text and text in kinds.values()]
+    return plain or found[:1]
 
 
 def _late(reported: ReportedRun) -> str:
@@ -98,10 +106,23 @@ def _late(reported: ReportedRun) -> str:
     ended = reported.agrees(reported.state[last], late[last], last)
     if ended and reported.agrees(reported.state[before], reported.own[before], before):
         return "the last step is missing: the end is the state one step before"
+    if reported.agrees(reported.state[before], reported.own[before], before):
+        return _last_in_full(reported)
     return ""
 
 
-def _start(reported: ReportedRun) -> str:
+def _last_in_full(reported: ReportedRun) -> str:
+    """A last interval that is shorter than the others is stepped as long as these."""
+    numbers, last = reported.sweep.sample_steps, slice(-1, None)
+    end = reported.stepped_on(reported.state[-2:-1])
+    if numbers[-1] - numbers[-2] == reported.sweep.every:
+        return ""
+    text = "the last interval, shorter than the others, is stepped in full: the end is too late"
+    return text if reported.agrees(reported.state[last], end, last, slack=2.0) else ""
+
+
+def another_start(reported: ReportedRun) -> str:
+    """The run begins at a state that is not the one given; "" where it does not."""
     first = slice(0, 1)
     if reported.agrees(reported.state[first], reported.own[first], first):
         return ""
@@ -129,13 +150,6 @@ def _rescaled(reported: ReportedRun) -> str:
     return ""
 
 
-CAUSES_REPORTED = (
-    _not_finite,
-    digits_reported,
-    _misread,
-    not_unit,
-    _late,
-    half_step,
-    _start,
-    _rescaled,
-)
+# What is seen of the numbers, whatever made them.
+SEEN = (not_finite, digits_reported)
+CAUSES_REPORTED = (_late, half_step, _rescaled)

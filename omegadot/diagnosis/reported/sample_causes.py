@@ -1,4 +1,4 @@
-"""Causes in the samples of a run: rounded to digits, of half a step before, or wrong in places.
+"""Causes in the samples of a run: of half a step before, or wrong in places.
 
 The last resort, where no single cause explains a whole run, is where it is sound: sample to sample,
 and quantity by quantity. Every sample is stepped on by the declared scheme to the next, so that
@@ -27,7 +27,6 @@ from omegadot.reference_impl.system import State
 
 EPS_SINGLE = float(np.finfo(np.float32).eps)
 LEAST_CHANGES = 3
-MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
 # One interval's rounding is within the bound of its end; its start is rounded, too.
 SLACK = 2.0
 ALONE = {
@@ -49,23 +48,6 @@ def not_unit(reported: ReportedRun) -> str:
     if reported.agrees(longer, reported.own) or not reported.agrees(unit, reported.own):
         return ""
     return f"the quaternion is not of unit length in the run: it is off by up to {off:.1e}"
-
-
-def digits_reported(reported: ReportedRun) -> str:
-    """Every number of the run is one of a few decimal digits; all are finite."""
-    digits = _digits(reported.state)
-    if digits > MOST_DIGITS or _digits(reported.own) <= digits:
-        return ""
-    return f"the numbers of the run have {digits} digits: they went through text"
-
-
-def _digits(state: State) -> int:
-    """How many significant digits determine all numbers of these states."""
-    numbers, needed = np.concatenate([np.ravel(values) for values in vars(state).values()]), 1
-    for number in numbers.tolist():
-        while needed < MOST_DIGITS + 2 and float(f"{number:.{needed}g}") != number:
-            needed += 1
-    return needed
 
 
 def half_step(reported: ReportedRun) -> str:

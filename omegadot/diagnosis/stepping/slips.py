@@ -16,11 +16,18 @@ from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, State, System
 
 Rows = Sequence[Sequence[float]]
+Rate = Callable[[Motion, Array, Array], Array]
+HALF_TURNS = np.eye(4)  # no turn, and half a turn about each axis: they leave no vector in the mean
 CLASSIC: Rows = ((), (0.5,), (0.0, 0.5), (0.0, 0.0, 1.0))
 WEIGHTS = (1 / 6, 1 / 3, 1 / 3, 1 / 6)
 
 
-def _runge_kutta(rows: Rows = CLASSIC, weights: Sequence[float] = WEIGHTS, held: str = "") -> Step:
+def _runge_kutta(
+    rows: Rows = CLASSIC,
+    weights: Sequence[float] = WEIGHTS,
+    held: str = "",
+    rate: Rate = lambda motion, q, v: motion.acceleration(motion.normalize(q), v),
+) -> Step:
     """Four stages on the quaternion's own equation. held: what keeps its value of the start."""
 
     def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
@@ -29,17 +36,42 @@ def _runge_kutta(rows: Rows = CLASSIC, weights: Sequence[float] = WEIGHTS, held:
             at_q, at_v = q, v
             for a, one, two in zip(row, q_dot, v_dot, strict=True):
                 at_q, at_v = at_q + (a * h) * one, at_v + (a * h) * two
-            place = motion.normalize(q if held == "attitude" else at_q)
+            place = q if held == "attitude" else at_q
             q_dot.append(motion.coordinate_rate(at_q, at_v))
             if held == "omega-dot" and v_dot:
                 v_dot.append(v_dot[0])
             else:
-                v_dot.append(motion.acceleration(place, at_v))
+                v_dot.append(rate(motion, place, at_v))
         q = q + h * sum(b * one for b, one in zip(weights, q_dot, strict=True))
         v = v + h * sum(b * one for b, one in zip(weights, v_dot, strict=True))
         return motion.normalize(q), np.asarray(v)
 
     return step
+
+
+def _by_square(motion: Motion, q: Array, v: Array) -> Array:
+    """The rotation matrix is of the quaternion's squares: world loads are |q|^2 too long."""
+    unit, size = _unit(motion, q)
+    loose = sum(motion.acceleration(_turned(unit, turn), v) for turn in HALF_TURNS) / 4.0
+    return np.asarray(loose + size * (motion.acceleration(unit, v) - loose))
+
+
+def _by_rest(motion: Motion, q: Array, v: Array) -> Array:
+    """The rotation matrix is one and what the quaternion's vector part adds, |q|^2 too long."""
+    unit, size = _unit(motion, q)
+    still = np.concatenate((unit[..., :-4], 0.0 * unit[..., -4:] + HALF_TURNS[0]), axis=-1)
+    rest = motion.acceleration(still, v)
+    return np.asarray(rest + size * (motion.acceleration(unit, v) - rest))
+
+
+def _unit(motion: Motion, q: Array) -> tuple[Array, Array]:
+    """The place with a unit quaternion, and the square of the length that it had."""
+    return motion.normalize(q), np.sum(q[..., -4:] ** 2, axis=-1, keepdims=True)
+
+
+def _turned(q: Array, turn: Array) -> Array:
+    turned = quaternion_product(turn + 0.0 * q[..., -4:], q[..., -4:])
+    return np.concatenate((q[..., :-4], turned), axis=-1)
 
 
 def _rows(**changed: Sequence[float]) -> Rows:
@@ -66,6 +98,12 @@ RUNGE_KUTTA: dict[str, Step] = {
         weights=(1.0, 0.0, 0.0, 0.0)
     ),
     "the loads are held at the attitude of the step's start": _runge_kutta(held="attitude"),
+    "its stages take the loads at a quaternion that is not made unit": _runge_kutta(
+        rate=_by_square
+    ),
+    "its stages take the loads at a quaternion that is not made unit (as 1 + 2 (...))": (
+        _runge_kutta(rate=_by_rest)
+    ),
     "omega-dot is held in the step at that of its start": _runge_kutta(held="omega-dot"),
 }
 
@@ -88,6 +126,12 @@ def _mean_omega(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[A
     after = v + h * motion.acceleration(q, v)
     mean = 0.5 * (v + after)[..., -3:]
     return motion.retract(q, h * np.concatenate((after[..., :-3], mean), axis=-1)), after
+
+
+def _mean_place(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    after = v + h * motion.acceleration(q, v)
+    mean = 0.5 * (v + after)[..., :-3]
+    return motion.retract(q, h * np.concatenate((mean, after[..., -3:]), axis=-1)), after
 
 
 def _straight(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
@@ -130,6 +174,7 @@ EULER: dict[str, Step] = {
     "attitude and position move by the velocities of the step's start (explicit Euler)": _explicit,
     "attitude and position move first, by the velocities of the step's start": _drift_first,
     "the attitude moves by the mean of the omega before and after": _mean_omega,
+    "the position moves by the mean of the velocities before and after": _mean_place,
     "attitude and position move by the mean of the velocities before and after": _mean_velocity,
     "the attitude moves by one straight step of the quaternion, normalised": _straight,
     "the turn of a step is taken by the second-order series of the exponential": _by_series(2),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 NUMBER = re.compile(r"[-+]?\d[\d.]*(?:e[-+]?\d+)?")
 # These state what is seen of one run, and no more; another run may show something else.
@@ -18,8 +18,15 @@ FACTS = (
     "are wrong only where",
     "the steps depend on how many went before",
     "samples came back",
-    "time",
+    "every time",
+    "times are",
+    "time alone is off",
+    "one time, that of",
+    "the clock runs",
+    "does not move in the run",
+    "is stepped in full",
 )
+MOST_NAMED = 3  # between which nothing decides
 SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
 
 
@@ -27,7 +34,8 @@ def kind_of(text: str) -> str:
     """A cause without its numbers, and without where it shows."""
     for end in (", but only where", ", at steps of", ", on "):
         text = text.partition(end)[0]
-    return NUMBER.sub("#", text)
+    same = text.replace("too short", "too long").partition(": rounded to")[0]
+    return NUMBER.sub("#", same)
 
 
 def is_fact(text: str) -> bool:
@@ -37,16 +45,35 @@ def is_fact(text: str) -> bool:
 
 def is_of_one_run(text: str) -> bool:
     """Whether it holds of a run that is another when it is requested again."""
-    kept = ("the last step is missing", "left over", "one before", "does not begin at")
+    kept = ("the last step is missing", "left over", "one before", "does not begin at", "its sign")
     return is_fact(text) or any(one in text for one in kept)
 
 
-def agreed(text: str, over_cases: Mapping[str, str]) -> bool:
-    """Whether a cause explains the failed runs of an integrator on most of the scenarios.
+def agreed(here: Sequence[str], over_cases: Mapping[str, tuple[Sequence[str], bool]]) -> list[str]:
+    """Which of one scenario's causes explain the failed runs on the most scenarios, half at least.
 
-    over_cases: by scenario what was found there; "" where the run was looked at in vain.
+    over_cases: by scenario the causes of which each alone explains its runs, none where it was
+    looked at in vain, and whether its motion decides between causes. Where no motion does, none is
+    named but a fact.
     """
-    if is_fact(text) or len(over_cases) < 2:
-        return True
-    kinds = Counter(kind_of(one) for one in over_cases.values() if not is_fact(one))
-    return kinds[kind_of(text)] >= SHARE * sum(kinds.values())
+    if any(map(is_fact, here)):
+        return [text for text in here if is_fact(text)]
+    kinds, deciding, count = Counter[str](), set[str](), 0
+    for texts, telling in over_cases.values():
+        known = {kind_of(text) for text in texts if not is_fact(text)}
+        kinds.update(known)
+        deciding |= known if telling else set()
+        count += bool(known) or not texts
+    most = max((kinds[kind_of(text)] for text in here), default=0)
+    if most < SHARE * count:
+        return []
+    best = [text for text in here if kinds[kind_of(text)] == most and kind_of(text) in deciding]
+    # of several slips in one scheme the first states the least
+    plain = list({text.partition(", but ")[0]: text for text in reversed(best)}.values())[::-1]
+    return plain if len(plain) <= MOST_NAMED else []
+
+
+def either(texts: Sequence[str]) -> list[str]:
+    """One sentence of causes that explain the same; none without any."""
+    known = [text for text in dict.fromkeys(texts) if text]
+    return ["either " + ", or ".join(known)] if len(known) > 1 else known

@@ -21,7 +21,9 @@ Detailed = tuple[str, str]
 
 
 def glances(summary: Summary, metrics: pl.DataFrame, sources: Sources) -> list[dict[str, Any]]:
-    """One row an engine over all scenarios, failing ones first; the yardsticks are left out where anything else ran.
+    """One row an engine over all scenarios, failing ones first.
+
+    The yardsticks are left out where anything else ran.
 
     best and worst: of its integrators, at their finest step.  error_source: whether its errors are
     those of the declared schemes.

@@ -93,6 +93,15 @@ def _of_momentum_balance(evidence: Evidence) -> Array | None:
     return found if good else None
 
 
+def scale_of_inertia(evidence: Evidence) -> Array | None:
+    """The factor of the inertia about the centre of mass, (1,), from the momentum balance."""
+    found, own = _of_momentum_balance(evidence), np.trace(evidence.system.body.inertia)
+    if found is None:
+        return None
+    about = np.trace(moving_inertia(evidence.system)) - own
+    return np.array([float((np.trace(_tensor(found)) - about) / own)])
+
+
 def _inertia_family(name: str, where: str, parts: tuple[str, ...]) -> Family:
     def form(right: Form, system: System, p: Array) -> Form:
         tensor = _tensor(p)

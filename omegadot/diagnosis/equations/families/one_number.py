@@ -17,6 +17,7 @@ from omegadot.diagnosis.equations.families.family import (
     scaled,
     with_body,
 )
+from omegadot.diagnosis.equations.families.inertias import scale_of_inertia
 from omegadot.diagnosis.wording.digits import number
 from omegadot.diagnosis.wording.laws import power_law
 from omegadot.reference_impl.inertia import moving_inertia
@@ -97,13 +98,16 @@ ONE_NUMBER: tuple[Family, ...] = (
         lambda f, s, k: _with_inertia(s, lambda t: k * t + (1.0 - k) * np.diag(np.diag(t))),
         scaled("in the dynamics, every product of inertia"),
     ),
-    scalar(
-        "whole inertia",
-        "inertia",
-        1.0,
-        always,
-        lambda f, s, k: _with_inertia(s, lambda t: k * t),
-        scaled("in the dynamics, the inertia about the centre of mass"),
+    replace(
+        scalar(
+            "whole inertia",
+            "inertia",
+            1.0,
+            always,
+            lambda f, s, k: _with_inertia(s, lambda t: k * t),
+            scaled("in the dynamics, the inertia about the centre of mass"),
+        ),
+        guess=scale_of_inertia,
     ),
     scalar(
         "parallel axis",

@@ -18,6 +18,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     own_inertia,
 )
 from omegadot.diagnosis.models.tensors import other_tensors
+from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Array, System
 
 
@@ -79,6 +80,13 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
         "inertia",
         lambda f, s: _both(diagonal(f.spin)),
     )
+    center = np.asarray(system.body.center_of_mass, dtype=float)
+    if system.load.pivot is None and np.any(center):
+        yield of_form(
+            "the inertia about the body's origin is taken, not that about the centre of mass",
+            "inertia",
+            lambda f, s: _both(own_inertia(s) + _of_origin(s)),
+        )
     if np.any(about):
         own_alone = "the inertia about the centre of mass is taken, not that about the pivot"
         yield of_form(
@@ -102,6 +110,11 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
             lambda f, s: _both(own_inertia(s) + diagonal(_about(s))),
         )
         yield of_form(
+            "the parallel-axis theorem is taken with a mass of 1 kg",
+            "inertia",
+            lambda f, s: _both(own_inertia(s) + _about(s) / float(s.body.mass)),
+        )
+        yield of_form(
             "the parallel-axis theorem is applied twice",
             "inertia",
             lambda f, s: _both(2.0 * f.spin - own_inertia(s)),
@@ -121,6 +134,11 @@ def _named(system: System, text: str) -> dict[str, Any]:
 
 def _about(system: System) -> Array:
     return form_of(system).spin - own_inertia(system)
+
+
+def _of_origin(system: System) -> Array:
+    center = np.asarray(system.body.center_of_mass, dtype=float)
+    return np.asarray(parallel_axis(float(system.body.mass), center), dtype=float)
 
 
 def _squared(system: System) -> Array:

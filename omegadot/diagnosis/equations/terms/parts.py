@@ -145,7 +145,7 @@ def scaled_report(what: str) -> Callable[[System, Array], str]:
     return text
 
 
-def along_omega(states: State, power: int) -> Array:
+def along_omega(states: State, power: float) -> Array:
     """``|omega|^power`` along omega, (n, 3)."""
     w = states.angular_velocity
     size = np.sqrt(np.sum(w * w, axis=-1, keepdims=True))

@@ -28,8 +28,8 @@ class Terms:
 
     basis: (k, n, 3) at states (n,), rad/s^2 in body axes, or m/s^2 in world axes where `linear`.
     text: the cause, with the factors (k,).  reported: what comes out is another than what moves
-    the body; the centre of mass of a pivoted body does not follow.  by_rows: the components of
-    one vector are scaled, each by its own factor.
+    the body; the centre of mass of a pivoted body does not follow.  stepped: of what steps do
+    alone.  by_rows: the components of one vector are scaled, each by its own factor.
     """
 
     name: str
@@ -37,6 +37,7 @@ class Terms:
     text: Callable[[System, Array], str]
     linear: bool = False
     reported: bool = False
+    stepped: bool = False
     by_rows: bool = False
 
     def made(self, evidence: Evidence, p: Array) -> Acceleration:

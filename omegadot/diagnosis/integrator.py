@@ -1,0 +1,180 @@
+"""The causes of one integrator's failures on one case: in its steps as they vanish, in its runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.wrong_equation import known_difference
+from omegadot.diagnosis.reported.requests import again_cause
+from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
+from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, follows
+from omegadot.diagnosis.stepping.jumps import jump_cause, jumps
+from omegadot.diagnosis.stepping.kinematics import (
+    kinematic_causes,
+    moves_by_cause,
+    omega_share_cause,
+    omega_still_cause,
+    still_cause,
+    velocity_share_cause,
+)
+from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
+from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
+from omegadot.diagnosis.wording.kinds import agreed, either, is_of_one_run
+from omegadot.gates.bounds.scales import eps_of
+from omegadot.gates.case import Case
+from omegadot.gates.steps.accuracy import tolerated_by
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.judge import JudgedRun
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import State
+
+
+def source_of(integrator: str) -> str:
+    """The name of the evidence in an integrator's steps."""
+    return f"steps of {integrator}"
+
+
+def fails(run: JudgedRun) -> bool:
+    """Whether a gate of a run fails."""
+    return any(row.verdict == "fail" for row in run.rows)
+
+
+class IntegratorCauses:
+    """The causes of one integrator's failures on one case, worked out when they are needed."""
+
+    def __init__(
+        self,
+        across: Across,
+        case: Case,
+        truth: Truth,
+        result: CaseResult,
+        runs: Sequence[JudgedRun],
+    ) -> None:
+        self._across, self._case, self._truth = across, case, truth
+        self._result: CaseResult | None = result
+        self._runs = list(runs)
+        integrator = runs[0].integrator
+        self._name, self._declares = integrator.name, integrator.scheme in SCHEMES
+        self._again = next(filter(None, (again_cause(run.rows) for run in runs)), "")
+        self._beginning = _beginning_of(truth, result, runs)
+        failed = [run for run in runs if fails(run)]
+        self._turned_wrong = any(
+            row.channel == "attitude" and row.verdict == "fail"
+            for run in failed
+            for row in run.rows
+        )
+        self._brief = all(len(run.sweep.times) < LEAST_SAMPLES for run in runs)
+        self._of_runs: RunCauses | None = None
+        self._followed: dict[tuple[str, ...], bool | None] = {}
+        self.steps: VanishingSteps | None = None
+        probe, answer = result.first_steps.get(self._name, (None, None))
+        if probe is not None and answer is not None and answer.ok:
+            tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
+            stepped = State(**answer.result)
+            self.steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
+
+    def release(self, wanted: bool) -> None:
+        """Work out what needs the trajectories, where it is wanted, and let go of them."""
+        if wanted and any(map(fails, self._runs)):
+            self.sentences()
+        self._result, self._runs = None, []
+
+    def sentences(self) -> list[str]:
+        """Of the steps as they vanish and of the run itself.
+
+        What a declared scheme makes of a wrong state is known better by stepping again than by
+        the steps as they vanish; a wrong equation is known better by these.
+        """
+        steps = self.steps
+        if self._again:
+            seen = self._of_trajectories()
+            return [one for one in seen if is_of_one_run(one)] or [self._again]
+        if steps is None or steps.sound:
+            return self._of_trajectories()
+        found = self._of_steps(steps) or self._of_trajectories()
+        last = (
+            found or either([jump_cause(steps, self._beginning)]) or either(kinematic_causes(steps))
+        )
+        return last or either([still_cause(steps)]) or ([] if steps.still else self._known(steps))
+
+    def _of_steps(self, steps: VanishingSteps) -> list[str]:
+        """Where every state is off by the steps alone, the more basic first."""
+        common = steps.common_cause()
+        if common:
+            return [common]
+        if jumps(steps):
+            return [] if self._declares else either([jump_cause(steps, self._beginning)])
+        if steps.still:
+            return []
+        moved = moves_by_cause(steps)
+        if moved:  # where it is either of two, a whole run may show which
+            return (self._of_trajectories() if moved.startswith("either") else []) or [moved]
+        return either(kinematic_causes(steps)) or self._of_omega(steps)
+
+    def _of_omega(self, steps: VanishingSteps) -> list[str]:
+        """Omega is of another time than the rest, or the equation that it follows is another."""
+        if not steps.evidence.clear:
+            return []
+        share = omega_share_cause(steps)
+        if share and not self._turned_wrong and not self._brief:
+            return [share]
+        found = self._of_equation(steps)
+        if share and not self._turned_wrong:
+            return either([share, *found])
+        return found
+
+    def _of_equation(self, steps: VanishingSteps) -> list[str]:
+        """By which equation the limit of vanishing steps is another; nothing where it is right."""
+        if np.all(steps.evidence.sound) or not steps.turns:
+            return []
+        where = (self._case.name, source_of(self._name))
+        text, one = self._across.cause(*where), self._across.chosen(*where)
+        if not text:
+            still = omega_still_cause(steps)
+            return (self._of_trajectories() or [still]) if still else []
+        if one is not None and self._beginning is not None:
+            if one.key not in self._followed:
+                followed = follows(self._case.system, self._beginning, one, steps.eps)
+                self._followed[one.key] = followed
+            if self._followed[one.key] is False:
+                first = f"in the first step of a run alone, {text}"
+                return either([velocity_share_cause(steps), first])
+        return [f"in the steps, {text}"]
+
+    def _known(self, steps: VanishingSteps) -> list[str]:
+        """What is known of the steps' equation where nothing fits."""
+        if np.all(steps.evidence.sound):
+            return []
+        known = known_difference(self._across, self._case.name, source_of(self._name))
+        return [f"in the steps, {one}" for one in known]
+
+    def _of_trajectories(self) -> list[str]:
+        """What makes the runs, and most of those of the other cases."""
+        over = self._across.of_runs.setdefault(self._name, {})
+        if self._of_runs is None:
+            self._of_runs = NOTHING
+            # In single precision much fits a run within its rounding, and decides little.
+            if self._result is not None and self._result.precision != "float32":
+                # a wrong equation shows in steps that vanish, and from more states
+                wrong = self.steps is None or not np.all(self.steps.evidence.sound)
+                how = (self._case, self._truth, self._result, self._runs)
+                self._of_runs = run_causes(*how, equations=wrong)
+                over[self._case.name] = (self._of_runs.texts, self._of_runs.telling)
+        return either(agreed(self._of_runs.texts, over))
+
+
+def _beginning_of(truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]) -> Beginning | None:
+    """The first samples of the failed run with the shortest steps."""
+    for run in sorted(runs, key=lambda run: run.sweep.timestep):
+        answer = result.runs.get((run.integrator.name, run.sweep.knob))
+        if not fails(run) or answer is None or not answer.ok:
+            continue
+        times, state = run.sweep.times, State(**answer.result["state"])
+        if len(state.position) == len(times):
+            first = slice(0, SAMPLES + 1)
+            return Beginning(times[first], state[first], truth.at(run.sweep)[first])
+    return None

@@ -1,0 +1,52 @@
+"""Causes in the numbers of a run: of single precision, or of a few decimal digits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.gates.bounds.scales import EPS
+from omegadot.reference_impl.system import State
+
+MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
+
+
+def precision_reported(reported: ReportedRun) -> str:
+    """Attitude or omega of every sample after the start are numbers of single precision.
+
+    Places are not looked at: they may follow, in double, from what is kept.
+    """
+
+    def single(state: State, field: str) -> bool:
+        kept = getattr(state, field)[1:]
+        moves = bool(np.ptp(kept, axis=0).any())  # a body put to sleep has zeros
+        return moves and np.array_equal(kept, kept.astype(np.float32).astype(float))
+
+    fields = {"orientation": "attitude", "angular_velocity": "omega"}
+    found = [
+        s for f, s in fields.items() if single(reported.state, f) and not single(reported.own, f)
+    ]
+    what = "state" if len(found) == 2 else "".join(found)
+    eps = float(np.finfo(np.float32).eps)
+    pairs = zip(vars(reported.state).values(), vars(reported.own).values(), strict=True)
+    if found and all(np.all(np.abs(a - b) <= eps * np.abs(b)) for a, b in pairs):
+        return f"the {what} is reported in single precision, and kept in double"
+    single_is_due = reported.truth.yardstick.eps > EPS
+    return f"the {what} is kept in single precision" if found and not single_is_due else ""
+
+
+def digits_reported(reported: ReportedRun) -> str:
+    """Every number of the run is one of a few decimal digits; all are finite."""
+    digits = _digits(reported.state)
+    if digits > MOST_DIGITS or _digits(reported.own) <= digits:
+        return ""
+    return f"the numbers of the run have {digits} digits: they went through text"
+
+
+def _digits(state: State) -> int:
+    """How many significant digits determine all numbers of these states."""
+    numbers, needed = np.concatenate([np.ravel(values) for values in vars(state).values()]), 1
+    for number in numbers.tolist():
+        while needed < MOST_DIGITS + 2 and float(f"{number:.{needed}g}") != number:
+            needed += 1
+    return needed

@@ -1,0 +1,111 @@
+"""What a step does to a state however short it is: limits, sleep, rounding, misread states."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
+from omegadot.diagnosis.models.misreadings import Misreading, misreadings
+from omegadot.diagnosis.stepping.follows import Beginning
+from omegadot.diagnosis.stepping.vanishing_steps import LEFT, VanishingSteps, stays
+from omegadot.diagnosis.wording.conditions import only_where
+from omegadot.diagnosis.wording.digits import limits
+from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.rotations import attitude_angle, quaternion_product
+from omegadot.reference_impl.system import Array
+
+NEARER = 0.5  # of what a misread run is off by: a coarse scheme leaves something too
+
+
+def jumps(steps: VanishingSteps) -> bool:
+    """Whether a step of no length changes omega, the velocity, the attitude or the place."""
+    return not np.all(stays(steps, steps.start))
+
+
+def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str:
+    """What a step does to a state however short it is: limits, sleep, rounding; "" without any."""
+    before, after = steps.states, steps.start
+    if not jumps(steps):
+        return ""
+    finite = np.all([np.isfinite(values).all(-1) for values in vars(after).values()], axis=0)
+    if not finite.all():
+        count = int(np.count_nonzero(~finite))
+        where = only_where([(steps.system, before, finite)])
+        text = f"a step leads to numbers that are not finite from {count} of {len(finite)} states"
+        return f"{text}: only where {where}" if where else text
+    for one in (*misreadings(steps.system), *fitted_misreadings(after, before)):
+        if np.all(stays(steps, one.right(after))):
+            text = _along(one, beginning)
+            return f"in the run, {text}" if text else ""
+    relative = replace(after, orientation=quaternion_product(before.orientation, after.orientation))
+    if np.all(stays(steps, relative)):
+        return "the attitude of a run is relative to its start, or starts from the identity"
+    w, new = before.angular_velocity, after.angular_velocity
+    v, moved = before.linear_velocity, after.linear_velocity
+    between = steps.moved
+    for what, unit, was, now, step in (
+        ("omega", "rad/s", w, new, between.angular_velocity),
+        ("the linear velocity", "m/s", v, moved, between.linear_velocity),
+    ):
+        allowed = LEFT * norm(was) + norm(step)
+        jumped = norm(now - was) > allowed
+        if jumped.any() and np.all(np.isfinite(now)):
+            text = _limit(what, unit, was, now, allowed, jumped)
+            if text:
+                return text
+    where = only_where([(steps.system, before, stays(steps, after))])
+    return f"a step changes the state, however short it is, only where {where}" if where else ""
+
+
+def _along(one: Misreading, beginning: Beginning | None) -> str:
+    """A misreading as text, if it holds along a run as well; "" if it does not.
+
+    Undone, it is nearer to the exact motion. A step of no length has the attitude of the run's
+    start, with which any sample of a run may be turned.
+    """
+    if beginning is None or len(beginning.times) < 3:
+        return one.statement
+    came, exact = beginning.reported[1:], beginning.exact[1:]
+    first = 0.0 * came.orientation + beginning.reported.orientation[:1]
+    at_start = one.right(replace(came, orientation=first))
+    undone, text = one.right(came), one.statement
+    for name, due in vars(exact).items():
+        far, near, other = (_apart(name, getattr(x, name), due) for x in (came, undone, at_start))
+        if np.array_equal(getattr(came, name), getattr(undone, name)):
+            continue
+        if name != "orientation" and other < NEARER * near:
+            near, text = other, f"{one.statement} of the run's start"
+        if near > NEARER * far:
+            return ""
+    return text
+
+
+def _apart(name: str, one: Array, other: Array) -> float:
+    with np.errstate(all="ignore"):
+        apart = attitude_angle(one, other) if name == "orientation" else norm(one - other)
+    return float(np.max(apart))
+
+
+def _limit(
+    what: str, unit: str, was: Array, now: Array, allowed: Array, jumped: NDArray[np.bool_]
+) -> str:
+    size, held = norm(was), norm(now)
+    if np.all(held[jumped] <= allowed[jumped]):
+        least, more = float(np.max(size[jumped])), size[~jumped]
+        sleeps = "the body is put to sleep: " if what == "omega" else ""
+        if not len(more):
+            return f"{sleeps}{what} is set to zero"
+        if np.min(more) < least:
+            return ""
+        return f"{sleeps}{what} is set to zero below {limits(least, float(np.min(more)), unit)}"
+    limit = float(np.median(held[jumped]))
+    scaled = was * np.minimum(1.0, limit / np.where(size > 0.0, size, 1.0))[:, None]
+    if np.all(norm(now - scaled) <= 10 * allowed):
+        return f"{what} is held below {limit:.6g} {unit}"
+    largest = float(np.max(np.abs(now[jumped])))
+    if np.all(norm(now - np.clip(was, -largest, largest)) <= 10 * allowed):
+        return f"each component of {what} is held within {largest:.6g} {unit}"
+    return ""

@@ -1,0 +1,99 @@
+"""Causes that hold the state within limits: sleep, the greatest omega, speed or turn of a step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.stepping.fitted import search
+from omegadot.diagnosis.stepping.step_ends import (
+    End,
+    clipped_at,
+    held_below,
+    speed_below,
+    turn_within,
+    with_end,
+)
+from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.rotations import rotation_between
+from omegadot.reference_impl.system import Array, State
+
+
+def asleep(reported: ReportedRun) -> str:
+    """Omega is zero from some sample on."""
+    still = ~np.any(reported.state.angular_velocity, axis=-1)
+    if not still.any() or not np.all(np.any(reported.own.angular_velocity, axis=-1)):
+        return ""
+    first = int(np.argmax(still))
+    if not np.all(still[first:]):
+        return ""
+    rate = float(norm(reported.own.angular_velocity[first]))
+    when = f"from t = {reported.time[first]:.4g} s on"
+    return f"the body is put to sleep: omega is zero {when}, where it should be {rate:.2g} rad/s"
+
+
+def still(reported: ReportedRun) -> str:
+    """Nothing moves, and something should."""
+    pairs = zip(vars(reported.state).values(), vars(reported.own).values(), strict=True)
+    rests = [
+        (not np.ptp(came, axis=0).any(), bool(np.ptp(due, axis=0).any())) for came, due in pairs
+    ]
+    alone = any(due for _, due in rests) and all(rest for rest, _ in rests)
+    return "the body does not move in the run" if alone else ""
+
+
+def _limit(
+    reported: ReportedRun,
+    size: Callable[[Array], Array],
+    end: Callable[[float], End],
+    field: str = "angular_velocity",
+) -> float | None:
+    """The size that omega, or the velocity, is kept within by the end of each step, if any.
+
+    The greatest that is reported is nearly the one that the steps keep to.
+    """
+    greatest = float(np.max(size(getattr(reported.state, field)[1:])))
+    if not 0.0 < greatest < float(np.max(size(getattr(reported.own, field)[1:]))):
+        return None
+
+    def stepped(more: float) -> State:
+        return reported.stepped(with_end(reported.declared, end(greatest * (1.0 + more))))
+
+    more = search(reported, stepped, 1e-6)
+    return None if more is None else greatest * (1.0 + more)
+
+
+def held(reported: ReportedRun) -> str:
+    """Omega is scaled down to a limit."""
+    found = _limit(reported, norm, held_below)
+    return "" if found is None else f"omega is held below {found:.6g} rad/s"
+
+
+def clipped(reported: ReportedRun) -> str:
+    """Every component of omega is cut at a limit."""
+    found = _limit(reported, np.abs, clipped_at)
+    return "" if found is None else f"each component of omega is held within {found:.6g} rad/s"
+
+
+def speed(reported: ReportedRun) -> str:
+    """The linear velocity is scaled down to a limit."""
+    found = _limit(reported, norm, speed_below, "linear_velocity")
+    return "" if found is None else f"the linear velocity is held below {found:.6g} m/s"
+
+
+def turn_held(reported: ReportedRun) -> str:
+    """The turn of each step is cut at an angle, which the greatest between samples is made of."""
+    q, every = reported.state.orientation, reported.sweep.every
+    greatest = float(np.max(norm(rotation_between(q[:-1], q[1:])))) / every
+    if not 0.0 < greatest < np.pi / every:
+        return ""
+
+    def stepped(more: float) -> State:
+        return reported.stepped(with_end(reported.declared, turn_within(greatest * (1.0 + more))))
+
+    more = search(reported, stepped, 1e-6)
+    return (
+        "" if more is None else f"the turn of a step is held within {greatest * (1 + more):.6g} rad"
+    )

@@ -1,0 +1,92 @@
+"""Causes in the scheme: another of the reference, another end of each step, or a slip in it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.stepping.slips import damping_ends, slipped
+from omegadot.diagnosis.stepping.step_ends import (
+    End,
+    left_multiplied,
+    second_order_turn,
+    straight_quaternion,
+    turned_by_last_omega,
+    with_end,
+)
+from omegadot.reference_impl.coordinates import PHRASES, canonical, distinct
+from omegadot.reference_impl.schemes import SCHEMES
+
+ENDS: dict[str, End] = {
+    "the attitude's change in body axes is multiplied from the left": left_multiplied,
+    "the attitude is stepped as q + h/2 q omega and not normalised": straight_quaternion,
+    "the attitude turns by the step's last omega alone": turned_by_last_omega,
+    "the turn of a step is taken by the exponential's series to second order": second_order_turn,
+}
+
+
+def other_schemes(reported: ReportedRun) -> list[str]:
+    """Schemes of the reference by which the run may be stepped, in the declared coordinates first.
+
+    All that fit: a motion may be the same by several.
+    """
+    system, declared = reported.case.system, reported.integrator.coordinates
+    own = canonical(system, declared)
+    for way in sorted(distinct(system), key=lambda way: way != own):
+        other = replace(reported, integrator=replace(reported.integrator, coordinates=way))
+        found = list[str]()
+        for name, scheme in SCHEMES.items():
+            same = name == reported.integrator.scheme
+            if way not in scheme.coordinates or (same and way == own):
+                continue  # what is declared: this is not what is wrong
+            if not reported.agrees(reported.state, other.stepped(scheme)):
+                continue
+            if same:
+                return [f"it steps {PHRASES[way]}, which is not what is declared"]
+            found.append(name)
+        if found:
+            names = " or ".join(found)
+            return [f"it is stepped by {names}, though {reported.integrator.scheme} is declared"]
+    return []
+
+
+def other_ends(reported: ReportedRun) -> list[str]:
+    """Ends of every step that make the run out of the declared scheme's."""
+    return [
+        text
+        for text, end in ENDS.items()
+        if reported.agrees(reported.state, reported.stepped(with_end(reported.declared, end)))
+    ]
+
+
+def slips_of(reported: ReportedRun, name: str) -> list[str]:
+    """A scheme with one slip in it, whatever is declared or guessed; what states less first.
+
+    All that fit: some differ in what this motion does not have.
+    """
+    return [
+        f"it is stepped by {name}, but {text}"
+        for text, scheme in slipped(name).items()
+        if reported.integrator.coordinates in scheme.coordinates
+        and reported.agrees(reported.state, reported.stepped(scheme))
+    ]
+
+
+def slips(reported: ReportedRun) -> list[str]:
+    """The declared scheme with one slip in it, or with the damping split off."""
+    found = slips_of(reported, reported.integrator.scheme or "")
+    if found:
+        return found
+    system = reported.case.system
+    if not float(system.load.damping):
+        return []
+    undamped = replace(system, load=replace(system.load, damping=np.zeros(())))
+    return [
+        f"the damping is split off each step: it acts {text}"
+        for text, end in damping_ends(system).items()
+        if reported.agrees(
+            reported.state, reported.stepped(with_end(reported.declared, end), undamped)
+        )
+    ]
