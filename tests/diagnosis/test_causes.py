@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from wrong_equations import CASES, EQUATIONS, PIVOT, case, gyroscopic, mirrored_center
+from wrong_equations import CASES, EQUATIONS, PIVOT, case, gyroscopic, mirrored_center, with_torque
 
 from omegadot.diagnosis.equations.across import Across, Scene
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
@@ -21,12 +21,10 @@ from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_acceleration, random_states
 from omegadot.gates.steps.vanishing_step import DOUBLE, Probe
 from omegadot.reference_impl.loads import damping_torque
-from omegadot.reference_impl.motion import (
-    inverse_dynamics,
-)
+from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import stack, step_body
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import Acceleration, State, System
 
 
 def causes_over(found: Any, cases: tuple[Case, ...] = CASES) -> dict[str, str]:
@@ -47,6 +45,34 @@ def test_a_wrong_equation_is_named_on_every_scenario_that_shows_it(name: str) ->
     causes = causes_over(found)
     assert causes
     assert all(phrase in text for text in causes.values()), causes
+
+
+def test_a_wrong_omega_dot_is_named_where_the_linear_accelerations_are_right() -> None:
+    """On a pivot they follow from omega-dot; an engine may compute them another way."""
+
+    def angular_alone(system: System, states: State) -> Acceleration:
+        wrong = with_torque(system, states, gyroscopic(system, states))
+        return replace(forward_dynamics(system, states), angular=wrong.angular)
+
+    causes = causes_over(angular_alone)
+    assert len(causes) == len(CASES)
+    assert set(causes.values()) == {"the gyroscopic term is missing"}
+
+
+def test_an_omega_dot_that_is_constant_here_and_not_there_is_no_constant() -> None:
+    def odd(system: System, states: State) -> Acceleration:
+        """Constant without loads; with them wrong in a way that has no name."""
+        true = forward_dynamics(system, states)
+        if system.load.pivot is None:
+            return replace(true, angular=0.0 * true.angular + [0.3, -0.1, 0.2])
+        return replace(true, angular=true.angular + states.angular_velocity**3)
+
+    free = case("free", {})
+    top = case("top", {"gravity": [0.0, 0.0, -9.0], "pivot": PIVOT})
+    texts = causes_over(odd, (free, top))
+    assert len(texts) == 2
+    assert not any("the same at every state" in text for text in texts.values())
+    assert "the same at every state" in causes_over(odd, (free,))["free"]
 
 
 def test_two_causes_that_one_scenario_cannot_distinguish_are_both_named() -> None:

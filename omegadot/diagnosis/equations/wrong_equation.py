@@ -73,7 +73,7 @@ def equation_causes(across: Across, name: str, source: str) -> list[str]:
         return [single]
     text = place_cause(evidence) or across.cause(name, source)
     if not text and source in (FORWARD, ALONG):
-        text = _constant(evidence) or difference_quotient(evidence)
+        text = _constant(across, source) or difference_quotient(evidence)
     return [text] if text else known_difference(across, name, source)
 
 
@@ -86,9 +86,12 @@ def _single(evidence: Evidence) -> str:
     return "omega-dot is worked out in single precision" * found
 
 
-def _constant(evidence: Evidence) -> str:
-    moves = [bool(np.any(np.diff(a.angular, axis=0))) for a in (evidence.found, evidence.true)]
-    return "omega-dot is the same at every state" if moves == [False, True] else ""
+def _constant(across: Across, source: str) -> str:
+    """On every scenario where it should change."""
+    known = [s.evidence[source] for s in across.scenes.values() if source in s.evidence]
+    changing = [e for e in known if np.any(np.diff(e.true.angular, axis=0))]
+    moves = any(bool(np.any(np.diff(e.found.angular, axis=0))) for e in changing)
+    return "omega-dot is the same at every state" if changing and not moves else ""
 
 
 def known_difference(across: Across, name: str, source: str) -> list[str]:
