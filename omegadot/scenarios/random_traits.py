@@ -46,11 +46,20 @@ def _weight_and_support(traits: Mapping[str, str]) -> object:
     return traits["bulk"].partition("-")[0], traits["support"].startswith("pivot")
 
 
+def _mass_shows(traits: Mapping[str, str]) -> int:
+    """How much there is for a mass to act on: a weight that turns the body, above all."""
+    support, weighs = traits["support"], traits["gravity"] != "none"
+    has_lever = support == "pivot" or (support, traits["center"]) == ("pivot-at-origin", "offset")
+    others = sum(traits[load] != "none" for load in ("torque", "damping"))
+    return weighs * (3 if has_lever else 1) + others
+
+
 SPREAD_BY: dict[str, Callable[[Mapping[str, str]], object]] = {
     "mass": _weight_and_support,
     "size": itemgetter("bulk"),
     "rate": itemgetter("rate"),
     "speed": itemgetter("support"),
+    "place": itemgetter("support"),
     "damping": itemgetter("damping"),
     "gravity": itemgetter("gravity"),
     "inertia": itemgetter("inertia"),
@@ -71,14 +80,24 @@ class Draw:
     steady: bool = False
 
 
-def _ranks(groups: Sequence[object], random: Generator) -> list[tuple[int, int]]:
-    """For every row its number within its group, in random order, and how many these are."""
+def _ranks(
+    groups: Sequence[object], random: Generator, shows: Sequence[int] = ()
+) -> list[tuple[int, int]]:
+    """For every row its number within its group, in random order, and how many these are.
+
+    shows: of every row, how much of the magnitude it shows. Those that show the most have the
+    largest, the least, the second largest and so on; those that show the least are between.
+    """
     places = defaultdict(list)
     for row, group in enumerate(groups):
         places[group].append(row)
     found = [(0, 1)] * len(groups)
     for rows in places.values():
-        for rank, row in enumerate(random.permutation(rows)):
+        order = list(random.permutation(rows))
+        if shows:
+            order = sorted(order, key=lambda row: -shows[row])
+            order = [*order[1::2], *order[::2][::-1]]
+        for rank, row in enumerate(order):
             found[row] = (rank, len(rows))
     return found
 
@@ -95,7 +114,9 @@ def _block(seed: int, number: int) -> tuple[Draw, ...]:
         rows[place] = row
     shares = [dict[str, float]() for _ in rows]
     for name, key in SPREAD_BY.items():
-        for share, (rank, of) in zip(shares, _ranks(list(map(key, rows)), random), strict=True):
+        shows = list(map(_mass_shows, rows)) if name == "mass" else ()
+        ranks = _ranks(list(map(key, rows)), random, shows)
+        for share, (rank, of) in zip(shares, ranks, strict=True):
             share[name] = (rank + random.random()) / of
     steady = dict(zip(map(int, places), STEADY_INERTIAS, strict=False))
     for place, inertia in steady.items():
