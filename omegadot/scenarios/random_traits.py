@@ -46,12 +46,23 @@ def _weight_and_support(traits: Mapping[str, str]) -> object:
     return traits["bulk"].partition("-")[0], traits["support"].startswith("pivot")
 
 
-def _mass_shows(traits: Mapping[str, str]) -> int:
-    """How much there is for a mass to act on: a weight that turns the body, above all."""
-    support, weighs = traits["support"], traits["gravity"] != "none"
+def _weighs(traits: Mapping[str, str]) -> int:
+    """Whether there is gravity."""
+    return int(traits["gravity"] != "none")
+
+
+def _flies(traits: Mapping[str, str]) -> int:
+    """How fast it may fly, by its size and rate; of those alike, those under gravity."""
+    fast = {"slow": 0, "middle": 3, "fast": 5}[traits["rate"]]
+    return 2 * (fast + 3 * traits["bulk"].endswith("large")) + _weighs(traits)
+
+
+def _acts(traits: Mapping[str, str]) -> int:
+    """How much a mass or a lever acts on: a weight that turns the body, above all."""
+    support = traits["support"]
     has_lever = support == "pivot" or (support, traits["center"]) == ("pivot-at-origin", "offset")
     others = sum(traits[load] != "none" for load in ("torque", "damping"))
-    return weighs * (3 if has_lever else 1) + others
+    return _weighs(traits) * (3 if has_lever else 1) + others
 
 
 SPREAD_BY: dict[str, Callable[[Mapping[str, str]], object]] = {
@@ -63,6 +74,11 @@ SPREAD_BY: dict[str, Callable[[Mapping[str, str]], object]] = {
     "damping": itemgetter("damping"),
     "gravity": itemgetter("gravity"),
     "inertia": itemgetter("inertia"),
+}
+
+
+SHOWN_BY: dict[str, Callable[[Mapping[str, str]], int]] = {
+    **{"mass": _acts, "size": _acts, "speed": _flies, "place": _weighs}
 }
 
 
@@ -114,7 +130,7 @@ def _block(seed: int, number: int) -> tuple[Draw, ...]:
         rows[place] = row
     shares = [dict[str, float]() for _ in rows]
     for name, key in SPREAD_BY.items():
-        shows = list(map(_mass_shows, rows)) if name == "mass" else ()
+        shows = list(map(SHOWN_BY[name], rows)) if name in SHOWN_BY else ()
         ranks = _ranks(list(map(key, rows)), random, shows)
         for share, (rank, of) in zip(shares, ranks, strict=True):
             share[name] = (rank + random.random()) / of

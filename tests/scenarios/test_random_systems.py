@@ -56,7 +56,7 @@ def test_magnitudes_reach_what_engines_limit(seed: int) -> None:
     assert min(rates) == 0.0
     assert sum(0.0 < rate < 0.05 for rate in rates) >= 3
     assert max(rates) > 500.0
-    assert max(speeds) > 1000.0
+    assert max(speeds) > 300.0
     assert min(masses) < 1e-2
     assert max(masses) > 3000.0
     held = [one.body.mass for one in found if one.load.pivot is not None]
