@@ -24,6 +24,8 @@ AT_REST = 0.25  # of the slow ones: they start at rest, and are driven at a rate
 SPEEDS = (3.0, 4.0)  # m/s, of a flying body
 PLACES = (4.0, 6.5)  # m, from the world's origin, of a flying body
 FASTEST = 300.0  # size times rate, beyond which its turning would drown in rounding
+LARGER = 0.6  # of the range of sizes, of flying bodies
+FURTHEST = 300.0  # sizes from the origin: where inertias are in world axes, m x^2 drowns them
 DAMPINGS = {"weak": (-2.0, -1.0), "strong": (-0.3, 0.0)}  # of what stops it within a radian
 SPREADS = {"near-equal": (-6.0, -3.0), "thin": (-4.0, -1.5)}
 # Radians a step at the rate of the body, steps between samples and of the run, and step sizes.
@@ -44,6 +46,15 @@ AXES = ((0, 0, 1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
 def between(decades: tuple[float, float], share: float) -> float:
     """The magnitude at this share of the way between two powers of ten."""
     return float(10.0 ** (decades[0] + share * (decades[1] - decades[0])))
+
+
+def size_of(draw: Draw) -> float:
+    """The size in m; the larger a body, the faster it may fly, and the further away."""
+    kind = draw.traits["bulk"].partition("-")[2]
+    if draw.traits["support"] != "flying":
+        return between(SIZES[kind], draw.share["size"])
+    size = between(SIZES[kind], max(draw.share["size"], LARGER))
+    return max(size, between(PLACES, draw.share["place"]) / FURTHEST) if kind == "large" else size
 
 
 def rounded(values: Any, digits: int = 6) -> Any:
@@ -176,7 +187,7 @@ def initial_of(
     if not draw.traits["support"].startswith("pivot"):
         place = 3.0 * size * random.standard_normal(3)
         if draw.traits["support"] == "flying":
-            place = between(PLACES, draw.share["place"]) * oblique(random)
+            place = min(between(PLACES, draw.share["place"]), FURTHEST * size) * oblique(random)
         initial["position"] = rounded(place)
         initial["linear_velocity"] = rounded(speed * oblique(random))
     return initial

@@ -51,6 +51,11 @@ def _weighs(traits: Mapping[str, str]) -> int:
     return int(traits["gravity"] != "none")
 
 
+def _far(traits: Mapping[str, str]) -> int:
+    """How far it may be, by its size; of those alike, those under gravity."""
+    return 2 * traits["bulk"].endswith("large") + _weighs(traits)
+
+
 def _flies(traits: Mapping[str, str]) -> int:
     """How fast it may fly, by its size and rate; of those alike, those under gravity."""
     fast = {"slow": 0, "middle": 3, "fast": 5}[traits["rate"]]
@@ -78,7 +83,7 @@ SPREAD_BY: dict[str, Callable[[Mapping[str, str]], object]] = {
 
 
 SHOWN_BY: dict[str, Callable[[Mapping[str, str]], int]] = {
-    **{"mass": _acts, "size": _acts, "speed": _flies, "place": _weighs}
+    **{"mass": _acts, "size": _acts, "speed": _flies, "place": _far}
 }
 
 

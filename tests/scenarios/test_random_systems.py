@@ -69,7 +69,6 @@ def test_magnitudes_reach_what_engines_limit(seed: int) -> None:
     ]
     assert max(hanging) > 9e4
     places = [float(np.linalg.norm(one.initial.position)) for one in found]
-    assert sum(place > 1e4 for place in places) >= 3
     assert max(places) > 1e6
     # whole numbers of nanoseconds would hide a clock that has no others
     parts = np.array([max(one.run.timesteps) for one in found]) * 1e9

@@ -41,7 +41,7 @@ def features_of(case: Case) -> frozenset[str]:
     ``attitude-dependent`` torques; ``torque-below-clamp``: a component below -0.25 N m;
     ``gravity-above-20`` in m/s^2; ``damping-below-1e-3`` in N m s/rad;
     ``low-energy``; ``omega-above-R`` in rad/s at the start, ``speed-above-V`` in m/s at either end;
-    ``beyond-D-km``: a coordinate of the start's place;
+    ``beyond-D-km``: a coordinate of the place at either end;
     ``steady``: omega is constant, ``tumbling``: it is not, though nothing acts;
     ``step-above-15-ms``, ``turn-above-A`` in rad a step, ``beyond-1000-steps``; ``fine-steps``,
     ``fine-times``: steps, and times of samples, that microseconds do not hold; ``finer-times``: nor
@@ -103,7 +103,8 @@ def _of_start(case: Case) -> dict[str, bool]:
     free = system.load.pivot is None
     energy = 0.5 * (w @ apply(moving_inertia(system), w) / system.body.mass + free * v @ v)
     speed = max(float(norm(v)), float(norm(end))) if free else 0.0
-    place = float(np.max(np.abs(start.position)))
+    away = start.position + v * case.scenario.run.duration
+    place = float(np.max(np.abs([start.position, away]))) if free else 0.0
     changes = float(norm(forward_dynamics(system, start).angular)) > 1e-12 * rate**2
     return {
         "steady": rate > 0.0 and not changes,
