@@ -49,6 +49,7 @@ from omegadot.gates.states.equation import (
 )
 from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
+from omegadot.harness import siblings
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.judge_engine import shared_rows
@@ -133,6 +134,8 @@ class CaseCauses:
         if ("equation", "residual_reloaded") in failed:
             found = equation_causes(across, self._case.name, RELOADED)
             return [f"{AFTER_ANOTHER}: {one}" for one in found] or [AFTER_ANOTHER]
+        if ("equation", siblings.METRIC) in failed:
+            return [AFTER_ANOTHER]
         if torques and answers.inverse.ok:
             torque = answers.inverse.result["torque"]
             eps = eps_of(answers.precision)
