@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,16 +14,18 @@ from omegadot.gates.states import equation
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.reference_impl.kinematics import place_on_pivot
-from omegadot.reference_impl.system import Acceleration, Array, System
+from omegadot.reference_impl.system import Acceleration, Array, Body, Load, System
 
+Part = TypeVar("Part", Body, Load)
 MORE = 1.5
+SLIGHTLY_MORE = 1.0 + 5e-6  # within what numbers are often taken for equal
 STATES = 8  # at which each is evaluated
 METRIC = "residual_of_sibling"
 NOTE = "after the same system with another {} was loaded"
 
 
 def siblings_of(case: Case) -> Iterator[tuple[str, Case]]:
-    """By what is changed, the case with it.
+    """By what is changed, the case with it; at first all of its numbers are, slightly.
 
     What an engine keeps by anything else, it then takes for this one: all other things are the
     same, and so are the size of a vector and the principal moments.
@@ -35,6 +38,7 @@ def siblings_of(case: Case) -> Iterator[tuple[str, Case]]:
 
 def _changed(system: System) -> Iterator[tuple[str, System]]:
     body, load = system.body, system.load
+    yield "scale", replace(system, bodies=(_scaled(body),), load=_scaled(load))
     yield "mass", replace(system, bodies=(replace(body, mass=np.asarray(MORE * body.mass)),))
     turned = _turned(_turned(body.inertia).T).T
     if np.any(turned != body.inertia):
@@ -48,6 +52,12 @@ def _changed(system: System) -> Iterator[tuple[str, System]]:
         vector = getattr(load, what)
         if vector is not None and np.any(vector):
             yield what, replace(system, load=replace(load, **{what: _turned(vector)}))
+
+
+def _scaled(part: Part) -> Part:
+    """Every number of a body or a load, slightly larger."""
+    numbers = {k: v for k, v in vars(part).items() if v is not None}
+    return replace(part, **{k: SLIGHTLY_MORE * v for k, v in numbers.items()})
 
 
 def _turned(values: Array) -> Array:
