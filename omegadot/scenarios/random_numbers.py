@@ -25,7 +25,7 @@ SPEEDS = (3.0, 4.0)  # m/s, of a flying body
 PLACES = (4.0, 6.5)  # m, from the world's origin, of a flying body
 FASTEST = 300.0  # size times rate, beyond which its turning would drown in rounding
 LARGER = 0.6  # of the range of sizes, of flying bodies
-FURTHEST = 300.0  # sizes from the origin: where inertias are in world axes, m x^2 drowns them
+FURTHEST = 30.0  # sizes from the origin: where inertias are in world axes, m x^2 drowns them
 DAMPINGS = {"weak": (-2.0, -1.0), "strong": (-0.3, 0.0)}  # of what stops it within a radian
 SPREADS = {"near-equal": (-6.0, -3.0), "thin": (-4.0, -1.5)}
 # Radians a step at the rate of the body, steps between samples and of the run, and step sizes.

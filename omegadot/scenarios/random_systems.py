@@ -30,7 +30,7 @@ NAME = re.compile(r"random-(0|[1-9]\d{0,8})-(0|[1-9]\d{0,5})")
 def random_scenario(seed: int, index: int) -> Scenario:
     """The system of this number, called ``random-SEED-INDEX``.
 
-    Masses span ten decades (0.1 g to 1000 t), sizes seven (1 mm to 10 km), rates seven (1e-4 to
+    Masses span ten decades (0.1 g to 1000 t), sizes eight (1 mm to 100 km), rates seven (1e-4 to
     1000 rad/s, or at rest), speeds go up to 10 km/s and places to 3000 km. A run lasts 4 to 26
     rad at the body's own rate, in steps of 0.5 rad or of 0.1, up to 1028 of them; of 0.9 or 1.8 rad
     where it spins steadily.

@@ -167,7 +167,7 @@ all. Without a fault, the gates judge each engine on {sound} random systems and 
 scenarios. A fault is caught if a built-in scenario or one of the {random} systems catches it.
 
 **What a plain check does not see.** A fault that shows only beyond what the systems have in them:
-masses of 0.1 g to 1000 t, sizes of 1 mm to 10 km, rates of 0.1 mrad/s to 1000 rad/s, speeds up to
+masses of 0.1 g to 1000 t, sizes of 1 mm to 100 km, rates of 0.1 mrad/s to 1000 rad/s, speeds up to
 10 km/s and places up to 1000 km, turns of 1.8 rad in a step, some 1000 steps in a run, 200 states
 in a batch. A fault in one run of a process alone, such as the fortieth: the first samples of one
 run of each integrator are requested three times, and the other runs once; one of these that is
