@@ -63,11 +63,11 @@ def _flies(traits: Mapping[str, str]) -> int:
 
 
 def _acts(traits: Mapping[str, str]) -> int:
-    """How much a mass or a lever acts on: a weight that turns the body, above all."""
+    """How much a mass or a size shows: in a weight that turns the body above all, or by a lever."""
     support = traits["support"]
     has_lever = support == "pivot" or (support, traits["center"]) == ("pivot-at-origin", "offset")
     others = sum(traits[load] != "none" for load in ("torque", "damping"))
-    return _weighs(traits) * (3 if has_lever else 1) + others
+    return (1 + _weighs(traits)) * (4 if has_lever else 1) + others
 
 
 SPREAD_BY: dict[str, Callable[[Mapping[str, str]], object]] = {
