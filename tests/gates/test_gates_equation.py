@@ -158,6 +158,13 @@ def test_random_states_are_about_the_scenarios_own() -> None:
     assert np.all(np.abs(np.mean(states.orientation, axis=0)) < 0.1)
 
 
+def test_some_states_are_turned_little() -> None:
+    scalar = np.abs(random_states(case(FREE), 200, SEED).orientation[:, 0])
+    little = 2.0 * np.arccos(scalar[scalar > np.cos(0.15)])
+    assert len(little) >= 20
+    assert np.min(little) < 0.01  # there a formula of first order is off by 5e-5 at most
+
+
 def test_a_body_at_rest_is_evaluated_at_rates_of_its_own() -> None:
     states = random_states(case(FREE, 0.0, 0.0, 0.0), 2000, SEED)
     gyration = np.sqrt(5.5 / 2.0)

@@ -61,7 +61,10 @@ def evaluation_states_of(case: Case, truth: Truth, seed: int) -> EvaluationState
 
 
 def random_states(case: Case, count: int, seed: Sequence[int]) -> State:
-    """`count` states: any attitude, rates over two decades about the scenario's own."""
+    """`count` states: any attitude, rates over two decades about the scenario's own.
+
+    A tenth are turned little, by 0.003 to 0.3 rad, where formulas for small angles take over.
+    """
     random = np.random.default_rng(seed)
     orientation = random.standard_normal((count, 4))
     orientation /= np.linalg.norm(orientation, axis=-1, keepdims=True)
@@ -77,6 +80,10 @@ def random_states(case: Case, count: int, seed: Sequence[int]) -> State:
         position=reach * random.standard_normal((count, 3)),
         linear_velocity=speed * random.standard_normal((count, 3)),
     )
+    few = count // 10
+    half = 0.5 * 10.0 ** random.uniform(-2.5, -0.5, (few, 1))
+    axes = orientation[:few, 1:] / norm(orientation[:few, 1:])[..., None]
+    orientation[count - few :] = np.concatenate([np.cos(half), np.sin(half) * axes], axis=-1)
     return place_on_pivot(case.system, state)
 
 
