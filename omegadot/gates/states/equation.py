@@ -83,7 +83,8 @@ def random_states(case: Case, count: int, seed: Sequence[int]) -> State:
     few = count // 10
     half = 0.5 * 10.0 ** random.uniform(-2.5, -0.5, (few, 1))
     axes = orientation[:few, 1:] / norm(orientation[:few, 1:])[..., None]
-    orientation[count - few :] = np.concatenate([np.cos(half), np.sin(half) * axes], axis=-1)
+    turned = np.concatenate([np.cos(half), np.sin(half) * axes], axis=-1)
+    orientation[count - few :] = turned * np.where(np.arange(few) % 2, -1.0, 1.0)[:, None]
     return place_on_pivot(case.system, state)
 
 
