@@ -166,8 +166,8 @@ class Driver:
         precision, via = self.engine.description.precision, self.engine.choice.via
         result = CaseResult(precision=precision, via=via)
         features = self.engine.description.features
-        first = evaluation_states.random[0]
-        result.model = self.request(case, "model", state=first)
+        first, before = evaluation_states.random[0], evaluation_states.random[1]
+        result.model = self.request(case, "model", state=first, before=before)
         result.integrators = self.integrators()
         result.forward = result.path = result.inverse = LACKING
         states, acceleration = evaluation_states.random, evaluation_states.acceleration

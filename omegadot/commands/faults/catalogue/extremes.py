@@ -16,10 +16,13 @@ from omegadot.commands.faults.fault import fault_by
 from omegadot.commands.faults.features import CLOSE, FAR, NANOSECOND, VERY_HEAVY, VERY_LIGHT
 from omegadot.commands.faults.restepped import Accelerated
 from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.loads import applied_torque, gravity_torque
+from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 WRAPPED = 1e6  # m
+LITTLE = 0.1  # rad
 
 half = step_end("scheme", "steady turn-above-1.57", named=("turn", "attitude"))
 sized(
@@ -61,6 +64,16 @@ def GravityOffFarAway(self: Accelerated, state: State, sound: Acceleration) -> A
         return sound
     far = norm(state.position)[..., None] > FAR
     return replace(sound, linear=sound.linear - np.where(far, self.system.load.gravity, 0.0))
+
+
+@extra_torque("torque-world", named=("torque", "attitude", "angle from the identity"))
+def WorldTorqueByShortFormula(system: System, state: State) -> Array:
+    """Attitudes within 0.1 rad of the identity turn a torque in world axes to first order."""
+    q, couple = state.orientation, system.load.torque_world
+    sign = np.where(q[..., :1] < 0.0, -1.0, 1.0)
+    short = couple - 2.0 * sign * cross(q[..., 1:], couple)
+    little = np.abs(q[..., :1]) > np.cos(0.5 * LITTLE)
+    return np.where(little, short - rotate_inverse(q, couple), 0.0)
 
 
 @step_end("scheme", "free beyond-10-km", named=("position", "beyond"))

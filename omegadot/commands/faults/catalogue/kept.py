@@ -11,7 +11,7 @@ import numpy as np
 from omegadot.adapters.protocol import Adapter
 from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.reference_impl.inertia import lever
-from omegadot.reference_impl.system import Body, System
+from omegadot.reference_impl.system import Array, Body, State, System
 
 
 class KeptParts(Spoiled):
@@ -67,3 +67,20 @@ class MassKeptByLever(KeptParts):
         if system.load.pivot is None:
             return system
         return replace(system, bodies=(replace(system.body, mass=before.body.mass),))
+
+
+@fault("state", "model", named=("attitude", "orientation"))
+class FirstAttitudeKept(Spoiled):
+    """The attitude of the first state that a system is set to stays for all later ones."""
+
+    _first: Array | None = None
+
+    def load(self, system: System) -> None:
+        """A first state is to come."""
+        self._first = None
+        super().load(system)
+
+    def set_state(self, state: State) -> None:
+        """With the first one's attitude."""
+        self._first = state.orientation if self._first is None else self._first
+        super().set_state(replace(state, orientation=self._first))
