@@ -26,7 +26,7 @@ from omegadot.diagnosis.equations.wrong_equation import (
     scene_of,
 )
 from omegadot.diagnosis.models.wrong_model import lever_causes, model_causes
-from omegadot.diagnosis.reported.requests import again_cause, batch_cause
+from omegadot.diagnosis.reported.requests import again_cause, batch_cause, kept_causes
 from omegadot.diagnosis.runs import run_causes
 from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, follows
 from omegadot.diagnosis.stepping.vanishing_steps import (
@@ -118,7 +118,7 @@ class CaseCauses:
         failed = {(row.gate, row.metric) for row in self._shared_rows}
         model = (self._case, states, answers)
         if any(gate == "model" for gate, _ in failed):
-            found = model_causes(across, *model)
+            found = model_causes(across, *model) or kept_causes(states, answers)
             if found:
                 return found
         alone = batch_cause(failed)

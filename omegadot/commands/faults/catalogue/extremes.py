@@ -56,7 +56,7 @@ def TorqueLostWhenVeryHeavy(system: System, state: State) -> Array:
 
 @fault_by(
     *(Accelerated, "changed", "equation", "equation", "free gravity beyond-100-km"),
-    named=("gravity", "position"),
+    named=("gravity", "the linear acceleration is off"),
 )
 def GravityOffFarAway(self: Accelerated, state: State, sound: Acceleration) -> Acceleration:
     """A free body further than 100 km from the origin is not under gravity."""

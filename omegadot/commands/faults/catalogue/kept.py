@@ -69,7 +69,7 @@ class MassKeptByLever(KeptParts):
         return replace(system, bodies=(replace(system.body, mass=before.body.mass),))
 
 
-@fault("state", "model", named=("attitude", "orientation"))
+@fault("state", "model", named="read back is that of a state set before")
 class FirstAttitudeKept(Spoiled):
     """The attitude of the first state that a system is set to stays for all later ones."""
 
