@@ -26,7 +26,7 @@ from omegadot.diagnosis.equations.wrong_equation import (
 )
 from omegadot.diagnosis.integrator import IntegratorCauses, fails, source_of
 from omegadot.diagnosis.models.wrong_model import lever_causes, model_causes
-from omegadot.diagnosis.reported.requests import batch_cause
+from omegadot.diagnosis.reported.requests import batch_cause, kept_causes
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
@@ -35,6 +35,7 @@ from omegadot.gates.states.equation import (
     evaluation_states_of,
 )
 from omegadot.gates.truth import Truth
+from omegadot.harness import siblings
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
 from omegadot.harness.judge_engine import shared_rows
@@ -97,7 +98,7 @@ class CaseCauses:
         failed = {(row.gate, row.metric) for row in self._shared_rows}
         model = (self._case, states, answers)
         if any(gate == "model" for gate, _ in failed):
-            found = model_causes(across, *model)
+            found = model_causes(across, *model) or kept_causes(states, answers)
             if found:
                 return found
         alone = batch_cause(failed)
@@ -113,6 +114,8 @@ class CaseCauses:
         if ("equation", "residual_reloaded") in failed:
             found = equation_causes(across, self._case.name, RELOADED)
             return [f"{AFTER_ANOTHER}: {one}" for one in found] or [AFTER_ANOTHER]
+        if ("equation", siblings.METRIC) in failed:
+            return [AFTER_ANOTHER]
         if torques and answers.inverse.ok:
             torque = answers.inverse.result["torque"]
             eps = eps_of(answers.precision)

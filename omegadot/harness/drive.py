@@ -18,7 +18,7 @@ from omegadot.gates.runs.repeats import How
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.steps.vanishing_step import Probe
 from omegadot.harness.plan import Engine
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import State, System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
 
@@ -38,6 +38,8 @@ class CaseResult:
     first_steps, restarts: of integrators whose scheme is unknown, what was requested and what came:
     steps from several states, and the sample from which a run was restarted with the rest of it.
     alone, inverse_alone: forward and inverse dynamics of the first random state by itself.
+    siblings: by what was changed in the system, the system that was loaded next, the states, and
+    forward dynamics there.
     reloaded: forward dynamics after another system was loaded in between.  again: the beginnings
     of runs that were requested again, by integrator, step, and how (see `gates.repeats`).
     via: the format of the file by which the body went in; "" for the engine's API.
@@ -53,6 +55,7 @@ class CaseResult:
     restarts: dict[tuple[str, float], tuple[int, Answer]] = field(default_factory=dict)
     alone: Answer = LACKING
     inverse_alone: Answer = LACKING
+    siblings: dict[str, tuple[System, State, Answer]] = field(default_factory=dict)
     reloaded: Answer = LACKING
     again: dict[tuple[str, float, How], Answer] = field(default_factory=dict)
     precision: str = "float64"
@@ -68,6 +71,7 @@ class CaseResult:
             "forward dynamics of one state": self.alone,
             "inverse dynamics of one state": self.inverse_alone,
             "forward dynamics after another system": self.reloaded,
+            **{f"another {what}": found[2] for what, found in self.siblings.items()},
         }
         for name, answer in named.items():
             if answer.outcome not in ("ok", "unsupported"):
@@ -162,8 +166,8 @@ class Driver:
         precision, via = self.engine.description.precision, self.engine.choice.via
         result = CaseResult(precision=precision, via=via)
         features = self.engine.description.features
-        first = evaluation_states.random[0]
-        result.model = self.request(case, "model", state=first)
+        first, before = evaluation_states.random[0], evaluation_states.random[1]
+        result.model = self.request(case, "model", state=first, before=before)
         result.integrators = self.integrators()
         result.forward = result.path = result.inverse = LACKING
         states, acceleration = evaluation_states.random, evaluation_states.acceleration

@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors import rounding_step
 from omegadot.gates.errors.measured_run import (
@@ -29,10 +30,17 @@ from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge_engine import held
 from omegadot.harness.repeats import rows_again
 from omegadot.harness.step_probes import rows_of_probes
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import State, System
 from omegadot.workers.harness_end.process import Answer
 
 Run = TypeVar("Run", bound=MeasuredRun)
+
+LONGEST_TURN = 1.0  # rad, of a step
+LOST = 1e-3  # of omega
+ROUNDINGS = 2**12  # of a run of a few steps
+NO_ROOT = "at so long a step omega is no root of the equation, or another, and keeps its size"
 
 
 @dataclass(frozen=True)
@@ -109,6 +117,24 @@ def _diverged(
     return JudgedRun(integrator, sweep, "diverged", note, rows, why, worst.open)
 
 
+def _is_lost(
+    integrator: Integrator, system: System, sweep: Sweep, state: State, eps: float
+) -> bool:
+    """Whether steps of more than a radian turn a steady omega to somewhere else, of the same size.
+
+    A variational scheme's momentum keeps its size whatever root of its equation is taken. Of a
+    sphere this is ``sin f = h |omega|``, for the angle f of a step, and has none beyond 1.
+    """
+    omega = state.angular_velocity
+    rate = float(norm(omega[0]))
+    slight = ROUNDINGS * eps
+    known = integrator.scheme in SCHEMES or rate * sweep.timestep <= LONGEST_TURN
+    if known or np.any(norm(forward_dynamics(system, state[:1]).angular) > slight * rate**2):
+        return False
+    keeps_size = bool(np.all(np.abs(norm(omega) - rate) <= slight * rate))
+    return keeps_size and bool(np.any(norm(omega - omega[0]) > LOST * rate))
+
+
 def _failed(integrator: Integrator, sweep: Sweep, answer: Answer, eps: float) -> JudgedRun:
     """A task without a trajectory to measure: its outcome, and the verdict on its times."""
     if not answer.ok:
@@ -136,15 +162,25 @@ def _judge_integrator(
 
     measured_runs = _measured_runs(next_to_its_scheme, [*answers, *finer])
     system, eps = truth.yardstick.system, truth.yardstick.eps
+    states = {s: State(**a.result["state"]) for s, a in answers if s in measured_runs}
+    lost = [s for s, state in states.items() if _is_lost(integrator, system, s, state, eps)]
+    measured_runs = {s: one for s, one in measured_runs.items() if s not in lost}
     declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
     seen, grows = scheme.orders_seen(known), rounding_step.rows(known, declared, eps)
     for sweep, answer in answers:
+        if sweep in lost:
+            unjudged = Row(
+                "trajectory", "omega", "error_max", float("nan"), "1", None, "info", NO_ROOT
+            )
+            rows = [trajectory.time_row(sweep, answer.result["time"], eps), unjudged]
+            yield JudgedRun(integrator, sweep, "diverged", NO_ROOT, rows, NO_ROOT)
+            continue
         measured = measured_runs.get(sweep)
         if measured is None:
             yield _failed(integrator, sweep, answer, eps)
             continue
-        state = State(**answer.result["state"])
+        state = states[sweep]
         findings = findings_of(measured, declared, known)
         if not is_finite(state):
             yield _diverged(integrator, sweep, answer, measured, findings, eps)

@@ -8,6 +8,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.states import equation, model
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.harness.drive import CaseResult
+from omegadot.harness.siblings import rows_of_siblings
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.wire import body_from
 
@@ -32,6 +33,7 @@ def shared_rows(case: Case, evaluation_states: EvaluationStates, result: CaseRes
         if answer.ok:
             acceleration = Acceleration(**answer.result)
             rows += equation.forward_rows(case.system, states, acceleration, metric, eps)
+    rows += rows_of_siblings(result, eps)
     for metric, answer, count in (
         ("residual", result.inverse, None),
         ("residual_alone", result.inverse_alone, 1),

@@ -15,6 +15,7 @@ from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import CaseResult, Driver
+from omegadot.harness.siblings import request_siblings
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State
 from omegadot.scenarios import scenario
@@ -60,8 +61,8 @@ def request_again(
 ) -> None:
     """Have the coarsest run of every integrator repeated, in two ways or three, into `result`.
 
-    At the end another system is loaded and stepped, and then this one again; forward dynamics are
-    requested then as well.
+    Forward dynamics of systems that differ in one thing are requested. At the end another system is
+    loaded and stepped, and then this one again; forward dynamics are requested then as well.
     """
     sweeps = {i.name: _repeated(case, i) for i in result.integrators}
     runs = {name: result.runs.get((name, sweep.knob)) for name, sweep in sweeps.items()}
@@ -81,6 +82,7 @@ def request_again(
     for integrator in steppers:
         if integrator.name in known:
             replay(integrator, "negated", negated)
+    request_siblings(driver, case, evaluation_states, result)
     if not _load_another(driver, case, steppers[0]):
         return
     if "forward_dynamics" in driver.engine.description.features:

@@ -14,14 +14,18 @@ from omegadot.scenarios.solids import rotation_of
 Array = NDArray[np.float64]
 # Decades, by the trait that they belong to.
 MASSES = {  # kg
-    **{"light-small": (-3.0, -1.0), "light-large": (-4.0, -1.0)},
-    **{"heavy-small": (1.0, 5.0), "heavy-large": (1.0, 4.0)},
+    **{"light-small": (-3.5, -1.0), "light-large": (-4.0, -1.0)},
+    **{"heavy-small": (1.0, 6.0), "heavy-large": (1.0, 6.0)},
 }
 SIZES = {"small": (-3.0, -1.0), "large": (-0.3, 2.7)}  # m
 RATES = {"slow": (-4.0, -1.4), "middle": (-0.7, 0.7), "fast": (1.5, 3.0)}  # rad/s
+SPHERES = 0.1  # of the diagonal ones
 AT_REST = 0.25  # of the slow ones: they start at rest, and are driven at a rate of the middle
 SPEEDS = (3.0, 4.0)  # m/s, of a flying body
+PLACES = (4.0, 6.5)  # m, from the world's origin, of a flying body
 FASTEST = 300.0  # size times rate, beyond which its turning would drown in rounding
+LARGER = 0.6  # of the range of sizes, of flying bodies
+FURTHEST = 30.0  # sizes from the origin: where inertias are in world axes, m x^2 drowns them
 DAMPINGS = {"weak": (-2.0, -1.0), "strong": (-0.3, 0.0)}  # of what stops it within a radian
 SPREADS = {"near-equal": (-6.0, -3.0), "thin": (-4.0, -1.5)}
 # Radians a step at the rate of the body, steps between samples and of the run, and step sizes.
@@ -33,14 +37,24 @@ RUNS = {
     ("long", "whole"): (0.1, 10, 250, 3),
     ("long", "short"): (0.1, 12, 257, 3),
 }
-# beyond a quarter of pi, at which engines cap a turn, and below 1, where some implicit steps end
-STEADY_RUN = (0.9, 1, 13, 4)
+# Engines cap a turn at a quarter of pi, or at half of pi. Some implicit steps end at 1 rad, and so
+# the sphere alone turns further.
+STEADY_RUNS = {"sphere": (1.8, 1, 13, 5), "axis": (0.9, 1, 13, 4)}
 AXES = ((0, 0, 1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))
 
 
 def between(decades: tuple[float, float], share: float) -> float:
     """The magnitude at this share of the way between two powers of ten."""
     return float(10.0 ** (decades[0] + share * (decades[1] - decades[0])))
+
+
+def size_of(draw: Draw) -> float:
+    """The size in m; the larger a body, the faster it may fly, and the further away."""
+    kind = draw.traits["bulk"].partition("-")[2]
+    if draw.traits["support"] != "flying":
+        return between(SIZES[kind], draw.share["size"])
+    size = between(SIZES[kind], max(draw.share["size"], LARGER))
+    return max(size, between(PLACES, draw.share["place"]) / FURTHEST) if kind == "large" else size
 
 
 def rounded(values: Any, digits: int = 6) -> Any:
@@ -75,7 +89,7 @@ def tensor_of(random: Generator, draw: Draw, mass: float, size: float) -> Array:
         squares[1] = squares[0] if random.random() < 0.25 else squares[1]
     elif kind == "diagonal" and share < 1 / 3:  # a symmetric top, or a sphere
         squares[:2] = squares[0]
-        squares[2] = squares[0] if share < 0.1 else squares[2]
+        squares[2] = squares[0] if is_sphere(draw) else squares[2]
     squares = random.permutation(squares)
     moments = mass * size**2 * (np.sum(squares) - squares)
     if kind == "diagonal":
@@ -95,13 +109,18 @@ def quaternion(random: Generator, scalar: str) -> tuple[float, float, float, flo
     return tuple(float(f"{part / length:.8f}") for part in (w, x, y, z))  # type: ignore[return-value]
 
 
+def is_sphere(draw: Draw) -> bool:
+    """Whether all of its moments are equal."""
+    return draw.traits["inertia"] == "diagonal" and draw.share["inertia"] < SPHERES
+
+
 def run_of(draw: Draw, rate: float) -> tuple[dict[str, Any], float]:
     """The run of a body that turns at this rate, and how many radians that is."""
     short = draw.traits["end"] == "short"
     angle, every, steps, sizes = RUNS[draw.traits["steps"], draw.traits["end"]]
     if draw.steady:
-        angle, every, steps, sizes = STEADY_RUN
-    coarsest = rounded(angle / rate, 4)
+        angle, every, steps, sizes = STEADY_RUNS["sphere" if is_sphere(draw) else "axis"]
+    coarsest = rounded(angle / rate, 9)  # no whole number of microseconds, nor of nanoseconds
     run = {
         # not a whole number of steps, and less than one of the finest more than one
         "duration": rounded((steps + 0.1 * short) * coarsest, 12),
@@ -166,6 +185,9 @@ def initial_of(
     if draw.traits["support"] == "flying":
         speed = min(between(SPEEDS, draw.share["speed"]), FASTEST * speed)
     if not draw.traits["support"].startswith("pivot"):
-        initial["position"] = rounded(3.0 * size * random.standard_normal(3))
+        place = 3.0 * size * random.standard_normal(3)
+        if draw.traits["support"] == "flying":
+            place = min(between(PLACES, draw.share["place"]), FURTHEST * size) * oblique(random)
+        initial["position"] = rounded(place)
         initial["linear_velocity"] = rounded(speed * oblique(random))
     return initial

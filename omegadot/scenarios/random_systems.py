@@ -10,7 +10,6 @@ from omegadot.scenarios.model import Scenario
 from omegadot.scenarios.random_numbers import (
     MASSES,
     RATES,
-    SIZES,
     between,
     initial_of,
     loads_of,
@@ -18,6 +17,7 @@ from omegadot.scenarios.random_numbers import (
     rests,
     rounded,
     run_of,
+    size_of,
     tensor_of,
 )
 from omegadot.scenarios.random_traits import BLOCK, drawn
@@ -31,15 +31,15 @@ NAME = re.compile(r"random-(0|[1-9]\d{0,8})-(0|[1-9]\d{0,5})")
 def random_scenario(seed: int, index: int) -> Scenario:
     """The system of this number, called ``random-SEED-INDEX``.
 
-    Masses span nine decades (0.1 g to 100 t), sizes nearly six (1 mm to 500 m), rates seven (1e-4
-    to 1000 rad/s, or at rest), speeds go up to 10 km/s. A run lasts 4 to 26 rad at the body's own
-    rate, in steps of 0.5 rad or of 0.1, up to 1028 of them; of 0.9 rad where it spins steadily.
+    Masses span ten decades (0.1 g to 1000 t), sizes eight (1 mm to 100 km), rates seven (1e-4 to
+    1000 rad/s, or at rest), speeds go up to 10 km/s and places to 3000 km. A run lasts 4 to 26
+    rad at the body's own rate, in steps of 0.5 rad or of 0.1, up to 1028 of them; of 0.9 or 1.8 rad
+    where it spins steadily.
     """
     draw, random = drawn(seed, index), np.random.default_rng([seed, index])
     bulk = draw.traits["bulk"]
     mass = rounded(between(MASSES[bulk], draw.share["mass"]), 8)
-    flying = draw.traits["support"] == "flying"  # the larger a body, the faster it may go
-    size = between(SIZES[bulk.partition("-")[2]], max(draw.share["size"], 0.6 * flying))
+    size = size_of(draw)
     rate = between(RATES["middle" if rests(draw) else draw.traits["rate"]], draw.share["rate"])
     tensor = np.array(rounded(tensor_of(random, draw, mass, size), 9))
     center, pivot = np.zeros(3), None

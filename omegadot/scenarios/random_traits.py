@@ -46,14 +46,44 @@ def _weight_and_support(traits: Mapping[str, str]) -> object:
     return traits["bulk"].partition("-")[0], traits["support"].startswith("pivot")
 
 
+def _weighs(traits: Mapping[str, str]) -> int:
+    """Whether there is gravity."""
+    return int(traits["gravity"] != "none")
+
+
+def _far(traits: Mapping[str, str]) -> int:
+    """How far it may be, by its size; of those alike, those under gravity."""
+    return 2 * traits["bulk"].endswith("large") + _weighs(traits)
+
+
+def _flies(traits: Mapping[str, str]) -> int:
+    """How fast it may fly, by its size and rate; of those alike, those under gravity."""
+    fast = {"slow": 0, "middle": 3, "fast": 5}[traits["rate"]]
+    return 2 * (fast + 3 * traits["bulk"].endswith("large")) + _weighs(traits)
+
+
+def _acts(traits: Mapping[str, str]) -> int:
+    """How much a mass or a size shows: in a weight that turns the body above all, or by a lever."""
+    support = traits["support"]
+    has_lever = support == "pivot" or (support, traits["center"]) == ("pivot-at-origin", "offset")
+    others = sum(traits[load] != "none" for load in ("torque", "damping"))
+    return (1 + _weighs(traits)) * (4 if has_lever else 1) + others
+
+
 SPREAD_BY: dict[str, Callable[[Mapping[str, str]], object]] = {
     "mass": _weight_and_support,
     "size": itemgetter("bulk"),
     "rate": itemgetter("rate"),
     "speed": itemgetter("support"),
+    "place": itemgetter("support"),
     "damping": itemgetter("damping"),
     "gravity": itemgetter("gravity"),
     "inertia": itemgetter("inertia"),
+}
+
+
+SHOWN_BY: dict[str, Callable[[Mapping[str, str]], int]] = {
+    **{"mass": _acts, "size": _acts, "speed": _flies, "place": _far}
 }
 
 
@@ -71,14 +101,24 @@ class Draw:
     steady: bool = False
 
 
-def _ranks(groups: Sequence[object], random: Generator) -> list[tuple[int, int]]:
-    """For every row its number within its group, in random order, and how many these are."""
+def _ranks(
+    groups: Sequence[object], random: Generator, shows: Sequence[int] = ()
+) -> list[tuple[int, int]]:
+    """For every row its number within its group, in random order, and how many these are.
+
+    shows: of every row, how much of the magnitude it shows. Those that show the most have the
+    largest, the least, the second largest and so on; those that show the least are between.
+    """
     places = defaultdict(list)
     for row, group in enumerate(groups):
         places[group].append(row)
     found = [(0, 1)] * len(groups)
     for rows in places.values():
-        for rank, row in enumerate(random.permutation(rows)):
+        order = list(random.permutation(rows))
+        if shows:
+            order = sorted(order, key=lambda row: -shows[row])
+            order = [*order[1::2], *order[::2][::-1]]
+        for rank, row in enumerate(order):
             found[row] = (rank, len(rows))
     return found
 
@@ -95,7 +135,9 @@ def _block(seed: int, number: int) -> tuple[Draw, ...]:
         rows[place] = row
     shares = [dict[str, float]() for _ in rows]
     for name, key in SPREAD_BY.items():
-        for share, (rank, of) in zip(shares, _ranks(list(map(key, rows)), random), strict=True):
+        shows = list(map(SHOWN_BY[name], rows)) if name in SHOWN_BY else ()
+        ranks = _ranks(list(map(key, rows)), random, shows)
+        for share, (rank, of) in zip(shares, ranks, strict=True):
             share[name] = (rank + random.random()) / of
     steady = dict(zip(map(int, places), STEADY_INERTIAS, strict=False))
     for place, inertia in steady.items():

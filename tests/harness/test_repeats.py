@@ -21,6 +21,9 @@ from omegadot.commands.faults.detect import Judgement, Nameless, judge
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.case import Sweep
 from omegadot.harness.repeats import OTHERS, short_sweep
+from omegadot.harness.siblings import siblings_of
+from omegadot.reference_impl.inertia import lever
+from omegadot.reference_impl.system import Body, System
 from omegadot.scenarios.random_traits import BLOCK
 
 FILE = Path(__file__).parents[1] / "wrong_engines" / "wrong.py"
@@ -156,3 +159,46 @@ def test_states_that_are_the_same_attitude_are_the_same_start(prepared: Prepared
     start = prepared.case.initial
     other = replace(start, orientation=-start.orientation)
     assert prepared.truth.yardstick.distance("attitude", start[None], other[None]) == 0.0
+
+
+class KeepsLever(ReferenceAdapter):
+    """The inertia about the pivot is kept by the lever alone, whatever the mass."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._kept: dict[bytes, tuple[Body, ...]] = {}
+
+    def load(self, system: System) -> None:
+        super().load(system)
+        self._asked = system
+        key = np.asarray(lever(system)).tobytes() + np.asarray(system.load.gravity).tobytes()
+        self._kept.setdefault(key, system.bodies)
+        super().load(replace(system, bodies=self._kept[key]))
+
+    def model(self) -> tuple[Body, ...]:
+        return self._asked.bodies
+
+
+def test_what_is_kept_by_one_thing_is_seen_where_another_changes(pool: Pool) -> None:
+    prepared = pool.prepare(pool.having({"asymmetric", "pivot", "lever"}, 1)[0])
+    found = judged(pool, prepared, KeepsLever())
+    assert failed(found) == {"residual_of_sibling"}
+    notes = {row.note for row in found.rows if row.verdict == "fail"}
+    assert "after the same system with another mass was loaded" in notes
+
+
+def test_each_sibling_differs_in_one_thing(pool: Pool) -> None:
+    for prepared in (pool.prepare(n) for n in range(BLOCK)):
+        case = prepared.case
+        for what, other in siblings_of(case):
+            assert other.name != case.name
+            changed = {
+                name
+                for part, own in (
+                    (case.system.body, other.system.body),
+                    (case.system.load, other.system.load),
+                )
+                for name in vars(part)
+                if not np.array_equal(getattr(part, name), getattr(own, name))
+            }
+            assert changed == {what} or (what == "scale" and {"mass", "inertia"} <= changed)

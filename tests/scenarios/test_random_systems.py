@@ -56,12 +56,23 @@ def test_magnitudes_reach_what_engines_limit(seed: int) -> None:
     assert min(rates) == 0.0
     assert sum(0.0 < rate < 0.05 for rate in rates) >= 3
     assert max(rates) > 500.0
-    assert max(speeds) > 1000.0
+    assert max(speeds) > 300.0
     assert min(masses) < 1e-2
     assert max(masses) > 3000.0
     held = [one.body.mass for one in found if one.load.pivot is not None]
-    assert max(held) > 3000.0  # there a mass acts on the turning
+    assert max(held) > 1e5  # there a mass acts on the turning
     assert min(held) < 1e-3
+    hanging = [
+        one.body.mass
+        for one in found
+        if one.load.pivot and one.load.pivot != one.body.center_of_mass and any(one.load.gravity)
+    ]
+    assert max(hanging) > 9e4
+    places = [float(np.linalg.norm(one.initial.position)) for one in found]
+    assert max(places) > 1e6
+    # whole numbers of nanoseconds would hide a clock that has no others
+    parts = np.array([max(one.run.timesteps) for one in found]) * 1e9
+    assert np.mean(np.abs(parts - np.round(parts)) > 1e-3) > 0.3
     assert max(steps) > 999
     assert sum(one.load.damping > 1.0 for one in found) >= 2
     torques = np.array([one.load.torque.value for one in found])
@@ -78,7 +89,7 @@ def test_a_system_can_be_written_solved_and_resolved(index: int) -> None:
     system, start, steps = system_of(drawn_one), initial_state_of(drawn_one), drawn_one.run
     found = exact_solution(system, start, np.linspace(0.0, steps.duration, 50))
     rate = np.max(np.linalg.norm(found.state.angular_velocity, axis=-1))
-    assert rate * steps.timesteps[0] < 1.5
+    assert rate * steps.timesteps[0] < (1.9 if drawn(1, index).steady else 1.5)
     assert np.max(found.floor.attitude) < 1e-8
     components = np.abs(drawn_one.initial.angular_velocity)
     assert (
@@ -98,7 +109,9 @@ def test_two_bodies_of_a_block_turn_far_and_steadily(seed: int) -> None:
         omega, tensor = np.array(one.initial.angular_velocity), np.array(one.body.inertia)
         rate = float(np.linalg.norm(omega))
         assert np.linalg.norm(np.cross(omega, tensor @ omega)) <= 1e-15 * rate**2 * np.max(tensor)
-        assert max(one.run.timesteps) * rate > np.pi / 4  # where some engines cap a turn
+        sphere = len(np.unique(np.diag(tensor))) == 1
+        # where some engines cap a turn
+        assert max(one.run.timesteps) * rate > (np.pi / 2 if sphere else np.pi / 4)
 
 
 @pytest.mark.parametrize(

@@ -88,6 +88,8 @@ def _of_rows(rows: Sequence[Row], cause: Callable[[], str], unjudged: str) -> Re
 
 def _of_scenario(found: EngineCase, gate: str, cause: Callable[[], str]) -> Result:
     answers: list[Answer] = [getattr(found.result, name) for name in REQUESTED[gate]]
+    if gate == "equation":
+        answers += [answer for *_, answer in found.result.siblings.values()]
     for answer in answers:
         if answer.outcome not in ("ok", "unsupported"):
             return error(answer.outcome, answer.reason)

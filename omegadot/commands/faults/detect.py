@@ -96,7 +96,7 @@ def stages(
     for integrator in result.integrators:
         own = replace(result, integrators=(integrator,))
         runs = _runs(pool, prepared, driver, own, whole)
-        repeated = CaseResult(reloaded=own.reloaded, precision=own.precision)
+        repeated = CaseResult(siblings=own.siblings, reloaded=own.reloaded, precision=own.precision)
         rows = _shared_rows(prepared, repeated)
         yield _stage([*rows, *(row for run in runs for row in run.rows)], own, tuple(runs))
 

@@ -9,6 +9,8 @@ import numpy as np
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.gates.rows import Row
 from omegadot.gates.runs import repeats
+from omegadot.gates.states.equation import EvaluationStates
+from omegadot.harness.drive import CaseResult
 
 # What can make two answers to one request differ, and is seen in nothing else.
 AGAIN = {
@@ -24,6 +26,26 @@ def again_cause(rows: Sequence[Row]) -> str:
     """Of the failed rows of a run those in which two answers to one request differ; else ""."""
     failed = {row.metric for row in rows if row.verdict == "fail"}
     return next((AGAIN[how] for how in repeats.NOTES if how in failed), "")
+
+
+QUANTITIES = {
+    **{"orientation": "attitude", "angular_velocity": "omega", "position": "position"},
+    "linear_velocity": "linear velocity",
+}
+
+
+def kept_causes(states: EvaluationStates, result: CaseResult) -> list[str]:
+    """What is read back of the state that was set before the last one."""
+    if not result.model.ok:
+        return []
+    found, last, before = result.model.result["state"], vars(states.random[0]), states.random[1]
+    kept = [
+        text
+        for name, text in QUANTITIES.items()
+        if np.allclose(found[name], getattr(before, name), rtol=1e-9, atol=0.0)
+        and not np.allclose(last[name], getattr(before, name), rtol=1e-9, atol=0.0)
+    ]
+    return [f"the {' and the '.join(kept)} read back is that of a state set before"] if kept else []
 
 
 def batch_cause(failed: set[tuple[str, str]]) -> str:

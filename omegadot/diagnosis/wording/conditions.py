@@ -63,6 +63,8 @@ def only_where(parts: Sequence[tuple[System, State, NDArray[np.bool_]]]) -> str:
             continue
         for term, a, b in (("above", low, high), ("below", high, low)):
             below, above = float(np.max(a)), float(np.min(b))
+            if term == "above" and not np.any(low):
+                continue  # what vanishes with it is no limit
             if below < above and above - below > CLEAR * _spacing(values):
                 return (
                     f"{text} is {term} a limit that lies at {limits(below, above, unit)}".replace(

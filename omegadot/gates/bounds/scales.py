@@ -98,11 +98,15 @@ def linear_size(
 ) -> Array:
     """(...) m/s^2: the terms of the centre of mass's acceleration, added up by size.
 
-    The lever of a free body may be the difference of two places in the world, off by ``eps |x|``.
+    The lever of a free body may be the difference of two places in the world, which is off by a
+    rounding of x. It turns with the body, and its rounding counts at rest as well.
     """
     rate, lever = norm(state.angular_velocity), np.asarray(body_scale(system).lever)
+    turns = np.zeros_like(rate)
     if system.load.pivot is None:
-        lever = lever + eps * norm(state.position)
-    turning = lever * (rate**2 + angular_size(system, state, acceleration))
+        place = norm(state.position)
+        lever = lever + eps * place
+        turns = place * (rate**2 + norm(acceleration.angular))
+    turning = turns + lever * (rate**2 + angular_size(system, state, acceleration))
     moving = rate * norm(state.linear_velocity)
     return np.asarray(norm(acceleration.linear) + norm(system.load.gravity) + turning + moving)

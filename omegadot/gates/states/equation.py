@@ -32,6 +32,7 @@ GATE = "equation"
 BOUND = ROUNDINGS_PER_EVALUATION * EPS  # in double, of a well-conditioned body
 RANDOM_STATES = 200
 PATH_STATES = 200
+SPECIAL = 16
 NOTES = {
     "residual_alone": "one state by itself",
     "residual_reloaded": "after another system was loaded in between",
@@ -61,7 +62,11 @@ def evaluation_states_of(case: Case, truth: Truth, seed: int) -> EvaluationState
 
 
 def random_states(case: Case, count: int, seed: Sequence[int]) -> State:
-    """`count` states: any attitude, rates over two decades about the scenario's own."""
+    """`count` states: any attitude, rates over two decades about the scenario's own.
+
+    A tenth are turned little, by 0.003 to 0.3 rad, where formulas for small angles take over. A few
+    others spin about one of the body's axes, do not turn, or do not move.
+    """
     random = np.random.default_rng(seed)
     orientation = random.standard_normal((count, 4))
     orientation /= np.linalg.norm(orientation, axis=-1, keepdims=True)
@@ -77,6 +82,14 @@ def random_states(case: Case, count: int, seed: Sequence[int]) -> State:
         position=reach * random.standard_normal((count, 3)),
         linear_velocity=speed * random.standard_normal((count, 3)),
     )
+    few = count // 10
+    half = 0.5 * 10.0 ** random.uniform(-2.5, -0.5, (few, 1))
+    axes = orientation[:few, 1:] / norm(orientation[:few, 1:])[..., None]
+    turned = np.concatenate([np.cos(half), np.sin(half) * axes], axis=-1)
+    orientation[count - few :] = turned * np.where(np.arange(few) % 2, -1.0, 1.0)[:, None]
+    still = np.arange(min(few, SPECIAL)) + few
+    state.angular_velocity[still] *= np.eye(4, 3)[still % 4]
+    state.linear_velocity[still[still % 4 == 0]] = 0.0  # of these that turn
     return place_on_pivot(case.system, state)
 
 

@@ -42,8 +42,10 @@ def _load(adapter: Adapter, request: Request) -> Any:
 
 
 def _model(adapter: Adapter, request: Request) -> Any:
-    """Bodies as the engine holds them, and a state after a round trip through it."""
+    """Bodies as the engine holds them, and a state after a round trip, after another one."""
     state = State(**request["state"])
+    if "before" in request:
+        adapter.set_state(State(**request["before"]))
     adapter.set_state(state)
     bodies = checked_bodies(adapter.model(), 1)
     return {

@@ -19,6 +19,7 @@ from omegadot.commands.faults.features import DROWSY
 from omegadot.commands.faults.restepped import Accelerated
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import gravity_torque
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
@@ -192,3 +193,17 @@ def DampingOfTheLastSystem(self: Spoiled, system: System) -> System:
     """Damping stays what it was in the system before."""
     before = (self._system or system).load
     return replace(system, load=replace(system.load, damping=before.damping))
+
+
+@fault_by(
+    *(Accelerated, "changed", "equation", "equation", "pivot lever gravity"),
+    named=("gravity", "rest"),
+)
+def WeightHeldByStaticFriction(
+    self: Accelerated, state: State, sound: Acceleration
+) -> Acceleration:
+    """The weight of a pivoted body does not turn it where its omega is zero."""
+    still = np.all(state.angular_velocity == 0.0, axis=-1)[..., None]
+    return pushed(
+        self.system, state, sound, np.where(still, -gravity_torque(self.system, state), 0.0)
+    )
