@@ -132,7 +132,8 @@ def _judge_integrator(
     answers = [(sweep, result.runs[integrator.name, sweep.knob]) for sweep in sweeps]
 
     def next_to_its_scheme(sweep: Sweep, state: State) -> MeasuredRun:
-        return measure(truth, sweep, state, truth.companion(integrator, sweep))
+        own = truth.companion(integrator, sweep)
+        return measure(truth if own else truth.of_kept(sweep, state), sweep, state, own)
 
     measured_runs = _measured_runs(next_to_its_scheme, [*answers, *finer])
     system, eps = truth.yardstick.system, truth.yardstick.eps
