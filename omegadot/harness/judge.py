@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
@@ -34,9 +34,6 @@ from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 
 Run = TypeVar("Run", bound=MeasuredRun)
-
-SOLVABLE = 1.0  # rad a step, up to which a variational scheme's equation has a root
-NO_STEP = "not judged: at steps of {turn:.2g} rad the engine raises {reason}, and not at finer ones"
 
 
 @dataclass(frozen=True)
@@ -113,29 +110,8 @@ def _diverged(
     return JudgedRun(integrator, sweep, "diverged", note, rows, why, worst.open)
 
 
-def _turn_of_a_step(truth: Truth, sweep: Sweep) -> float:
-    """rad: the longest turn of a step, with half of what omega gains in it: h (w + h w_dot / 2).
-
-    A variational scheme has turned omega by half a step's torque when it solves for the turn f of
-    the step: for a body that spins about a principal axis ``sin f`` is this.
-    """
-    gain = 0.5 * sweep.timestep * float(np.max(norm(truth.omega_dot)))
-    return sweep.timestep * (truth.yardstick.rate + gain)
-
-
-def _failed(
-    truth: Truth, integrator: Integrator, sweep: Sweep, answer: Answer, finer: bool = False
-) -> JudgedRun:
-    """A task without a trajectory to measure: its outcome, and the verdict on its times.
-
-    finer: whether the same integrator answers at every finer step. An implicit scheme that is not
-    known may then have no solution at a step of more than a radian.
-    """
-    eps, turn = truth.yardstick.eps, _turn_of_a_step(truth, sweep)
-    if answer.outcome == "raised" and finer and integrator.scheme is None and turn > SOLVABLE:
-        note = NO_STEP.format(turn=turn, reason=answer.reason)
-        row = Row("trajectory", "omega", "error_max", float("nan"), "1", None, "info", note)
-        return JudgedRun(integrator, sweep, "diverged", note, [row], note)
+def _failed(integrator: Integrator, sweep: Sweep, answer: Answer, eps: float) -> JudgedRun:
+    """A task without a trajectory to measure: its outcome, and the verdict on its times."""
     if not answer.ok:
         return JudgedRun(integrator, sweep, answer.outcome, answer.reason)
     rows = [trajectory.time_row(sweep, answer.result["time"], eps)]
@@ -168,8 +144,8 @@ def _judge_integrator(
     for sweep, answer in answers:
         measured = measured_runs.get(sweep)
         if measured is None:
-            later = [a.ok for s, a in answers if s.timestep < sweep.timestep]
-            yield _failed(truth, integrator, sweep, answer, bool(later) and all(later))
+            none = _without_a_solution(truth, integrator, sweep, answers)
+            yield none or _failed(integrator, sweep, answer, eps)
             continue
         state = State(**answer.result["state"])
         findings = findings_of(measured, declared, known)
@@ -191,6 +167,37 @@ def _judge_integrator(
         unresolved = not broken and any(f.open for f in findings.values())
         rows = [match, *orders, *grows, *probed, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
+
+
+SOLVABLE = 1.0  # rad a step, up to which a variational scheme's equation has a root
+NO_STEP = "not judged: at steps of {turn:.2g} rad the engine raises {reason}, and not at finer ones"
+
+
+def _turn_of_a_step(truth: Truth, sweep: Sweep) -> float:
+    """rad: the longest turn of a step, with half of what omega gains in it: h (w + h w_dot / 2).
+
+    A variational scheme has turned omega by half a step's torque when it solves for the turn f of
+    the step: for a body that spins about a principal axis ``sin f`` is this.
+    """
+    gain = 0.5 * sweep.timestep * float(np.max(norm(truth.omega_dot)))
+    return sweep.timestep * (truth.yardstick.rate + gain)
+
+
+def _without_a_solution(
+    truth: Truth, integrator: Integrator, sweep: Sweep, answers: Sequence[tuple[Sweep, Answer]]
+) -> JudgedRun | None:
+    """A run that raises where an implicit scheme may have no solution, and at no finer step.
+
+    That may be where a step turns by more than a radian. A known scheme has its solutions.
+    """
+    turn, answer = _turn_of_a_step(truth, sweep), dict(answers)[sweep]
+    finer = [one.ok for other, one in answers if other.timestep < sweep.timestep]
+    raised = answer.outcome == "raised" and bool(finer) and all(finer)
+    if not raised or integrator.scheme is not None or turn <= SOLVABLE:
+        return None
+    note = NO_STEP.format(turn=turn, reason=answer.reason)
+    row = Row("trajectory", "omega", "error_max", float("nan"), "1", None, "info", note)
+    return JudgedRun(integrator, sweep, "diverged", note, [row], note)
 
 
 def _rows_of_run(
@@ -230,7 +237,7 @@ def _judge_accuracies(
     for sweep, answer in answers:
         measured = measured_runs.get(sweep)
         if measured is None:
-            yield _failed(truth, integrator, sweep, answer)
+            yield _failed(integrator, sweep, answer, eps)
             continue
         findings = accuracy_followed.findings_of(measured, known)
         if not is_finite(State(**answer.result["state"])):
