@@ -18,6 +18,7 @@ from omegadot.gates.steps.vanishing_step import (
     DOUBLE,
     Limit,
     Probe,
+    Tolerated,
     _common_factor,
     _extrapolants,
     limits,
@@ -155,6 +156,25 @@ def test_omega_put_back_on_its_ellipsoids_is_open_in_one_direction_only() -> Non
     # A torque moves omega off its ellipsoids, and no scheme puts it back.
     pushed = system(1.0, 1.0 + 1e-6, 1.0 + 3e-6, torque_body=np.array([0.0, 0.0, 0.1]))
     assert not np.any(between_ellipsoids(pushed, w, EPS)[1])
+
+
+def test_at_rest_an_accuracy_is_that_of_what_changes() -> None:
+    # From rest omega grows as w_dot t: parts of it, as of anything that is stepped, may be off.
+    on = system(1.0, 2.0, 3.0, torque_body=np.array([0.3, -0.5, 0.7]))
+    requested = probe(on, [0.0, 0.0, 0.0])
+    h = requested.timesteps[..., None]
+    still = {k: np.repeat(v[:, None], STEPS, 1) for k, v in vars(requested.states).items()}
+    spun = h * np.array([0.3, -0.25, 0.7 / 3.0])
+
+    def failing(off: float, accuracy: float) -> set[str]:
+        found = State(**still | {"angular_velocity": spun * (1.0 + off)})
+        tolerated = Tolerated(accuracy, accuracy * 10.0)
+        return {
+            r.channel for r in rows(on, requested, found, EPS, tolerated) if r.verdict == "fail"
+        }
+
+    assert failing(1e-9, 1e-9) == set()
+    assert failing(1e-9, 0.0) == failing(1e-6, 1e-9) == {"omega"}
 
 
 def test_a_momentum_about_the_worlds_origin_is_rounded_as_such() -> None:

@@ -200,6 +200,9 @@ def limits(
     for channel, (change, rate, rounding, per_rate) in parts.items():
         size = rounding / step
         loose = tolerated.in_a_radian * ladder.radians / h[:, 0] * size
+        # What changes from nothing has the size of its change: a rate may be off by such parts.
+        parts_of_rate = tolerated.in_a_run + tolerated.in_a_radian * ladder.radians
+        loose = loose + parts_of_rate * norm(rate)
         own = rounding + tolerated.in_a_run * size
         per_rate = np.where(grows & (channel in follows), np.inf, per_rate + loose)
         found[channel] = _limit(ladder.ranges, h, change, rate, own, per_rate)
