@@ -17,6 +17,7 @@ from omegadot.gates.errors.measured_run import (
     STATE,
     Declared,
     MeasuredRun,
+    errors_of,
     findings_of,
     measure,
     orders_for,
@@ -164,9 +165,24 @@ def _judge_integrator(
         broken += [row.note for row in (match, *probed) if row.verdict == "fail"]
         why = broken[0] if broken else "; ".join([_why(findings), *(r.note for r in grows[:1])])
         # what is broken at this step stays so, whatever finer ones show
-        unresolved = not broken and any(f.open for f in findings.values())
+        unresolved = not broken and _finer_steps_decide(findings, known)
         rows = [match, *orders, *grows, *probed, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
+
+
+def _finer_steps_decide(findings: dict[str, Finding], known: Sequence[MeasuredRun]) -> bool:
+    """Whether a finer step could still decide what is open.
+
+    Of an unknown scheme it does not where an order is hidden, and rounding hides the error of the
+    finest step: it hides those of finer ones all the more.
+    """
+    finest = min(known, key=lambda run: run.sweep.timestep)
+    still = {channel: finding for channel, finding in findings.items() if finding.open}
+    if finest.single or finest.against_scheme:
+        return bool(still)
+    errors = {channel: errors_of(finest, channel) for channel in still}
+    shown = {channel for channel, one in errors.items() if one is not None and one.shows}
+    return any(f.kind != "unresolved" or channel in shown for channel, f in still.items())
 
 
 SOLVABLE = 1.0  # rad a step, up to which a variational scheme's equation has a root

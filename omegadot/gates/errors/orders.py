@@ -73,6 +73,12 @@ class Errors:
         return float(error), float(bound), not np.max(self.overall[:samples]) <= SATURATED
 
     @property
+    def shows(self) -> bool:
+        """Whether it is clear of rounding over the whole run or a first part of it."""
+        parts = map(self.largest, HORIZONS)
+        return any(error > CLEAR_OF_ROUNDING * bound for error, bound, _ in parts)
+
+    @property
     def saturates_at(self) -> int:
         """The first sample whose error saturates; the number of samples if none does."""
         beyond = ~(self.overall <= SATURATED)
