@@ -14,14 +14,15 @@ import pytest
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS, Declared, MeasuredRun, findings_of
 from omegadot.harness.judge import _finer_steps_decide
+from omegadot.reference_impl.system import Array
 
 BOUND = 1e-12
 ORDERS: dict[str, int | None] = dict.fromkeys(CHANNELS, 4)
 
 
 def measured(step: float, error: float, single: bool = False) -> MeasuredRun:
-    size = {channel: error * np.linspace(0.0, 1.0, 65) for channel in CHANNELS}
-    bound = {channel: np.full(65, BOUND) for channel in CHANNELS}
+    size: dict[str, Array] = {channel: error * np.linspace(0.0, 1.0, 65) for channel in CHANNELS}
+    bound: dict[str, Array] = {channel: np.full(65, BOUND) for channel in CHANNELS}
     return MeasuredRun(Sweep(step, 64, 1), size, bound, single=single)
 
 
