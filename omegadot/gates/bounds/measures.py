@@ -79,10 +79,10 @@ class Yardstick:
     def of_momentum(self) -> Yardstick:
         """The same sizes for a scheme that may step the angular momentum, rounded at every step.
 
-        It may be that about the world's origin, which holds ``m x times v`` besides.
+        In double it may be that about the world's origin, which holds ``m x times v`` besides.
         """
         other = copy(self)
-        other.per_rounding = self._momentum + self._carried
+        other.per_rounding = self._momentum + (self._carried if self.eps <= EPS else 0.0)
         return other
 
     def of_kept(self, omega: Array, steps: Array) -> Yardstick:

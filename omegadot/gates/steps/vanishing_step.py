@@ -176,7 +176,8 @@ def limits(
     direction, roundings = between_ellipsoids(system, w, eps)
     kept = stays_on_ellipsoids(system, stepped.angular_velocity, w, np.ones(1), eps)
     opened = np.where(kept, roundings * norm(w), 0.0)
-    carried = np.zeros(len(w)) if known else momentum_of_place(system, states) / scale.smallest
+    elsewhere = 0.0 if known or eps > EPS else 1.0  # in single precision no engine could
+    carried = elsewhere * momentum_of_place(system, states) / scale.smallest
     turning = spinning + opened + carried
     moving = norm(v) + lever * turning
     step, evaluation = ROUNDINGS_PER_STEP * eps, ROUNDINGS_PER_EVALUATION * eps
