@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.bounds.scales import norm
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors import rounding_step
 from omegadot.gates.errors.measured_run import (
@@ -26,6 +26,7 @@ from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
 from omegadot.gates.runs import cost, invariants, phase, trajectory
 from omegadot.gates.steps import accuracy, accuracy_followed, scheme
+from omegadot.gates.steps.vanishing_step import UNDETERMINED
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge_engine import held
@@ -151,6 +152,7 @@ def _judge_integrator(
         state = State(**answer.result["state"])
         findings = findings_of(measured, declared, known)
         if not is_finite(state):
+            findings = _undetermined(truth, findings)
             yield _diverged(integrator, sweep, answer, measured, findings, eps)
             continue
         if integrator.knob == "fixed-accuracy":
@@ -168,6 +170,18 @@ def _judge_integrator(
         unresolved = not broken and _finer_steps_decide(findings, known)
         rows = [match, *orders, *grows, *probed, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
+
+
+def _undetermined(truth: Truth, findings: dict[str, Finding]) -> dict[str, Finding]:
+    """The findings on a run that overflows: none where rounding leaves no digit of omega-dot.
+
+    In single precision ``64 eps J / lambda`` may reach one. What steps the angular momentum then
+    turns its rounding into an omega of the motion's own size, and more at the next step.
+    """
+    scale, eps = truth.yardstick.scale, truth.yardstick.eps
+    if ROUNDINGS_PER_EVALUATION * eps * scale.largest < scale.smallest or eps <= EPS:
+        return findings
+    return dict.fromkeys(findings, Finding("beyond", UNDETERMINED))
 
 
 def _finer_steps_decide(findings: dict[str, Finding], known: Sequence[MeasuredRun]) -> bool:

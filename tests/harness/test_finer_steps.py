@@ -1,4 +1,4 @@
-"""When finer steps are asked for: only where they could still decide something.
+"""When finer steps are asked for, and what of a run that overflows is judged.
 
 What these tests catch: runs at ever finer steps whose errors drown in rounding all the more; a
 sweep that is judged although its next step would show a fault.
@@ -7,13 +7,17 @@ sweep that is judged although its next step would show a fault.
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS, Declared, MeasuredRun, findings_of
-from omegadot.harness.judge import _finer_steps_decide
+from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN
+from omegadot.harness.judge import _finer_steps_decide, _undetermined
 from omegadot.reference_impl.system import Array
 
 BOUND = 1e-12
@@ -50,3 +54,15 @@ def test_single_precision_and_known_schemes_are_refined_as_long_as_anything_is_o
     assert not _finer_steps_decide(findings, runs)
     assert _finer_steps_decide(findings, [replace(run, single=True) for run in runs])
     assert _finer_steps_decide(findings, [replace(r, against_scheme=r.error) for r in runs])
+
+
+@pytest.mark.parametrize(
+    ("least", "eps", "kind"),
+    [(1e-6, 2.0**-23, "beyond"), (1e-3, 2.0**-23, "unsettled"), (1e-6, EPS, "unsettled")],
+)
+def test_no_digit_of_the_inverse_leaves_an_overflow_unjudged(
+    least: float, eps: float, kind: str
+) -> None:
+    scale = SimpleNamespace(largest=1.0, smallest=least)
+    truth: Any = SimpleNamespace(yardstick=SimpleNamespace(scale=scale, eps=eps))
+    assert _undetermined(truth, {"omega": BLOWN_UP_UNSEEN})["omega"].kind == kind
