@@ -74,6 +74,11 @@ class Truth:
         floor = {channel: ratio * values for channel, values in self.floor.items()}
         return replace(self, floor=floor, yardstick=self.yardstick.with_eps(eps))
 
+    def of_kept(self, sweep: Sweep, state: State) -> Truth:
+        """The same for a run that keeps energy and momentum, see `Yardstick.of_kept`."""
+        yardstick = self.yardstick.of_kept(state.angular_velocity, sweep.sample_steps)
+        return self if yardstick is self.yardstick else replace(self, yardstick=yardstick)
+
     def rows(self, sweep: Sweep) -> NDArray[np.intp]:
         """Where the samples of one sweep are among the times, which may be rounded otherwise."""
         return np.searchsorted(self.times, sweep.times * (1.0 - 4.0 * EPS))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
@@ -10,13 +10,14 @@ from typing import TypeVar
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.bounds.scales import norm
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors import rounding_step
 from omegadot.gates.errors.measured_run import (
     STATE,
     Declared,
     MeasuredRun,
+    errors_of,
     findings_of,
     measure,
     orders_for,
@@ -25,6 +26,7 @@ from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
 from omegadot.gates.runs import cost, invariants, phase, trajectory
 from omegadot.gates.steps import accuracy, accuracy_followed, scheme
+from omegadot.gates.steps.vanishing_step import UNDETERMINED
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge_engine import held
@@ -158,7 +160,8 @@ def _judge_integrator(
     answers = [(sweep, result.runs[integrator.name, sweep.knob]) for sweep in sweeps]
 
     def next_to_its_scheme(sweep: Sweep, state: State) -> MeasuredRun:
-        return measure(truth, sweep, state, truth.companion(integrator, sweep))
+        own = truth.companion(integrator, sweep)
+        return measure(truth if own else truth.of_kept(sweep, state), sweep, state, own)
 
     measured_runs = _measured_runs(next_to_its_scheme, [*answers, *finer])
     system, eps = truth.yardstick.system, truth.yardstick.eps
@@ -178,11 +181,13 @@ def _judge_integrator(
             continue
         measured = measured_runs.get(sweep)
         if measured is None:
-            yield _failed(integrator, sweep, answer, eps)
+            none = _without_a_solution(truth, integrator, sweep, answers)
+            yield none or _failed(integrator, sweep, answer, eps)
             continue
         state = states[sweep]
         findings = findings_of(measured, declared, known)
         if not is_finite(state):
+            findings = _undetermined(truth, findings)
             yield _diverged(integrator, sweep, answer, measured, findings, eps)
             continue
         if integrator.knob == "fixed-accuracy":
@@ -197,9 +202,67 @@ def _judge_integrator(
         broken += [row.note for row in (match, *probed) if row.verdict == "fail"]
         why = broken[0] if broken else "; ".join([_why(findings), *(r.note for r in grows[:1])])
         # what is broken at this step stays so, whatever finer ones show
-        unresolved = not broken and any(f.open for f in findings.values())
+        unresolved = not broken and _finer_steps_decide(findings, known)
         rows = [match, *orders, *grows, *probed, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
+
+
+def _undetermined(truth: Truth, findings: dict[str, Finding]) -> dict[str, Finding]:
+    """The findings on a run that overflows: none where rounding leaves no digit of omega-dot.
+
+    In single precision ``64 eps J / lambda`` may reach one. What steps the angular momentum then
+    turns its rounding into an omega of the motion's own size, and more at the next step.
+    """
+    scale, eps = truth.yardstick.scale, truth.yardstick.eps
+    if ROUNDINGS_PER_EVALUATION * eps * scale.largest < scale.smallest or eps <= EPS:
+        return findings
+    return dict.fromkeys(findings, Finding("beyond", UNDETERMINED))
+
+
+def _finer_steps_decide(findings: dict[str, Finding], known: Sequence[MeasuredRun]) -> bool:
+    """Whether a finer step could still decide what is open.
+
+    Of an unknown scheme it does not where an order is hidden, and rounding hides the error of the
+    finest step: it hides those of finer ones all the more.
+    """
+    finest = min(known, key=lambda run: run.sweep.timestep)
+    still = {channel: finding for channel, finding in findings.items() if finding.open}
+    if finest.single or finest.against_scheme:
+        return bool(still)
+    errors = {channel: errors_of(finest, channel) for channel in still}
+    shown = {channel for channel, one in errors.items() if one is not None and one.shows}
+    return any(f.kind != "unresolved" or channel in shown for channel, f in still.items())
+
+
+SOLVABLE = 1.0  # rad a step, up to which a variational scheme's equation has a root
+NO_STEP = "not judged: at steps of {turn:.2g} rad the engine raises {reason}, and not at finer ones"
+
+
+def _turn_of_a_step(truth: Truth, sweep: Sweep) -> float:
+    """rad: the longest turn of a step, with half of what omega gains in it: h (w + h w_dot / 2).
+
+    A variational scheme has turned omega by half a step's torque when it solves for the turn f of
+    the step: for a body that spins about a principal axis ``sin f`` is this.
+    """
+    gain = 0.5 * sweep.timestep * float(np.max(norm(truth.omega_dot)))
+    return sweep.timestep * (truth.yardstick.rate + gain)
+
+
+def _without_a_solution(
+    truth: Truth, integrator: Integrator, sweep: Sweep, answers: Sequence[tuple[Sweep, Answer]]
+) -> JudgedRun | None:
+    """A run that raises where an implicit scheme may have no solution, and at no finer step.
+
+    That may be where a step turns by more than a radian. A known scheme has its solutions.
+    """
+    turn, answer = _turn_of_a_step(truth, sweep), dict(answers)[sweep]
+    finer = [one.ok for other, one in answers if other.timestep < sweep.timestep]
+    raised = answer.outcome == "raised" and bool(finer) and all(finer)
+    if not raised or integrator.scheme is not None or turn <= SOLVABLE:
+        return None
+    note = NO_STEP.format(turn=turn, reason=answer.reason)
+    row = Row("trajectory", "omega", "error_max", float("nan"), "1", None, "info", note)
+    return JudgedRun(integrator, sweep, "diverged", note, [row], note)
 
 
 def _rows_of_run(

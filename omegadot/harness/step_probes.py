@@ -52,7 +52,8 @@ def rows_of_probes(
     if probe is not None and steps is not None and steps.ok:
         own, tolerated = truth.yardstick, tolerated_by(integrator)
         stepped = State(**steps.result)
-        found += vanishing_step.rows(own.system, probe, stepped, own.eps, tolerated)
+        known = integrator.scheme in SCHEMES
+        found += vanishing_step.rows(own.system, probe, stepped, own.eps, tolerated, known)
     sample, restarted = result.restarts.get((integrator.name, sweep.knob), (0, None))
     if restarted is not None and restarted.ok:
         state = State(**result.runs[integrator.name, sweep.knob].result["state"])

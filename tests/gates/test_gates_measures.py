@@ -41,11 +41,31 @@ def test_the_sizes_of_a_motion() -> None:
 
 
 def test_a_scheme_may_step_the_angular_momentum() -> None:
-    """One part of J omega turns omega by |J omega| / (lambda rate) = 5 / (1 * 2) of it."""
+    """One part of J omega turns omega by |J omega| / (lambda rate) = 5 / (1 * 2) of it.
+
+    About the world's origin that of the place is m |x| |v| / (lambda rate) = 2 * 3 * 5 / (1 * 2).
+    """
     yardstick = Yardstick(DOWN, TIMES, STATES)
     assert yardstick.per_rounding == 1.0
-    assert yardstick.of_momentum().per_rounding == 2.5
+    assert yardstick.of_momentum().per_rounding == 2.5 + 15.0
     assert yardstick.with_eps(2.0**-23).per_rounding == 2.5
+
+
+def test_a_scheme_may_keep_energy_and_momentum() -> None:
+    """At omega = (1, 1, 0) the ellipsoids' normals are (1, 2, 0) and (1, 4, 0).
+
+    Their angle has the sine 2 / sqrt(85).
+    """
+    system, turning = System((BODY,)), np.tile([1.0, 1.0, 0.0], (3, 1))
+    nothing = np.zeros((3, 3))
+    states = State(STATES.orientation, turning, nothing, nothing)
+    yardstick, steps = Yardstick(system, TIMES, states), np.array([0.0, 10.0, 40.0])
+    kept = yardstick.of_kept(turning, steps)
+    plain = yardstick.round_off(0.0, steps, np.ones(3))["omega"]
+    found = kept.round_off(0.0, steps, np.ones(3))["omega"]
+    assert found / plain == pytest.approx(1.0 + np.sqrt(85.0) / 2.0)
+    off = turning * (1.0 + 1e-9 * steps[:, None])
+    assert yardstick.of_kept(off, steps) is yardstick
 
 
 def test_a_lever_adds_to_speed_and_reach() -> None:

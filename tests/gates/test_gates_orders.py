@@ -168,6 +168,17 @@ def test_a_fault_at_coarse_steps_alone_is_an_excess() -> None:
     assert excess(bare | {0.04: 70 * BOUND * SAMPLES}, 1)[0] < 1.0
 
 
+def test_terms_that_cancel_at_one_step_are_no_excess_at_the_next() -> None:
+    """``C h^4 |1 - h / 0.0208|`` is nearly nothing at 0.02, and close to rounding at 0.01."""
+    size = 5 * BOUND / (0.01**4 * (1 - 0.01 / 0.0208))
+    sizes = {h: size * h**4 * abs(1 - h / 0.0208) * SAMPLES for h in (0.04, 0.02, 0.01, 0.005)}
+    assert max(excess(sizes, 4)) < 1.0
+    # A fault of the coarse step alone is one all the same, and where finer errors are rounding.
+    assert excess(sizes | {0.04: 2e5 * BOUND * SAMPLES}, 4)[0] > 10.0
+    hidden = sizes | dict.fromkeys((0.02, 0.01, 0.005), 0.5 * BOUND * SAMPLES)
+    assert excess(hidden, 4)[0] == pytest.approx(sizes[0.04][-1] / (10 * BOUND * 2**7))
+
+
 def test_an_excess_that_saturates_is_seen_where_it_begins() -> None:
     steps = (0.04, 0.02, 0.01, 0.005)
     sizes = powers(4, steps) | {0.04: np.where(SAMPLES > 0.1, 3.0, 0.04**4 * SAMPLES)}

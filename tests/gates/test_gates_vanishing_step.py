@@ -13,11 +13,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from omegadot.gates.bounds.scales import EPS
+from omegadot.gates.bounds.scales import EPS, between_ellipsoids
 from omegadot.gates.steps.vanishing_step import (
     DOUBLE,
     Limit,
     Probe,
+    Tolerated,
     _common_factor,
     _extrapolants,
     limits,
@@ -136,6 +137,64 @@ def test_velocities_kept_as_momenta_are_rounded_as_such() -> None:
 
     assert reported(on, requested, kept=kept) == {}
     assert set(reported(on, requested, omega=1.01)) == {"omega"}
+
+
+def test_omega_put_back_on_its_ellipsoids_is_open_in_one_direction_only() -> None:
+    # Moments that differ by 1e-6: the ellipsoids of energy and momentum nearly coincide.
+    on = system(1.0, 1.0 + 1e-6, 1.0 + 3e-6)
+    requested = probe(on, [0.4, -1.0, 0.7], [1.2, 0.3, -0.5])
+    w = requested.states.angular_velocity
+    along, roundings = between_ellipsoids(on, w, EPS)
+    assert np.all((roundings > 1e5) & (roundings < 1e7))
+    signs = np.where(np.arange(STEPS) % 2, 1.0, -1.0)[:, None]
+    push = 8 * EPS * roundings[:, None, None] * signs
+    assert reported(on, requested, kept=lambda w: w + push * along[:, None]) == {}
+    across = np.cross(along, w)
+    assert set(reported(on, requested, kept=lambda w: w + push * across[:, None])) == {"omega"}
+    # The gyroscopic term acts across that direction: of its 1e-6 a hundredth still shows.
+    assert set(reported(on, requested, omega=1.01)) == {"omega"}
+    # A torque moves omega off its ellipsoids, and no scheme puts it back.
+    pushed = system(1.0, 1.0 + 1e-6, 1.0 + 3e-6, torque_body=np.array([0.0, 0.0, 0.1]))
+    assert not np.any(between_ellipsoids(pushed, w, EPS)[1])
+
+
+def test_at_rest_an_accuracy_is_that_of_what_changes() -> None:
+    # From rest omega grows as w_dot t: parts of it, as of anything that is stepped, may be off.
+    on = system(1.0, 2.0, 3.0, torque_body=np.array([0.3, -0.5, 0.7]))
+    requested = probe(on, [0.0, 0.0, 0.0])
+    h = requested.timesteps[..., None]
+    still = {k: np.repeat(v[:, None], STEPS, 1) for k, v in vars(requested.states).items()}
+    spun = h * np.array([0.3, -0.25, 0.7 / 3.0])
+
+    def failing(off: float, accuracy: float) -> set[str]:
+        found = State(**still | {"angular_velocity": spun * (1.0 + off)})
+        tolerated = Tolerated(accuracy, accuracy * 10.0)
+        return {
+            r.channel for r in rows(on, requested, found, EPS, tolerated) if r.verdict == "fail"
+        }
+
+    assert failing(1e-9, 1e-9) == set()
+    assert failing(1e-9, 0.0) == failing(1e-6, 1e-9) == {"omega"}
+
+
+def test_a_momentum_about_the_worlds_origin_is_rounded_as_such() -> None:
+    # m |x| |v| / lambda = 1 * 1e3 * 1e3 / 1: omega is off by 1e6 roundings.
+    on = system(1.0, 2.0, 3.0)
+    requested = probe(on, [0.4, -1.0, 0.7], [1.2, 0.3, -0.5])
+    far = np.broadcast_to([1e3, 0.0, 0.0], (len(requested.timesteps), 3))
+    requested = replace(
+        requested, states=replace(requested.states, position=far, linear_velocity=far)
+    )
+    ends = [
+        step_body(SCHEMES["lie-rk4"], on, requested.states, requested.timesteps[:, k], 1, 1)[1][-1]
+        for k in range(STEPS)
+    ]
+    stepped = State(*(np.stack(v, 1) for v in zip(*(vars(s).values() for s in ends), strict=True)))
+    signs = np.where(np.arange(STEPS) % 2, 1.0, -1.0)[:, None]
+    rounded = replace(stepped, angular_velocity=stepped.angular_velocity + 8e6 * EPS * signs)
+    of_unknown = {row.channel: row.verdict for row in rows(on, requested, rounded, known=False)}
+    of_known = {row.channel: row.verdict for row in rows(on, requested, rounded)}
+    assert (of_unknown["omega"], of_known["omega"]) == ("pass", "fail")
 
 
 def test_a_place_at_the_origin_is_rounded_by_its_velocity() -> None:

@@ -151,7 +151,8 @@ def _fails(row: Row) -> bool:
 def _stage(rows: list[Row], result: CaseResult, runs: tuple[JudgedRun, ...]) -> Judgement:
     failure = result.first_failure()
     answers = [failure] if failure else []
-    answers += [result.runs[r.integrator.name, r.sweep.timestep] for r in runs]
+    judged = [r for r in runs if r.outcome != "diverged"]
+    answers += [result.runs[r.integrator.name, r.sweep.timestep] for r in judged]
     lost = [a for a in answers if a.outcome not in ("ok", "unsupported")]
     broken = f"{lost[0].outcome}: {lost[0].reason}" if lost else ""
     failed = frozenset(row.gate for row in rows if _fails(row))

@@ -11,8 +11,11 @@ from omegadot.gates.bounds.scales import (
     ROUNDINGS_PER_STEP,
     BodyScale,
     angular_size,
+    between_ellipsoids,
     body_scale,
+    momentum_of_place,
     norm,
+    stays_on_ellipsoids,
 )
 from omegadot.reference_impl.energy import kinetic_energy, total_energy
 from omegadot.reference_impl.inertia import moving_inertia
@@ -36,7 +39,9 @@ class Yardstick:
     """
 
     def __init__(self, system: System, times: Array, exact: State) -> None:
-        self.system, self.eps, self.per_rounding = system, EPS, 1.0
+        self.system, self.eps, self.exact, self.times = system, EPS, exact, times
+        self.per_rounding = 1.0
+        self._open: Array | None = None
         self.scale: BodyScale = body_scale(system)
         acceleration = forward_dynamics(system, exact)
         self.acceleration = float(np.max(angular_size(system, exact, acceleration)))
@@ -52,6 +57,7 @@ class Yardstick:
         smallest, mass = self.scale.smallest, self.scale.mass
         spin = norm(apply(moving_inertia(system), exact.angular_velocity))
         self._momentum = max(1.0, float(np.max(spin)) / (smallest * self.rate))
+        self._carried = float(np.max(momentum_of_place(system, exact))) / (smallest * self.rate)
         gyration = float(np.sqrt(float(np.trace(system.body.inertia)) / mass))
         self.sizes = {
             "energy": kinetic or 0.5 * smallest * self.rate**2,
@@ -71,9 +77,26 @@ class Yardstick:
         return other
 
     def of_momentum(self) -> Yardstick:
-        """The same sizes for a scheme that may step the angular momentum, rounded at every step."""
+        """The same sizes for a scheme that may step the angular momentum, rounded at every step.
+
+        In double it may be that about the world's origin, which holds ``m x times v`` besides.
+        """
         other = copy(self)
-        other.per_rounding = self._momentum
+        other.per_rounding = self._momentum + (self._carried if self.eps <= EPS else 0.0)
+        return other
+
+    def of_kept(self, omega: Array, steps: Array) -> Yardstick:
+        """The same sizes for a scheme that keeps energy and momentum to rounding.
+
+        omega: (n, 3), after so many steps (n,).  It puts omega back on the ellipsoids of both after
+        every step, each time off by as many roundings as `between_ellipsoids` has; over a run, by
+        their mean until then.
+        """
+        if not stays_on_ellipsoids(self.system, omega, omega[0], steps, self.eps):
+            return self
+        exact, other = self.exact.angular_velocity, copy(self)
+        roundings = between_ellipsoids(self.system, exact, self.eps)[1]
+        other._open = np.cumsum(roundings) / np.arange(1.0, len(roundings) + 1.0)
         return other
 
     def distance(self, channel: str, one: State, other: State) -> Array:
@@ -126,8 +149,9 @@ class Yardstick:
         """
         amount = ROUNDINGS_PER_STEP * self.eps * (steps + 1.0)
         turning = timestep * self.acceleration * faster**2 / self.rate
-        theta = amount * (self.per_rounding + turning) * growth
         time = timestep * steps
+        opened = 0.0 if self._open is None else np.interp(time, self.times, self._open)
+        theta = amount * (self.per_rounding + opened + turning) * growth
         swift = self.speed * faster
         speed = amount * (swift + self.gravity * time) + theta * self.rate * self.scale.lever
         speed = speed + theta * swift * np.minimum(1.0, timestep * self.rate**2 * time)

@@ -12,6 +12,7 @@ import numpy as np
 
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import torque
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 EPS = float(np.finfo(float).eps)
@@ -86,6 +87,63 @@ def torque_size(system: System, state: State, acceleration: Acceleration) -> Arr
         force = scale.mass * norm(acceleration.linear - load.gravity)
         size = size + norm(state.position) * force
     return np.asarray(size)
+
+
+def momentum_of_place(system: System, state: State) -> Array:
+    """(...) kg m^2/s: ``m |x| |v|``, what the place of a free body adds to its angular momentum.
+
+    An engine that steps the momentum about the world's origin takes omega from the rest of it.
+    """
+    free = system.load.pivot is None
+    size = norm(state.position) * norm(state.linear_velocity)
+    return np.asarray(body_scale(system).mass * size * free)
+
+
+def stays_on_ellipsoids(
+    system: System, omega: Array, start: Array, steps: Array, eps: float
+) -> Array:
+    """(...) whether omega keeps the energy of rotation and the |J omega| of its start to rounding.
+
+    omega: (..., n, 3).  start: (..., 3).  steps: (n,), how many have been taken from there.  None
+    counts in single precision, where every sound scheme does so for long.
+    """
+    inertia, largest = moving_inertia(system), body_scale(system).largest
+    with np.errstate(over="ignore", invalid="ignore"):
+        (momentum, now), (first, then) = (
+            (turning, np.sum(turning * w, axis=-1))
+            for w in (omega, start[..., None, :])
+            for turning in (apply(inertia, w),)
+        )
+        size = ROUNDINGS_PER_STEP * eps * (steps + 1.0) * largest * norm(start)[..., None]
+        kept = np.abs(now - then) <= size * norm(start)[..., None]
+        kept &= np.abs(norm(momentum) - norm(first)) <= size
+    return np.asarray(np.all(kept, axis=-1) & (eps <= EPS))
+
+
+def between_ellipsoids(system: System, omega: Array, eps: float) -> tuple[Array, Array]:
+    """(n, 3) and (n,): the direction in which energy and momentum leave omega open, and by how
+    many roundings of its size.
+
+    Without a torque a scheme may put omega back on the ellipsoids of its energy and of |J omega|.
+    Their normals are J omega and J^2 omega. Where these lie at an angle a, a rounding of either
+    moves omega by 1 / sin a roundings, along the one ellipsoid towards the other. No rounding where
+    a torque acts, nor where sin^2 a is below eps: the two conditions are one there.
+    """
+    load = system.load
+    torques = (load.torque_body, load.torque_world, np.asarray(load.damping))
+    weight = load.pivot is not None and bool(np.any(load.gravity))
+    free = not weight and not any(np.any(one) for one in torques)
+    inertia = moving_inertia(system)
+    normal = apply(inertia, omega)
+    other = apply(inertia, normal)
+    with np.errstate(all="ignore"):
+        normal = normal / norm(normal)[..., None]
+        other = other / norm(other)[..., None]
+        across = other - normal * np.sum(other * normal, axis=-1)[..., None]
+        sine = norm(across)
+        apart = (sine**2 > eps) & free
+        direction = np.where(apart[..., None], across / sine[..., None], 0.0)
+        return direction, np.where(apart, 1.0 / sine, 0.0)
 
 
 def angular_size(system: System, state: State, acceleration: Acceleration) -> Array:

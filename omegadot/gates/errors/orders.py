@@ -73,6 +73,12 @@ class Errors:
         return float(error), float(bound), not np.max(self.overall[:samples]) <= SATURATED
 
     @property
+    def shows(self) -> bool:
+        """Whether it is clear of rounding over the whole run or a first part of it."""
+        parts = map(self.largest, HORIZONS)
+        return any(error > CLEAR_OF_ROUNDING * bound for error, bound, _ in parts)
+
+    @property
     def saturates_at(self) -> int:
         """The first sample whose error saturates; the number of samples if none does."""
         beyond = ~(self.overall <= SATURATED)
@@ -207,8 +213,9 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
     or the slope s12 from e1 to e2 where that is higher. It may be three orders more, since leading
     terms may nearly cancel, and a slope may differ from the next by four times what that differs
     from the one after. This must hold up to where the error saturates, and up to parts of that
-    time; there e1 is the largest up to twice that time, as an error may pass through nothing. Zero
-    for the finest step.
+    time; there e1 is the largest up to twice that time, as an error may pass through nothing. It
+    may do so as the step changes: e1 is at least what e2 is by the declared order, where e2 is
+    above rounding. Zero for the finest step.
     """
     finer = sorted((one for one in sweep if one.timestep < own.timestep), key=lambda e: -e.timestep)
     count = min(own.saturates_at + own.saturates, len(own.size))
@@ -218,7 +225,11 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
     ends = np.minimum(ends, count) - 1
     until = own.times[ends]
     near = [_at(one, until) for one in finer[:3]]
-    e1, _ = _at(finer[0], np.minimum(2.0 * until, own.times[count - 1]))
+    later = np.minimum(2.0 * until, own.times[count - 1])
+    e1, _ = _at(finer[0], later)
+    if len(finer) > 1:
+        ratio = finer[0].timestep / finer[1].timestep
+        e1 = np.maximum(e1, ratio**declared * _above_rounding(finer[1], later))
     order = np.full(len(ends), float(declared))
     if len(near) > 1:
         first = _slopes(finer[0], finer[1], near[0], near[1])
@@ -245,6 +256,13 @@ def _slopes(one: Errors, finer: Errors, e1: Known, e2: Known) -> Array:
     with np.errstate(all="ignore"):
         slopes = np.log(e1[0] / e2[0]) / np.log(one.timestep / finer.timestep)
     return np.where(e1[1] & e2[1], slopes, np.nan)
+
+
+def _above_rounding(errors: Errors, until: Array) -> Array:
+    """(n,): the largest error up to each of these times; zero where it is within rounding."""
+    place = np.searchsorted(errors.times, until * (1.0 + 1e-9), side="right") - 1
+    size = np.maximum.accumulate(errors.size)[place]
+    return np.where(size > np.maximum.accumulate(errors.bound)[place], size, 0.0)
 
 
 def _at(errors: Errors, until: Array) -> Known:

@@ -83,6 +83,7 @@ def measure_accuracy(
     truth: Truth, integrator: Integrator, sweep: Sweep, state: State
 ) -> AccuracyRun:
     """As `measure`, with the rounding of the integrator's own steps."""
+    truth = truth.of_kept(sweep, state)
     measured = measure(truth, sweep, state, None)
     assert sweep.accuracy is not None
     yardstick, growth = truth.yardstick, truth.growth[truth.rows(sweep)]

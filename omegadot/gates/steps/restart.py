@@ -47,7 +47,7 @@ def row(
     Each lies within the round-off bound of one trajectory, so that they differ by twice that at
     most. A scheme that is not known may step the angular momentum.
     """
-    yardstick = truth.yardstick.of_momentum()
+    yardstick = truth.of_kept(sweep, state).yardstick.of_momentum()
     rest = state[sample:]
     apart = {c: yardstick.distance(c, rest, restarted) for c in CHANNELS}
 

@@ -7,7 +7,7 @@ steps (Richardson 1911); what a scheme adds vanishes in it, and what a fault add
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,9 +16,12 @@ from omegadot.gates.bounds.scales import (
     ROUNDINGS_PER_EVALUATION,
     ROUNDINGS_PER_STEP,
     angular_size,
+    between_ellipsoids,
     body_scale,
     linear_size,
+    momentum_of_place,
     norm,
+    stays_on_ellipsoids,
 )
 from omegadot.gates.rows import Row, within
 from omegadot.gates.states.equation import EvaluationStates
@@ -151,6 +154,7 @@ def limits(
     stepped: State,
     eps: float = EPS,
     tolerated: Tolerated = Tolerated(),
+    known: bool = True,
 ) -> dict[str, Limit]:
     """The rates at no step by channel. stepped: (m, k, ...), the states after one step each.
 
@@ -159,15 +163,23 @@ def limits(
     lambda its least eigenvalue; and by velocities so rounded attitude and position move. A screw
     motion is a turn about an axis at the distance |v| / |omega|, which is rounded as places are.
     Of a scheme that steps the momentum in world axes an error of the attitude grows at the rate
-    |J omega| / lambda. Single precision has no steps that are short against that of a thin body:
-    there the bound is infinite.
+    |J omega| / lambda. One that is not known may step the momentum about the world's origin, which
+    holds ``m x times v`` besides. One that puts omega back on its ellipsoids leaves it open in one
+    direction (`between_ellipsoids`). Single precision has no steps that are short against that of a
+    thin body: there the bound is infinite.
     """
     states, h = probe.states, probe.timesteps
     before = states[:, None]
     true, scale = acceleration_of(system)(states), body_scale(system)
     w, v, lever = states.angular_velocity, states.linear_velocity, scale.lever
     spinning = norm(apply(moving_inertia(system), w)) / scale.smallest
-    moving = norm(v) + lever * spinning
+    direction, roundings = between_ellipsoids(system, w, eps)
+    kept = stays_on_ellipsoids(system, stepped.angular_velocity, w, np.ones(1), eps)
+    opened = np.where(kept, roundings * norm(w), 0.0)
+    elsewhere = 0.0 if known or eps > EPS else 1.0  # in single precision no engine could
+    carried = elsewhere * momentum_of_place(system, states) / scale.smallest
+    turning = spinning + opened + carried
+    moving = norm(v) + lever * turning
     step, evaluation = ROUNDINGS_PER_STEP * eps, ROUNDINGS_PER_EVALUATION * eps
     of_omega = evaluation * angular_size(system, states, true)
     of_velocity = evaluation * linear_size(system, states, true, eps)
@@ -178,8 +190,8 @@ def limits(
     least_turn = eps**0.25 / h[:, 0]
     place = norm(states.position) + lever + norm(v) / np.maximum(norm(w), least_turn)
     parts = {  # what changes, its rate, and the roundings of what is stepped and of the rate
-        "attitude": (turn, w, step * np.ones(len(w)), step * spinning),
-        "omega": (spin, true.angular, step * spinning, of_omega),
+        "attitude": (turn, w, step * np.ones(len(w)), step * turning),
+        "omega": (spin, true.angular, step * (spinning + carried), of_omega),
         "position": (way, v, step * place, step * moving),
         "linear_momentum": (push, true.linear, step * moving, of_velocity),
     }
@@ -189,10 +201,22 @@ def limits(
     for channel, (change, rate, rounding, per_rate) in parts.items():
         size = rounding / step
         loose = tolerated.in_a_radian * ladder.radians / h[:, 0] * size
+        # What changes from nothing has the size of its change: a rate may be off by such parts.
+        parts_of_rate = tolerated.in_a_run + tolerated.in_a_radian * ladder.radians
+        loose = loose + parts_of_rate * norm(rate)
         own = rounding + tolerated.in_a_run * size
         per_rate = np.where(grows & (channel in follows), np.inf, per_rate + loose)
         found[channel] = _limit(ladder.ranges, h, change, rate, own, per_rate)
+    found["omega"] = _opened(found["omega"], ladder, h, direction, step * opened)
     return found
+
+
+def _opened(limit: Limit, ladder: Ladder, h: Array, direction: Array, rounding: Array) -> Limit:
+    """The limit, as near the equation's rate as rounding omega in one direction may bring it."""
+    off = np.sum((limit.found - limit.expected) * direction, axis=-1)
+    rounded = [rounding * np.sum(_WEIGHTS / h[:, steps], axis=-1) for steps in ladder.ranges]
+    nearer = np.clip(off, -np.array(rounded), np.array(rounded))
+    return replace(limit, found=limit.found - nearer[..., None] * direction)
 
 
 def _limit(
@@ -228,14 +252,16 @@ def rows(
     stepped: State,
     eps: float = EPS,
     tolerated: Tolerated = Tolerated(),
+    known: bool = True,
 ) -> list[Row]:
     """Per channel, how far the steps' own rate is from the equation's, in parts of its bound.
 
-    Where ``64 eps J / lambda`` reaches one, rounding leaves no digit of the inertia's inverse.
+    known: whether the scheme is.  Where ``64 eps J / lambda`` reaches one, rounding leaves no digit
+    of the inertia's inverse.
     """
     scale, digits = body_scale(system), ladder_of(eps).digits
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-        found = limits(system, probe, stepped, eps, tolerated)
+        found = limits(system, probe, stepped, eps, tolerated, known)
         shares = {channel: float(np.max(one.shares())) for channel, one in found.items()}
         wrong = not all(share <= 1.0 for share in shares.values())
         factor = _common_factor(found) if wrong else None
