@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors import rounding_step
 from omegadot.gates.errors.measured_run import (
@@ -30,19 +30,18 @@ from omegadot.gates.steps.vanishing_step import UNDETERMINED
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge_engine import held
+from omegadot.harness.no_solution import (
+    NO_ROOT,
+    is_lost,
+    reason_without_a_solution,
+    unjudged_row,
+)
 from omegadot.harness.repeats import rows_again
 from omegadot.harness.step_probes import rows_of_probes
-from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.system import State, System
+from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 
 Run = TypeVar("Run", bound=MeasuredRun)
-
-LONGEST_TURN = 1.0  # rad, of a step
-LOST = 1e-3  # of omega
-ROUNDINGS = 2**12  # of a run of a few steps
-NO_ROOT = "at so long a step omega is no root of the equation, or another, and keeps its size"
 
 
 @dataclass(frozen=True)
@@ -119,24 +118,6 @@ def _diverged(
     return JudgedRun(integrator, sweep, "diverged", note, rows, why, worst.open)
 
 
-def _is_lost(
-    integrator: Integrator, system: System, sweep: Sweep, state: State, eps: float
-) -> bool:
-    """Whether steps of more than a radian turn a steady omega to somewhere else, of the same size.
-
-    A variational scheme's momentum keeps its size whatever root of its equation is taken. Of a
-    sphere this is ``sin f = h |omega|``, for the angle f of a step, and has none beyond 1.
-    """
-    omega = state.angular_velocity
-    rate = float(norm(omega[0]))
-    slight = ROUNDINGS * eps
-    known = integrator.scheme in SCHEMES or rate * sweep.timestep <= LONGEST_TURN
-    if known or np.any(norm(forward_dynamics(system, state[:1]).angular) > slight * rate**2):
-        return False
-    keeps_size = bool(np.all(np.abs(norm(omega) - rate) <= slight * rate))
-    return keeps_size and bool(np.any(norm(omega - omega[0]) > LOST * rate))
-
-
 def _failed(integrator: Integrator, sweep: Sweep, answer: Answer, eps: float) -> JudgedRun:
     """A task without a trajectory to measure: its outcome, and the verdict on its times."""
     if not answer.ok:
@@ -166,23 +147,21 @@ def _judge_integrator(
     measured_runs = _measured_runs(next_to_its_scheme, [*answers, *finer])
     system, eps = truth.yardstick.system, truth.yardstick.eps
     states = {s: State(**a.result["state"]) for s, a in answers if s in measured_runs}
-    lost = [s for s, state in states.items() if _is_lost(integrator, system, s, state, eps)]
+    lost = [s for s, state in states.items() if is_lost(integrator, system, s, state, eps)]
     measured_runs = {s: one for s, one in measured_runs.items() if s not in lost}
     declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
     seen, grows = scheme.orders_seen(known), rounding_step.rows(known, declared, eps)
     for sweep, answer in answers:
         if sweep in lost:
-            unjudged = Row(
-                "trajectory", "omega", "error_max", float("nan"), "1", None, "info", NO_ROOT
-            )
-            rows = [trajectory.time_row(sweep, answer.result["time"], eps), unjudged]
+            rows = [trajectory.time_row(sweep, answer.result["time"], eps), unjudged_row(NO_ROOT)]
             yield JudgedRun(integrator, sweep, "diverged", NO_ROOT, rows, NO_ROOT)
             continue
         measured = measured_runs.get(sweep)
         if measured is None:
-            none = _without_a_solution(truth, integrator, sweep, answers)
-            yield none or _failed(integrator, sweep, answer, eps)
+            note = reason_without_a_solution(truth, integrator, sweep, answers)
+            unsolved = JudgedRun(integrator, sweep, "diverged", note, [unjudged_row(note)], note)
+            yield unsolved if note else _failed(integrator, sweep, answer, eps)
             continue
         state = states[sweep]
         findings = findings_of(measured, declared, known)
@@ -232,37 +211,6 @@ def _finer_steps_decide(findings: dict[str, Finding], known: Sequence[MeasuredRu
     errors = {channel: errors_of(finest, channel) for channel in still}
     shown = {channel for channel, one in errors.items() if one is not None and one.shows}
     return any(f.kind != "unresolved" or channel in shown for channel, f in still.items())
-
-
-SOLVABLE = 1.0  # rad a step, up to which a variational scheme's equation has a root
-NO_STEP = "not judged: at steps of {turn:.2g} rad the engine raises {reason}, and not at finer ones"
-
-
-def _turn_of_a_step(truth: Truth, sweep: Sweep) -> float:
-    """rad: the longest turn of a step, with half of what omega gains in it: h (w + h w_dot / 2).
-
-    A variational scheme has turned omega by half a step's torque when it solves for the turn f of
-    the step: for a body that spins about a principal axis ``sin f`` is this.
-    """
-    gain = 0.5 * sweep.timestep * float(np.max(norm(truth.omega_dot)))
-    return sweep.timestep * (truth.yardstick.rate + gain)
-
-
-def _without_a_solution(
-    truth: Truth, integrator: Integrator, sweep: Sweep, answers: Sequence[tuple[Sweep, Answer]]
-) -> JudgedRun | None:
-    """A run that raises where an implicit scheme may have no solution, and at no finer step.
-
-    That may be where a step turns by more than a radian. A known scheme has its solutions.
-    """
-    turn, answer = _turn_of_a_step(truth, sweep), dict(answers)[sweep]
-    finer = [one.ok for other, one in answers if other.timestep < sweep.timestep]
-    raised = answer.outcome == "raised" and bool(finer) and all(finer)
-    if not raised or integrator.scheme is not None or turn <= SOLVABLE:
-        return None
-    note = NO_STEP.format(turn=turn, reason=answer.reason)
-    row = Row("trajectory", "omega", "error_max", float("nan"), "1", None, "info", note)
-    return JudgedRun(integrator, sweep, "diverged", note, [row], note)
 
 
 def _rows_of_run(

@@ -83,7 +83,11 @@ def _of_rows(rows: Sequence[Row], cause: Callable[[], str], unjudged: str) -> Re
         return PASSED
     notes = dict.fromkeys(row.note for row in rows if row.note)
     note = next(iter(notes), unjudged)
-    return skipped(f"not judged: {note.removeprefix('not judged: ')}")
+    return skipped(_unjudged(note))
+
+
+def _unjudged(note: str) -> str:
+    return f"not judged: {note.removeprefix('not judged: ')}"
 
 
 def _of_scenario(found: EngineCase, gate: str, cause: Callable[[], str]) -> Result:
@@ -106,7 +110,7 @@ def _of_run(run: JudgedRun, gate: str, cause: Callable[[], str]) -> Result:
         return error(run.outcome, run.reason)
     rows = [row for row in run.rows if row.gate == gate]
     if not rows:
-        return skipped(f"not judged: {run.why or 'there is nothing to measure'}")
+        return skipped(_unjudged(run.why or "there is nothing to measure"))
     return _of_rows(rows, cause, run.why)
 
 
