@@ -84,3 +84,14 @@ def test_a_method_of_several_steps_is_not_accused(prepared: Prepared) -> None:
 def test_a_run_that_is_refused_is_beyond_every_bound() -> None:
     found = refused("not from here")
     assert (found.value, found.bound, found.verdict) == (float("inf"), 1.0, "fail")
+
+
+def test_a_thin_body_at_a_long_step_is_not_judged(
+    prepared: Prepared, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``|J omega| / lambda`` of 3 times its rate, at steps of a third of a radian and of less."""
+    yardstick = prepared.truth.yardstick
+    assert not yardstick.is_stiff(1e3)  # no body that is not thin is stiff
+    monkeypatch.setattr(yardstick, "_momentum", 3.0)
+    assert yardstick.is_stiff(0.34 / yardstick.rate)
+    assert not yardstick.is_stiff(0.33 / yardstick.rate)

@@ -26,6 +26,7 @@ from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, State, System
 
 TRAJECTORY_UNITS = {"omega": "1", "attitude": "rad", "position": "m"}
+THIN = 2.0  # times its own rate: more than a body does that is not thin
 INVARIANT_CHANNELS = ("energy", "angular_momentum", "linear_momentum")
 
 
@@ -84,6 +85,14 @@ class Yardstick:
         other = copy(self)
         other.per_rounding = self._momentum + (self._carried if self.eps <= EPS else 0.0)
         return other
+
+    def is_stiff(self, timestep: float) -> bool:
+        """Whether steps of the momentum in world axes are beyond the stability of explicit schemes.
+
+        An error of the attitude then turns omega at the rate ``|J omega| / lambda``, of a thin body
+        many times its own, and grows at every step that is longer than one over this.
+        """
+        return self._momentum > THIN and timestep * self.rate * self._momentum > 1.0
 
     def of_kept(self, omega: Array, steps: Array) -> Yardstick:
         """The same sizes for a scheme that keeps energy and momentum to rounding.

@@ -21,6 +21,7 @@ from omegadot.reference_impl.system import Array, State
 
 GATE = "scheme"
 METRIC = "restarted"
+STIFF = "not judged: of so thin a body so long a step of its momentum amplifies rounding"
 
 
 def restart_of(sweep: Sweep) -> tuple[int, Sweep] | None:
@@ -45,7 +46,8 @@ def row(
     """The largest distance between the two runs, in parts of what rounding allows.
 
     Each lies within the round-off bound of one trajectory, so that they differ by twice that at
-    most. A scheme that is not known may step the angular momentum.
+    most. A scheme that is not known may step the angular momentum; where that amplifies rounding at
+    every step, two runs that differ show nothing.
     """
     yardstick = truth.of_kept(sweep, state).yardstick.of_momentum()
     rest = state[sample:]
@@ -70,6 +72,8 @@ def row(
         )
     if not integrator.one_step:
         return Row(GATE, *start, "info", "steps use earlier ones, as is declared")
+    if yardstick.is_stiff(sweep.timestep):
+        return Row(GATE, *start, "info", STIFF)
     when = f"t = {sweep.times[sample]:.4g} s"
     note = f"a run restarted at its own sample at {when} gives other samples: they are not the"
     return Row(GATE, *start, "fail", f"{note} state that is stepped, or steps depend on the past")
