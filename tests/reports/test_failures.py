@@ -61,3 +61,13 @@ def test_it_stands_wherever_the_run_is_summed_up(
     assert line in capsys.readouterr().out
     assert "gyroscopic term is missing" in markdown_of(found)
     assert "The errors over time differ more" not in page  # it follows an agreement alone
+
+
+def test_a_share_of_a_bound_is_given_by_its_note(record: Record) -> None:
+    more = {"verdict": "fail", "bound": 1.0, "note": "its rate is not the equation's"}
+    row = metric("sphere", *FAILING, 0.02, "scheme", "omega", "rate_at_no_step", 3e8, **more)
+    (line,) = summarise(with_metrics(record, row)).failures
+    assert line.startswith(
+        "dart: the scheme gate fails on sphere semi-implicit, omega: its rate is"
+    )
+    assert "3.0e8" not in line

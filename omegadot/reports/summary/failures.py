@@ -36,10 +36,11 @@ def _worst(rows: list[dict[str, Any]]) -> str:
     gate = min((row["gate"] for row in rows), key=GATES.index)
     row = max((row for row in rows if row["gate"] == gate), key=_excess)
     channel = row["channel"].replace("omega_dot", "omega-dot")
-    what = f"{channel} {row['metric']}".replace("_", " ")
     by = f" {row['integrator']}" if row["integrator"] else ""
-    text = f"the {gate} gate fails on {row['scenario']}{by}, {what} "
-    text += quantity(row["value"], row["unit"])
+    text = f"the {gate} gate fails on {row['scenario']}{by}, {channel.replace('_', ' ')}"
+    if row["bound"] == 1.0 and row["note"]:  # a share of a bound: the note has the figures
+        return f"{text}: {row['note']}"
+    text += f" {row['metric'].replace('_', ' ')} {quantity(row['value'], row['unit'])}"
     excess = _excess(row)
     if row["bound"] is not None and 1.0 < excess < float("inf"):
         text += f", {short(excess)} times its bound"
