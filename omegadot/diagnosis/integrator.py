@@ -163,7 +163,7 @@ class IntegratorCauses:
                 wrong = self.steps is None or not np.all(self.steps.evidence.sound)
                 how = (self._case, self._truth, self._result, self._runs)
                 self._of_runs = run_causes(*how, equations=wrong)
-                over[self._case.name] = (self._of_runs.texts, self._of_runs.telling)
+                over[self._case.name] = (self._of_runs.texts, self._of_runs.decisive)
         return either(agreed(self._of_runs.texts, over))
 
 

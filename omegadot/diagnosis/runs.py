@@ -25,7 +25,7 @@ from omegadot.diagnosis.reported.sample_causes import (
 from omegadot.diagnosis.stepping.other_schemes import slips_of
 from omegadot.diagnosis.stepping.restarts import restart_cause
 from omegadot.diagnosis.stepping.slips import OF_SCHEME
-from omegadot.diagnosis.stepping.wrong_steps import is_steppable, is_telling, stepping_causes
+from omegadot.diagnosis.stepping.wrong_steps import is_decisive, is_steppable, stepping_causes
 from omegadot.diagnosis.wording.kinds import is_fact, kind_of
 from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
@@ -41,11 +41,11 @@ MOST_TRIED = 1000  # steps of a second run, in which a cause is looked for again
 class RunCauses:
     """Causes of which each alone makes the runs of one integrator on a scenario.
 
-    telling: whether the motion has enough in it that what else it could be is ruled out.
+    decisive: whether the motion has enough in it that what else it could be is ruled out.
     """
 
     texts: tuple[str, ...] = ()
-    telling: bool = True
+    decisive: bool = True
 
 
 NOTHING = RunCauses()
@@ -100,7 +100,7 @@ def _of_others(
         return found
     kinds = set(map(kind_of, other.texts))
     both = tuple(text for text in found.texts if kind_of(text) in kinds)
-    return RunCauses(both, found.telling or other.telling)
+    return RunCauses(both, found.decisive or other.decisive)
 
 
 def _of_several_schemes(
@@ -133,7 +133,7 @@ def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
     where = f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s are sound"
     kept = [text for text in found.texts if not text.startswith(ALIKE)]
     limit = len(kept) == 1 and LIMIT in kept[0]
-    return RunCauses(tuple(text + where for text in kept), found.telling or limit)
+    return RunCauses(tuple(text + where for text in kept), found.decisive or limit)
 
 
 def _of_run(
@@ -168,7 +168,7 @@ def _of_other_slips(guesses: Sequence[ReportedRun]) -> RunCauses:
         return NOTHING
     tried = {one.integrator.scheme for one in guesses}
     texts = [t for name in OF_SCHEME if name not in tried for t in slips_of(guesses[0], name)]
-    return RunCauses(tuple(texts), is_telling(guesses[0])) if texts else NOTHING
+    return RunCauses(tuple(texts), is_decisive(guesses[0])) if texts else NOTHING
 
 
 def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> RunCauses:
@@ -186,9 +186,9 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
     clear = not (whole and reported.agrees(reported.state, reported.own, slack=BEYOND_ROUNDING))
     found += stepping_causes(reported, equations) if clear else ()
     if found:
-        return RunCauses(tuple(dict.fromkeys(found)), is_telling(reported))
+        return RunCauses(tuple(dict.fromkeys(found)), is_decisive(reported))
     # Beside a guess it is its error that one quantity shows, where the motion is the same by many.
-    alone = (one_field,) if reported.is_declared or is_telling(reported) else ()
+    alone = (one_field,) if reported.is_declared or is_decisive(reported) else ()
     last = (not_unit, another_start, *((intervals, *alone) if whole and clear else ()))
     text = next(filter(None, (cause(reported) for cause in last)), "")
-    return RunCauses((text,), is_telling(reported)) if text else NOTHING
+    return RunCauses((text,), is_decisive(reported)) if text else NOTHING

@@ -64,7 +64,7 @@ def _grouped(results: Mapping[Check, Result], verdict: str) -> dict[str, list[Ch
 
 
 def _causes(failures: Mapping[str, Sequence[Check]]) -> list[str]:
-    """How many failures each cause explains, and in which integrators; none where one line says it.
+    """How many failures each cause explains, and in which integrators; none where all are alike.
 
     failures: the checks by their message.
     """

@@ -38,7 +38,7 @@ class Across:
 
     def __init__(self) -> None:
         self._all = Scenes()
-        # by integrator and scenario: each cause alone explains the runs; whether they are telling
+        # by integrator and scenario: each cause alone explains the runs; whether they are decisive
         self.of_runs: dict[str, dict[str, tuple[tuple[str, ...], bool]]] = {}
         self._accepted: list[list[Candidate]] = []
         self._weak: list[Candidate] = []

@@ -14,7 +14,7 @@ from omegadot.diagnosis.wording.features import Features, in_common
 from omegadot.diagnosis.wording.laws import law_of
 from omegadot.reference_impl.system import Array, Body, System
 
-TELLING = 1e-5  # relative: what a number must be known to
+PRECISE = 1e-5  # relative: what a number must be known to
 LAWS = {
     "damping": "the damping",
     "gravity": "gravity",
@@ -153,7 +153,7 @@ class Scenes:
             if evidence is None or not family.starts(evidence.system):
                 continue
             right = family.right(evidence.system)
-            more = Candidate((), family, right * (1.0 + TELLING)).predicted(evidence)
+            more = Candidate((), family, right * (1.0 + PRECISE)).predicted(evidence)
             if evidence.fits(evidence.true) and (more is None or not evidence.visible(more)):
                 continue  # it shows nothing of these numbers
             one = Candidate((), family, right).refitted(evidence)

@@ -43,7 +43,7 @@ def is_steppable(reported: ReportedRun) -> bool:
     return whole and reported.sweep.steps <= MOST_STEPS and is_finite(reported.state)
 
 
-def is_telling(reported: ReportedRun) -> bool:
+def is_decisive(reported: ReportedRun) -> bool:
     """Whether a run has enough in it to decide between causes: a steady spin is one of most."""
     w = reported.own.angular_velocity
     with np.errstate(all="ignore"):

@@ -59,10 +59,10 @@ def agreed(here: Sequence[str], over_cases: Mapping[str, tuple[Sequence[str], bo
     if any(map(is_fact, here)):
         return [text for text in here if is_fact(text)]
     kinds, deciding, count = Counter[str](), set[str](), 0
-    for texts, telling in over_cases.values():
+    for texts, decisive in over_cases.values():
         known = {kind_of(text) for text in texts if not is_fact(text)}
         kinds.update(known)
-        deciding |= known if telling else set()
+        deciding |= known if decisive else set()
         count += bool(known) or not texts
     most = max((kinds[kind_of(text)] for text in here), default=0)
     if most < SHARE * count:
