@@ -21,6 +21,7 @@ from omegadot.gates.steps.accuracy import (
     finest_of,
     fixed,
     order_of,
+    per_sample,
     steps_per_radian,
     tolerated_by,
     usual_for,
@@ -126,3 +127,12 @@ def test_what_an_integrator_declares_of_its_accuracy() -> None:
     assert usual_for(Integrator("a", None, {})) is None
     assert tolerated_by(Integrator("a", None, {})).in_a_run == 0.0
     assert tolerated_by(coarse).in_a_radian == pytest.approx(1e-3)
+
+
+@pytest.mark.parametrize(("order", "steps"), [(1, 10), (2, 4), (4, 2), (8, 2)])
+def test_steps_that_samples_end_become_no_shorter_than_a_weak_power_makes_them(
+    order: int, steps: int
+) -> None:
+    """r^(1/(2p)), rounded up; where motion is slow against the samples, they count."""
+    assert per_sample(Integrator("a", None, every_channel(order), "accuracy")) == steps
+    assert steps - 1 < 100.0 ** (0.5 / order) <= steps

@@ -107,7 +107,43 @@ class CoarseAndDeclared(ErrorControlled):
         return super().solved(start, times, max(accuracy, self.FINEST))
 
 
-SOUND = (ErrorControlled, EndsAtSamples, DormandPrince, Multistep, CoarseAndDeclared)
+STAGES = (
+    *((1 / 4,), (3 / 32, 9 / 32), (1932 / 2197, -7200 / 2197, 7296 / 2197)),
+    *((439 / 216, -8, 3680 / 513, -845 / 4104), (-8 / 27, 2, -3544 / 2565, 1859 / 4104, -11 / 40)),
+)
+FOURTH = np.array([25 / 216, 0, 1408 / 2565, 2197 / 4104, -1 / 5, 0])
+FIFTH = np.array([16 / 135, 0, 6656 / 12825, 28561 / 56430, -9 / 50, 2 / 55])
+
+
+class Fehlberg(ErrorControlled):
+    """Fehlberg's pair. It keeps the fourth order, the estimate is a root mean square, and steps
+    end at samples: at 1e-9 these are shorter than the tolerance requires, at 1e-11 hardly longer.
+    """
+
+    ORDER, FINEST = 4, 1e-11
+    KEPT: ClassVar[Array] = FOURTH
+
+    def solved(self, start: Array, times: Array, accuracy: float) -> Array:
+        size = np.repeat([1.0, np.linalg.norm(start[4:7]) or 1.0, 1.0, 1.0], (4, 3, 3, 3))
+        y, rows, step = start, [start], times[-1]
+        for begin, end in itertools.pairwise(times):
+            left = end - begin
+            while left > 1e-13 * (end - begin):
+                h = min(step, left)
+                k = self.rate(begin, y)[None]
+                for row in STAGES:
+                    k = np.vstack((k, self.rate(begin, y + h * (row @ k))))
+                estimate = h * (FIFTH - FOURTH) @ k / (accuracy * np.maximum(np.abs(y), size))
+                off = float(np.sqrt(np.mean(estimate**2))) + 1e-30
+                if off <= 1.0:
+                    y, left = y + h * (self.KEPT @ k), left - h
+                if off > 1.0 or h == step:
+                    step = h * min(4.0, max(0.2, 0.9 * off**-0.2))
+            rows.append(y)
+        return np.array(rows)
+
+
+SOUND = (ErrorControlled, EndsAtSamples, DormandPrince, Multistep, CoarseAndDeclared, Fehlberg)
 
 
 class ClampsTolerance(ErrorControlled):
@@ -154,6 +190,23 @@ class LinearBetweenSteps(ErrorControlled):
         return np.array([np.interp(times, found.t, row) for row in found.y]).T
 
 
+class FehlbergIgnores(Fehlberg):
+    """Its tolerance is 1e-9 at least."""
+
+    def solved(self, start: Array, times: Array, accuracy: float) -> Array:
+        return super().solved(start, times, max(accuracy, 1e-9))
+
+
+class FehlbergDrags(Fehlberg, Drags):
+    pass
+
+
+class FehlbergWeights(Fehlberg):
+    """One weight is wrong in the eighth digit: its rate is not the equation's."""
+
+    KEPT = FOURTH + np.array([0, 0, 1e-8, 0, 0, 0])
+
+
 class EulerWhereCoarse(ErrorControlled):
     """Explicit Euler, one step a sample, where hardly any accuracy is requested."""
 
@@ -168,7 +221,7 @@ class EulerWhereCoarse(ErrorControlled):
 
 FAULTY = (
     *(ClampsTolerance, IgnoresTolerance, Drags, StartsToDrag, RunsFast, LinearBetweenSteps),
-    EulerWhereCoarse,
+    *(EulerWhereCoarse, FehlbergIgnores, FehlbergDrags, FehlbergWeights),
 )
 
 

@@ -20,6 +20,7 @@ from harness.error_controlled import (
     EndsAtSamples,
     EndsInNothing,
     ErrorControlled,
+    Fehlberg,
     Fixed,
     FixedAndDrags,
     FixedAndRunsFast,
@@ -86,6 +87,7 @@ def failures(runs: list[JudgedRun]) -> list[str]:
         (ErrorControlled, "t-handle"),
         (EndsAtSamples, "t-handle"),
         (Multistep, "heavy-top"),
+        *product((Fehlberg,), ("driven-world", "driven-body", "principal-spin-middle")),
     ],
 )
 def test_what_follows_its_accuracy_passes(engine: type[ErrorControlled], name: str) -> None:

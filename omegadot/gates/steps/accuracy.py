@@ -29,6 +29,10 @@ from omegadot.reference_impl.system import Array, State
 
 GATE = "scheme"
 FIXED = "not judged: its accuracy cannot be set through this adapter"
+FINER = 100.0  # from one accuracy to the next
+# The root mean square of an estimate over the 13 numbers of a state keeps the tolerance. All of it
+# may be in the quaternion, and an attitude is off by twice as much as its quaternion.
+PER_STEP = 2.0 * math.sqrt(13.0)
 FINEST = 1e-13  # 450 roundings of a double; an estimate of the error rounds as well
 
 
@@ -57,7 +61,7 @@ def tolerated_by(integrator: Integrator) -> Tolerated:
 class AccuracyRun(MeasuredRun):
     """A measured run of an error-controlled integrator.
 
-    kept: (n,) by channel, what is off where each radian of the motion adds the accuracy requested.
+    kept: (n,) by channel, what is off where each step (`steps_of`) adds `PER_STEP` accuracies.
     """
 
     kept: dict[str, Array] = field(default_factory=dict)
@@ -79,6 +83,26 @@ def steps_per_radian(integrator: Integrator, accuracy: float) -> float:
     return math.exp(-math.log(accuracy) / (order_of(integrator) + 1))
 
 
+def per_sample(integrator: Integrator) -> int:
+    """The most steps from one sample to the next where errors do not follow the accuracy by its
+    power, for all steps end at samples.
+
+    A step that the tolerance does not shorten is the whole interval, at every accuracy. Errors
+    are proportional to ``h^p``. Where an accuracy finer by a factor r makes them smaller by less
+    than ``r^(1/2)``, steps have become shorter by less than ``r^(1/(2p))``.
+    """
+    return math.ceil(math.pow(FINER, 0.5 / order_of(integrator)))
+
+
+def steps_of(truth: Truth, integrator: Integrator, sweep: Sweep) -> Array:
+    """(n,): about the steps up to each sample, one a radian or `per_sample` where these are more.
+
+    Each keeps the tolerance by itself, so the run may be off by so many tolerances.
+    """
+    steps: Array = per_sample(integrator) * np.arange(len(sweep.times))
+    return np.maximum(1.0 + pace(truth) * sweep.times, steps)
+
+
 def measure_accuracy(
     truth: Truth, integrator: Integrator, sweep: Sweep, state: State
 ) -> AccuracyRun:
@@ -87,13 +111,12 @@ def measure_accuracy(
     measured = measure(truth, sweep, state, None)
     assert sweep.accuracy is not None
     yardstick, growth = truth.yardstick, truth.growth[truth.rows(sweep)]
-    radians = pace(truth) * sweep.times
     between = pace(truth) * sweep.timestep * steps_per_radian(integrator, sweep.accuracy)
     within = max(1.0, between)
     bound = yardstick.round_off(sweep.timestep / within, within * sweep.sample_steps, growth)
     rounding = yardstick.round_off(0.0, np.zeros(1), np.ones(1))["omega"][0]
-    roundings = sweep.accuracy * (1.0 + radians) / rounding
-    kept = yardstick.round_off(sweep.times / roundings, roundings, growth)
+    off = PER_STEP * sweep.accuracy * steps_of(truth, integrator, sweep)
+    kept = yardstick.round_off(sweep.times / (off / rounding), off / rounding, growth)
     own = {**vars(measured), "round_off": bound}
     return AccuracyRun(**own, kept=kept)
 

@@ -17,7 +17,14 @@ from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS, ROTATION
 from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
-from omegadot.gates.steps.accuracy import GATE, AccuracyRun, finest_of, pace, steps_per_radian
+from omegadot.gates.steps.accuracy import (
+    FINER,
+    GATE,
+    AccuracyRun,
+    finest_of,
+    pace,
+    steps_per_radian,
+)
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.system import Array
 
@@ -25,7 +32,6 @@ LEAST_SLOPE, MOST_SLOPE = 0.5, 2.0
 SATURATED = 0.5  # rad, or of the size of omega
 CLEAR_OF_ROUNDING = 10.0  # rounding is then a tenth of an error at most
 HORIZONS = tuple(0.5**n for n in range(7))  # of a run's samples
-FINER = 100.0  # from one accuracy to the next
 MOST_OWN_STEPS = 2e5  # in a run that is only made to see whether errors go on to shrink
 
 
