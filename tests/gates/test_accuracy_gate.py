@@ -127,6 +127,7 @@ def test_what_an_integrator_declares_of_its_accuracy() -> None:
     assert usual_for(Integrator("a", None, {})) is None
     assert tolerated_by(Integrator("a", None, {})).in_a_run == 0.0
     assert tolerated_by(coarse).in_a_radian == pytest.approx(1e-3)
+    assert tolerated_by(coarse).in_a_run == pytest.approx(2e-6 * np.sqrt(13))  # of one step
 
 
 @pytest.mark.parametrize(("order", "steps"), [(1, 10), (2, 4), (4, 2), (8, 2)])

@@ -49,12 +49,15 @@ def usual_for(integrator: Integrator) -> float | None:
 
 
 def tolerated_by(integrator: Integrator) -> Tolerated:
-    """What steps of the finest accuracy may be off; nothing where there is no accuracy."""
+    """What steps of the finest accuracy may be off; nothing where there is no accuracy.
+
+    A run so short that it is one step may be off by `PER_STEP` accuracies.
+    """
     known = integrator.knob == "accuracy" or integrator.finest_accuracy
     if integrator.knob == "timestep" or not known:
         return Tolerated()
     accuracy = finest_of(integrator)
-    return Tolerated(accuracy, accuracy * steps_per_radian(integrator, accuracy))
+    return Tolerated(PER_STEP * accuracy, accuracy * steps_per_radian(integrator, accuracy))
 
 
 @dataclass(frozen=True)
@@ -99,8 +102,9 @@ def steps_of(truth: Truth, integrator: Integrator, sweep: Sweep) -> Array:
 
     Each keeps the tolerance by itself, so the run may be off by so many tolerances.
     """
-    steps: Array = per_sample(integrator) * np.arange(len(sweep.times))
-    return np.maximum(1.0 + pace(truth) * sweep.times, steps)
+    between_samples = per_sample(integrator) * np.arange(len(sweep.times), dtype=float)
+    steps: Array = np.maximum(1.0 + pace(truth) * sweep.times, between_samples)
+    return steps
 
 
 def measure_accuracy(
