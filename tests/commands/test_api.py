@@ -138,7 +138,6 @@ def test_a_scenario_in_code_is_the_files(folder: Path) -> None:
         (lambda: api.run("sphere", "mujoco:RK5"), "run sphere --engine mujoco:RK5"),
         (lambda: api.run("sphere", timesteps=-1.0), "run sphere --timestep -1"),
         (lambda: api.run("sphere", adapters="no.py"), "run sphere --adapter no.py"),
-        (lambda: api.run(["sphere", "sphere"]), "run sphere sphere"),
         (lambda: api.check("mujocco"), "check mujocco"),
         (lambda: api.choose("sphere"), "choose sphere"),
         (lambda: api.choose("sphere", attitude="1m"), "choose sphere --attitude 1m"),

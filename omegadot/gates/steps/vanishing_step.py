@@ -282,7 +282,7 @@ def rows(
 def _note(limit: Limit, factor: float | None, digits: int, unit: str) -> str:
     if not np.all(np.isfinite(limit.found)):
         return "a step leads to numbers that are not finite"
-    if factor == 0.0:
+    if factor is not None and abs(factor) < 10.0**-digits:  # it would read 100 % too short
         return "a run of one step does not move"
     if factor is not None:
         off = f"{100 * abs(factor - 1.0):.{digits}g} %"
