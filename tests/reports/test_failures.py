@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from synthetic_record import metric, with_metrics
 
@@ -71,3 +72,11 @@ def test_a_share_of_a_bound_is_given_by_its_note(record: Record) -> None:
         "dart: the scheme gate fails on sphere semi-implicit, omega: its rate is"
     )
     assert "3.0e8" not in line
+
+
+def test_samples_that_are_missing_are_given_by_their_note(record: Record) -> None:
+    more = {"verdict": "fail", "bound": 1e-12, "note": "the last 5 samples are missing"}
+    row = metric("sphere", *FAILING, 0.02, "trajectory", "time", "sample_times", np.inf, **more)
+    (line,) = summarise(with_metrics(record, row)).failures
+    assert "time: the last 5 samples are missing" in line
+    assert "not finite" not in line

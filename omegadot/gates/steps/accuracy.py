@@ -6,8 +6,8 @@ and the error of the run to ``t^(p/(p+1))``, or to t where the better of two sol
 the error per unit of time is held (Hairer, Norsett and Wanner, "Solving Ordinary Differential
 Equations I", II.4; Shampine 1977). The exponent is 1/2 at least (p = 1), and 2 at most (the last
 two together). Two things interrupt this: rounding, and steps that are shorter than the tolerance
-requires, for they end at a sample. The error of those shrinks with the spacing of the samples. That
-of a fault shrinks with neither.
+requires, for they end at a sample. The error of those shrinks with the
+timestep that is requested. That of a fault shrinks with neither.
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from math import isfinite
 from typing import Any
 
 import polars as pl
@@ -38,7 +39,8 @@ def _worst(rows: list[dict[str, Any]]) -> str:
     channel = row["channel"].replace("omega_dot", "omega-dot")
     by = f" {row['integrator']}" if row["integrator"] else ""
     text = f"the {gate} gate fails on {row['scenario']}{by}, {channel.replace('_', ' ')}"
-    if row["bound"] == 1.0 and row["note"]:  # a share of a bound: the note has the figures
+    # A share of a bound, or no number: the note states what is wrong.
+    if row["note"] and (row["bound"] == 1.0 or not isfinite(row["value"] or 0.0)):
         return f"{text}: {row['note']}"
     text += f" {row['metric'].replace('_', ' ')} {quantity(row['value'], row['unit'])}"
     excess = _excess(row)
