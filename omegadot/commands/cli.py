@@ -6,6 +6,7 @@ import contextlib
 import errno
 import io
 import os
+import re
 import signal
 import sys
 from typing import Annotated
@@ -26,6 +27,8 @@ from omegadot.commands.schemes.command import schemes
 from omegadot.commands.score.command import score
 from omegadot.commands.versions.command import versions
 
+# Of a longer word half of this is printed: an argument may be a file's whole content.
+LONGEST_WORD = 400
 # Windows has no SIGHUP.
 _ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
@@ -110,7 +113,13 @@ def main() -> None:
 
 def _print_error(sentence: str) -> None:
     with contextlib.suppress(OSError):  # of a full disk the exit code is all that can be reported
-        print(f"omegadot: {sentence}", file=sys.stderr, flush=True)
+        print(f"omegadot: {_on_one_line(sentence)}", file=sys.stderr, flush=True)
+
+
+def _on_one_line(sentence: str) -> str:
+    """Without what steers a terminal, and with the beginning of a very long word alone."""
+    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in sentence)
+    return re.sub(rf"(\S{{{LONGEST_WORD // 2}}})\S{{{LONGEST_WORD // 2},}}", r"\1...", shown)
 
 
 def _without_output() -> int:

@@ -124,9 +124,11 @@ def _built(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> Scenario:
 
 
 def _plain(value: Any) -> Any:
-    """Tables and lists of plain numbers: arrays have a ``tolist``."""
+    """Tables and lists of plain numbers: arrays have a ``tolist``. Half a surrogate becomes ``?``."""
     if isinstance(value, Mapping):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
+    if isinstance(value, str):  # the arguments of a process may hold what UTF-8 cannot
+        return value.encode(errors="replace").decode()
     return value.tolist() if hasattr(value, "tolist") else value

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.commands.fit.spread import Spread
+from omegadot.commands.score.convention import LARGEST
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
 
@@ -67,11 +68,11 @@ def torque_of(given: str | Sequence[float] | None) -> Array:
         torque = np.array([float(part) for part in parts])
     except (TypeError, ValueError):
         torque = np.full(3, np.nan)
-    if torque.shape != (3,) or not np.all(np.isfinite(torque)) or not np.any(torque):
+    if torque.shape != (3,) or not np.all(np.abs(torque) <= LARGEST) or not np.any(torque):
         shown = given if isinstance(given, str) else ",".join(map(str, parts))
         raise UsageError(
-            f"--torque {shown}: write three numbers of N m in the body's axes, not all zero, like "
-            "0,0,0.02."
+            f"--torque {shown}: write three numbers of N m in the body's axes, of at most "
+            f"{LARGEST:g} and not all zero, like 0,0,0.02."
         )
     return torque
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from omegadot.commands.units import UNITS, unit_named
-from omegadot.harness.usage import UsageError, nearest
+from omegadot.harness.usage import UsageError, check_number, nearest
 from omegadot.reference_impl.rotations import normalize, rotation_matrix
 from omegadot.reference_impl.system import Array
 
@@ -19,6 +19,7 @@ CHOICES = {
     "attitude_is": ("world-from-body", "body-from-world"),
     "point": ("center-of-mass", "origin"),
 }
+LARGEST = 1e15  # of a component in an argument: no square of it overflows
 _SEQUENCE = re.compile(r"([xyz]{3}|[XYZ]{3})$")
 _AXIS = re.compile(r"([+-]?)([xyz])$")
 
@@ -88,8 +89,8 @@ def convention_of(settings: Mapping[str, Any]) -> Convention:
     for name in {"world_rate", "world_origin", "omega_bias"} & set(given):
         given[name] = vector_of(given[name], option_of(name))
     rate = given.get("rate")
-    if rate is not None and not (np.isfinite(rate) and rate > 0.0):
-        raise UsageError(f"--rate {rate:g}: not a positive number of samples a second; give one.")
+    if rate is not None:
+        check_number("--rate", rate, 0.0)
     found = Convention(**given)
     units: dict[str, Any] = {
         f"{kind}_unit": unit_named(getattr(found, f"{kind}_unit"), kind, f"--{kind}-unit")
@@ -122,8 +123,10 @@ def vector_of(text: str, option: str) -> Array:
         parts = np.array([float(part) for part in text.split(",")])
     except ValueError:
         parts = np.full(3, np.nan)
-    if parts.shape != (3,) or not np.all(np.isfinite(parts)):
-        raise UsageError(f"{option} {text}: write three numbers, like 0.1,0,-2.")
+    if parts.shape != (3,) or not np.all(np.abs(parts) <= LARGEST):
+        raise UsageError(
+            f"{option} {text}: write three numbers of at most {LARGEST:g}, like 0.1,0,-2."
+        )
     return parts
 
 

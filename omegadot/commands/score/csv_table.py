@@ -31,7 +31,8 @@ def csv_table(file: str, content: bytes) -> Table:
             f"{file}: line {long} has {len(texts[long - 1]):,} characters; give a table of at most "
             f"{LONGEST_LINE:,} a line."
         )
-    whole = pl.DataFrame({"line": range(1, len(texts) + 1), "text": texts})
+    lines = {"line": range(1, len(texts) + 1), "text": texts}
+    whole = pl.DataFrame(lines, schema_overrides={"text": pl.String})  # where there are none too
     whole = whole.filter(pl.col("text").str.contains(r"\S"))
     is_comment = pl.col("text").str.contains(COMMENT)
     plain = whole.filter(~is_comment)

@@ -54,6 +54,11 @@ def declared_of(
         return trace, None
     if not (np.isfinite(timestep) and timestep > 0.0):
         raise UsageError(f"--timestep {timestep:g}: not a positive number of seconds; give one.")
+    most = float(trace.times[-1]) / timestep
+    if most > MOST_STEPS + 0.5:
+        raise UsageError(
+            f"--timestep {timestep:g}: makes {most:.0f} steps; give at most {MOST_STEPS:,}."
+        )
     ratio = trace.times / timestep
     numbers = np.round(ratio)
     # A stamp is off by its digits at most, and by the rounding of a sum of so many steps.
@@ -64,10 +69,6 @@ def declared_of(
         raise UsageError(
             f"--timestep {timestep:g}: the sample at {trace.times[worst]:.9g} s stands at no whole "
             "number of steps; give the step that the simulator took."
-        )
-    if numbers[-1] > MOST_STEPS:
-        raise UsageError(
-            f"--timestep {timestep:g}: makes {numbers[-1]:.0f} steps; give at most {MOST_STEPS:,}."
         )
     more = np.where(off > 4 * EPS * ratio, timestep * off, 0.0)
     opened = {**trace.open, "times": np.maximum(trace.open["times"], more)}

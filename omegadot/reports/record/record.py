@@ -47,7 +47,7 @@ def check_folder(folder: Path) -> None:
     It may be absent, empty, or hold an earlier record and nothing else; no other file is ever
     replaced. Call it before a long run, not after it.
     """
-    folder = folder.resolve()
+    folder = _followed(folder)
     if Path.cwd().is_relative_to(folder):
         raise RecordError(f"{folder}: is the current directory or holds it; name a new folder.")
     _try_to_write(folder)
@@ -66,6 +66,14 @@ def check_folder(folder: Path) -> None:
         )
     if names and RUN not in names:
         raise RecordError(f"{folder}: is not empty and holds no {RUN}; name a new folder.")
+
+
+def _followed(folder: Path) -> Path:
+    """The folder that it stands for. Raises RecordError for a link that leads to itself."""
+    followed = Path(os.path.realpath(folder))
+    if followed.is_symlink():
+        raise RecordError(f"{folder}: is a symbolic link to itself; name a new folder.")
+    return followed
 
 
 def _try_to_write(folder: Path) -> None:
@@ -118,7 +126,7 @@ def write_record(record: Record, folder: Path, page: str) -> None:
     the contract, and when the disk refuses.
     """
     check_folder(folder)
-    folder = folder.resolve()
+    folder = _followed(folder)
     text = dump_json(record.run)
     check_run(json.loads(text), RUN)
     metrics = schema.conform(record.metrics, schema.METRICS, METRICS)
