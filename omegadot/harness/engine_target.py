@@ -34,6 +34,8 @@ def target_of(engine: EngineLike) -> str:
     """
     if not isinstance(engine, str):
         return _target_of_class(engine)
+    if "\0" in engine:
+        raise UsageError(f"{engine}: no file has a null character in its name; check the path.")
     if engine.endswith(".py"):
         return f"{engine}:{_class_in(Path(engine))}"
     file, _, name = engine.rpartition(":")

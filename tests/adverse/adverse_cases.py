@@ -25,7 +25,7 @@ BASE: dict[str, tuple[str, ...]] = {
     "choose": ("quick.toml", "--engine", "exact", "--attitude", "1deg", "--budget", "0.1"),
     "report": ("record",),
     "score": SCORE,
-    "fit": ("trace.csv",),
+    "fit": ("trace.csv", "--no-bias", "--no-damping"),
     "compare": ("record", "record"),
     "versions": (*VERSIONS, "--scenario", "quick.toml", "--integrator", "nowhere"),
 }
@@ -65,7 +65,8 @@ def _with(command: str, parameter: Any, value: tuple[str, ...]) -> tuple[str, ..
         return (*base, option, *value)
     if (place := PLACES[parameter.name]) < len(base):
         base[place] = value[0]
-    return tuple(base) if value[0].startswith("-") is False else (*base[:place], "--", *value)
+    # A name that begins like an option is one, until two dashes end the options.
+    return (*base[:place], "--", *value) if value[0].startswith("-") else tuple(base)
 
 
 def _values(parameter: Any) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -90,6 +91,8 @@ def _table(kind: str) -> dict[str, str]:
         return values.VECTOR_VALUES
     if kind in values.PAIRS:
         return values.PAIR_VALUES
+    if kind in values.CODE:
+        return values.CODE_VALUES
     if kind in values.FILES:
         return {text[:20]: text for text in values.FILE_VALUES}
     return values.NAME_VALUES

@@ -14,7 +14,8 @@ QUANTITIES = {"ANGLE", "RATE", "TIME", "0.1deg", "1e-3deg/s", "1mm", "1e-6", "1m
 VECTORS = {"X,Y,Z", "x,-y,-z"}
 ROWS = {"X Y Z": 3, "W X Y Z": 4}
 FILES = {"FILE", "TRACE", "SCENARIO", "[SCENARIO]...", "EARLIER", "LATER", "RUN [RUN]"}
-PAIRS = {"ROLE=NAME", "NAME=PATH", "WHICH=VALUE", "FILE.py:CLASS", "FILE#LINK"}
+PAIRS = {"ROLE=NAME", "NAME=PATH", "WHICH=VALUE"}
+CODE = {"FILE.py:CLASS", "FILE#LINK"}
 FOLDERS = {"DIR", "FILE.toml"}
 
 NUMBER_VALUES = {
@@ -65,11 +66,13 @@ VECTOR_VALUES = {
     "commas": ",,",
     "blanks": "1 2 3",
 }
-PAIR_VALUES = {
-    **NAME_VALUES,
-    "no-right": "w=",
-    "no-left": "=wx",
-    "twice": "w=wx=wy",
+PAIR_VALUES = {**NAME_VALUES, "no-right": "w=", "no-left": "=wx", "twice": "w=wx=wy"}
+CODE_VALUES = {
+    "empty": "",
+    "colons": ":::",
+    "long": "x" * 5000,
+    "null": "a\0b:Toy",
+    "escape": "\x1b[31mred\x07:Toy",
     "missing-file": "nowhere.py:Class",
     "missing-class": "toy.py:Nowhere",
     "not-a-class": "toy.py:json",

@@ -20,6 +20,7 @@ from synthetic_record import build
 from omegadot.commands.cli import main
 from omegadot.reports.record.record import write_record
 
+pytestmark = pytest.mark.no_cover
 SECONDS = 60
 CASES = adverse_cases()
 TRACE = "t,wx,wy,wz\n" + "".join(f"{0.02 * n},{0.3},{2.0 + 0.001 * n},0.1\n" for n in range(20))
@@ -42,7 +43,6 @@ def _inside(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     def late(*_: Any) -> None:
         raise TimeoutError(f"no end within {SECONDS} s")
 
-    monkeypatch.setattr(signal, "SIGALRM", signal.SIGALRM)
     before = signal.signal(signal.SIGALRM, late)
     signal.alarm(SECONDS)
     yield
