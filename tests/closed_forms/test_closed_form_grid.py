@@ -14,6 +14,8 @@ from omegadot.reference_impl.closed_forms.times import chunks
 from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.system import Array
 
+pytestmark = pytest.mark.no_cover  # its lines are covered by others
+
 COUNT = 9000
 NAMES = [
     *("about-greatest", "near-middle", "moderate-nome", "order-321-back", "full-tensor"),

@@ -61,6 +61,7 @@ def sentences(prepared: Prepared, judged: Judgement) -> list[str]:
         return diagnose(*how, judged.result, judged.runs)
 
 
+@pytest.mark.no_cover  # what it runs is covered by the causes' test
 @pytest.mark.parametrize("fault", ORDERED, ids=lambda fault: fault.name)
 def test_every_fault_is_caught_by_a_gate_that_is_meant_for_it(pool: Pool, fault: Fault) -> None:
     adapter = faulty(pool, fault, "reference")
@@ -91,6 +92,7 @@ def named_on(pool: Pool, prepared: Prepared, fault: Fault, engine: str) -> bool:
     return set(fault.gates) <= judged.failed and len(text) == 1 and fault.is_named(text)
 
 
+@pytest.mark.no_cover  # what it runs is covered by the causes' test
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("name", EVERYWHERE)
 def test_faults_are_caught_and_named_over_engines(pool: Pool, engine: str, name: str) -> None:

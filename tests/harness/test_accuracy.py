@@ -44,6 +44,8 @@ from omegadot.harness.step_probes import probe_steps
 from omegadot.harness.truth_requests import case_truth
 from omegadot.scenarios import load_builtin
 
+pytestmark = pytest.mark.no_cover  # its lines are covered by others
+
 SEED = 7
 NAMES = ("t-handle", "heavy-top", "random-1", "random-2")
 

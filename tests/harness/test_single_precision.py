@@ -35,6 +35,8 @@ from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.scenarios import scenario
 
+pytestmark = pytest.mark.no_cover  # its lines are covered by others
+
 SOUND = (Single, SingleEuler, DeclaredEuler, StoredSingle, SingleMomentum, SingleRodrigues)
 EULER = (SingleEuler, DeclaredEuler, StoredSingle)
 POOL = Pool(0)

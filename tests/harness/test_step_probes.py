@@ -26,6 +26,8 @@ from omegadot.reference_impl.schemes.scheme import Step, every_channel
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
+pytestmark = pytest.mark.no_cover  # its lines are covered by others
+
 SEED = 31
 EULER = without_scheme(Integrator("semi-implicit-euler", None, every_channel(1)))
 # Next to what a first-order error hides: what no order, and no conservation, would show.

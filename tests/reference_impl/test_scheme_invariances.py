@@ -22,6 +22,8 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
+pytestmark = pytest.mark.no_cover  # its lines are covered by others
+
 few = settings(max_examples=6, derandomize=True, deadline=None)
 every_scheme = pytest.mark.parametrize("name", sorted(SCHEMES))
 STEPS, DT = 5, 2.0**-7

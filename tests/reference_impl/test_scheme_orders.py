@@ -31,6 +31,8 @@ from omegadot.reference_impl.series import solve_series
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
+pytestmark = pytest.mark.no_cover  # its lines are covered by others
+
 DURATION, INSTANTS = 1.0, 5
 STEPS = {1: (400, 800, 1600), 2: (100, 200, 400), 4: (20, 40, 80)}
 CASES: dict[str, tuple[System, State]] = {

@@ -17,6 +17,8 @@ from omegadot.reference_impl.schemes import SCHEMES, Motion
 from omegadot.reference_impl.stepping import step_through as step_and_time
 from omegadot.reference_impl.system import Array
 
+pytestmark = pytest.mark.no_cover  # its lines are covered by others
+
 STIFFNESS = np.array(
     [[3.0, -1.0, 0.0, 0.5], [-1.0, 2.0, -0.7, 0.0], [0, -0.7, 2.5, 0], [0.5, 0, 0, 1]]
 )
