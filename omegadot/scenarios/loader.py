@@ -124,7 +124,7 @@ def _built(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> Scenario:
 
 
 def _plain(value: Any) -> Any:
-    """Tables and lists of plain numbers: arrays have a ``tolist``. Half a surrogate becomes ``?``."""
+    """Tables and lists of plain numbers: arrays have a ``tolist``."""
     if isinstance(value, Mapping):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from omegadot.commands.versions import installer as installing
+from omegadot.commands.versions import versions as comparing
 from omegadot.commands.versions.environments import Absent, Environments, Place
 from omegadot.commands.versions.installer import (
     InstallError,
@@ -74,6 +75,48 @@ def test_what_was_broken_off_is_not_there(tmp_path: Path) -> None:
     fake.breaks = None
     assert isinstance(Environments(tmp_path, MUJOCO, fake).place("3.6.0"), Place)
     assert fake.made == 1
+
+
+def test_what_the_missing_ones_take_is_known_after_the_first(tmp_path: Path) -> None:
+    """Caught: a size of all releases where some are there, or where a bisection makes a few."""
+    fake = Fake(missing=["3.1.0"])
+    environments = Environments(tmp_path, MUJOCO, fake)
+    environments.place("3.6.0")
+    wanted = ["3.1.0", "3.2.0", "3.3.0", "3.4.0", "3.6.0"]
+    space = environments.space_for(wanted, 5)
+    assert (space.first, space.more, fake.made) == ("3.2.0", 2, 2)
+    (folder,) = tmp_path.glob("mujoco-3.2.0-*-*/")
+    (folder / "large").write_bytes(bytes(1000))
+    assert Environments(tmp_path, MUJOCO, fake)._size("3.2.0") > 1000
+    assert environments.space_for(wanted, 2).more == 1
+    assert environments.space_for(["3.2.0", "3.4.0"], 2).more == 0  # one was asked for by name
+    assert Environments(tmp_path, MUJOCO, None).space_for(wanted, 5).more == 0
+
+
+@pytest.mark.parametrize("answer", [None, False, True])
+def test_more_than_a_gigabyte_is_installed_by_consent(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: bool | None
+) -> None:
+    asked: list[str] = []
+
+    def ask(question: str) -> bool:
+        asked.append(question)
+        return bool(answer)
+
+    monkeypatch.setattr(comparing, "installer_named", lambda name: Fake())
+    monkeypatch.setattr(Environments, "_size", lambda self, version: 700_000_000)
+    monkeypatch.setattr(comparing, "record_of", lambda *_: {"there": "was no need to stop"})
+    monkeypatch.setattr(comparing.Gallery, "measure_all", lambda *_: [])
+    arguments: dict[str, Any] = {"cache": tmp_path, "speed": False}
+    arguments["ask"] = None if answer is None else ask
+    found = "2 more environments of mujoco take about 1.4 GB (3.6.0 took 700 MB)"
+    if answer:
+        comparing.versions("mujoco", "3.6.0..4.0.0", **arguments)
+    else:
+        with pytest.raises(UsageError, match="give --yes") as refused:
+            comparing.versions("mujoco", "3.6.0..4.0.0", **arguments)
+        assert str(refused.value).startswith(found)
+    assert asked == ([] if answer is None else [f"{found}. Install them?"])
 
 
 def test_an_environment_whose_python_is_gone_is_made_again(tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import sys
+from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -50,6 +52,9 @@ def versions(
     offline: Annotated[
         bool, typer.Option("--offline", help="Use only environments in the cache.")
     ] = False,
+    yes: Annotated[
+        bool, typer.Option("--yes", help="Install more than 1 GB without a question.")
+    ] = False,
     installer: Annotated[
         With, typer.Option(help="Installer of the environments; auto: uv where it is installed.")
     ] = With.auto,
@@ -82,9 +87,15 @@ def versions(
     arguments = {"releases": [], **options.given(locals())}
     from omegadot.commands.versions.versions import versions as compare_versions
 
-    found = compare_versions(**arguments)
+    found = compare_versions(**arguments, ask=_ask_where_somebody_reads())
     print_versions(found, output)
     raise typer.Exit(options.exit_code(found.passed, found.comparable))
+
+
+def _ask_where_somebody_reads() -> Callable[[str], bool] | None:
+    if sys.stdin is None or not sys.stdin.isatty():
+        return None
+    return lambda question: typer.confirm(question, err=True)
 
 
 def print_versions(found: VersionsResult, output: options.PageFormat) -> None:

@@ -43,6 +43,15 @@ class Absent:
     reason: str
 
 
+@dataclass(frozen=True)
+class Space:
+    """What environments will take. first: one that was made.  more: how many more.  size: bytes."""
+
+    first: str
+    more: int
+    size: int
+
+
 def default_cache() -> Path:
     """The user's folder for what can be made again, as the platform has it."""
     return user_cache_path("omegadot", appauthor=False, opinion=False) / "versions"
@@ -76,6 +85,23 @@ class Environments:
                 f"({self._installer.name}: {error}); name versions instead of a range, "
                 "or work from the cache with --offline."
             ) from error
+
+    def space_for(self, versions: Sequence[str], most: int) -> Space:
+        """What the environments take that are missing, and at most `most` of them are made.
+
+        The first that can be had is made now, and kept: its size is taken for each of the others.
+        """
+        missing = [] if self._installer is None else [v for v in versions if not self._known(v)]
+        for number, version in enumerate(missing if len(missing) > 1 else []):
+            if isinstance(self.place(version), Place):
+                left = min(len(missing) - number, most) - 1
+                return Space(version, left, left * self._size(version))
+        return Space("", 0, 0)
+
+    def _size(self, version: str) -> int:
+        python = self._known(version)
+        folder = python.parent.parent if python else self._cache
+        return sum(file.lstat().st_size for file in folder.rglob("*"))
 
     def place(self, version: str) -> Place | Absent:
         """A whole environment with this release, made now where there is none yet."""

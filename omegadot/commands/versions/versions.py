@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -12,17 +12,19 @@ from omegadot.commands.progress import Count, Progress, Reporting, reporting
 from omegadot.commands.versions.aims import aims_of, check_integrators
 from omegadot.commands.versions.bisection import bisect_metric
 from omegadot.commands.versions.changes import Portrait
-from omegadot.commands.versions.environments import Environments, default_cache
+from omegadot.commands.versions.environments import Environments, Space, default_cache
 from omegadot.commands.versions.gallery import Gallery
 from omegadot.commands.versions.installer import InstallError, installer_named
 from omegadot.commands.versions.record import record_of
-from omegadot.commands.versions.release import product_of, requested_releases
+from omegadot.commands.versions.release import Product, product_of, requested_releases
 from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import Via, check_way, several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, check_count, check_number, check_setup
 from omegadot.reports.record.whole_file import make_folder
 from omegadot.scenarios import ScenarioLike
+
+MOST_UNASKED = 1e9  # bytes
 
 
 def versions(
@@ -35,6 +37,8 @@ def versions(
     bisect: str | None = None,
     cache: str | os.PathLike[str] | None = None,
     offline: bool = False,
+    yes: bool = False,
+    ask: Callable[[str], bool] | None = None,
     installer: Literal["auto", "uv", "pip"] = "auto",
     setup: Setup = "physics",
     via: Via = "api",
@@ -52,7 +56,9 @@ def versions(
     ``1.2.0..1.4.0`` of the releases that there are, or ``1.2.3=PYTHON``, an interpreter that has it
     already.  timestep: s, instead of each scenario's middle one.  bisect: the terms of a metric's
     name; the release in which it changed is then found.  cache: where environments are kept.
-    offline: use the cache alone.  via: how bodies go in, as of `omegadot.run`.
+    offline: use the cache alone.  yes: install more than 1 GB; without it, `ask` is called with the
+    question, and nothing more is installed unless it returns True.
+    via: how bodies go in, as of `omegadot.run`.
     adapter, package: of an engine of your own.  speed: time the steps too.
     jobs: versions at the same time.  out: a folder for record and page.
     Raises UsageError, ScenarioError and RecordError.
@@ -77,6 +83,14 @@ def versions(
     wanted, pythons = requested_releases(several(releases), environments.releases)
     gallery = Gallery(product, aims, environments.place, pythons, setup, timeout, via)
     with reporting(progress) as report:
+        named = [version for version in wanted if version not in pythons]
+        report(Progress("making the first environment"))
+        # The two ends, and one for each halving.
+        most = len(named) if bisect is None else 2 + len(named).bit_length()
+        space = environments.space_for(named, most)
+    if space.size > MOST_UNASKED and not yes:
+        _ask(space, product, ask)
+    with reporting(progress) as report:
         total = len(wanted) if bisect is None else None
         count = Count(report, "making environments and starting engines", total)
 
@@ -98,3 +112,13 @@ def versions(
     if out is not None:
         result.save(out)
     return result
+
+
+def _ask(space: Space, product: Product, ask: Callable[[str], bool] | None) -> None:
+    """Raise UsageError unless the installation of so much is allowed."""
+    found = (
+        f"{space.more} more environments of {product.package} take about {space.size / 1e9:.1f} GB "
+        f"({space.first} took {space.size / space.more / 1e6:.0f} MB)"
+    )
+    if ask is None or not ask(f"{found}. Install them?"):
+        raise UsageError(f"{found}; give --yes to install them, or fewer versions.")
