@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from omegadot.reference_impl.system import Array
 from omegadot.reports.charts.bounds import Limits, Residual, floor_of
+from omegadot.reports.charts.coinciding import Lane, lane_of, leaders, shown_first
 from omegadot.reports.charts.deviations import Chart, Series
 from omegadot.reports.charts.packing import CEILING_DECADE, FLOOR, FLOOR_DECADE, codes_of, rounded
 from omegadot.reports.charts.palette import Line, colours
@@ -47,34 +49,57 @@ def payload(
     lines: list[Line],
     limits: Mapping[str, Limits],
     sources: Sources,
+    failing: Mapping[str, Collection[Lane]] = MappingProxyType({}),
 ) -> tuple[dict[str, Any], Array]:
     """The script's description of every chart, by the scenario's place, and all codes in a row.
 
-    A run is ``[line, rank, times, start, count, bounds, source]``: its channels' codes follow
-    each other from `start`, `count` of each, in the order of the scenario's charts; bounds, a
-    channel each, are ``[fraction, bound, fraction, bound, ...]``.
+    A run is ``[line, rank, times, starts, count, bounds, source, leaders]``, with a channel each in
+    the order of the scenario's charts: where its codes start, `count` of them, which runs share
+    that are equal to a code; bounds, ``[fraction, bound, fraction, bound, ...]``; leaders, the
+    places of the first run that it coincides with.  first: the lines shown before any is selected.
+    failing: by scenario, the lines of which a gate fails.
     """
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
     clocks: dict[bytes, int] = {}
     values: list[Array] = []
+    stored: dict[int, Array] = {}
     used = 0
     scenarios: dict[str, Any] = {}
     for name, chart in charts.items():
-        rank, entries = rank_of(chart), []
+        rank = rank_of(chart)
+        entries: list[list[Any]] = []
         own = limits.get(name, Limits())
-        for deviation in chart.deviations:
+        axes = [_axis_of(chart, channel, own) for channel in chart.units]
+        drawn = [{c: drawn_values(run, c) for c in chart.units} for run in chart.deviations]
+        led = [
+            leaders(
+                chart.deviations,
+                [found[axis["channel"]] for found in drawn],
+                axis["high"] - axis["low"],
+                axis["resolvable"],
+            )
+            for axis in axes
+        ]
+        for deviation, found, *leader in zip(chart.deviations, drawn, *led, strict=True):
             clock = clocks.setdefault(deviation.time.tobytes(), len(clocks))
-            line = places[deviation.engine, deviation.setup, deviation.integrator]
+            line = places[lane_of(deviation)]
             count = len(deviation.time)
             knobs = rank[deviation.timestep, deviation.accuracy]
             bounds, source = _bounds_drawn(own, deviation, chart), sources.number(vars(deviation))
-            entries.append([line, knobs, clock, used, count, bounds, source])
-            for channel in chart.units:
-                values.append(_drawn(deviation, channel))
-                used += count
+            starts = []
+            for k, own_values in enumerate(found.values()):
+                codes = codes_of(own_values)
+                first = entries[leader[k]][3][k] if leader[k] < len(entries) else None
+                if first is None or np.any(np.abs(stored[first] - codes.astype(int)) > 1):
+                    first, used = used, used + count
+                    stored[first] = codes.astype(int)
+                    values.append(codes)
+                starts.append(first)
+            entries.append([line, knobs, clock, starts, count, bounds, source, leader])
         scenarios[name] = {
-            "charts": [_axis_of(chart, channel, own) for channel in chart.units],
+            "charts": axes,
             "deviations": entries,
+            "first": sorted(places[lane] for lane in shown_first(chart, failing.get(name, ()))),
             "steps": _captions(rank),
             "sweeps": sweep_payload(sweeps.get(name, []), places, sources, floor_of(own)),
         }
@@ -85,7 +110,7 @@ def payload(
         "times": [[rounded(t, 6) for t in np.frombuffer(clock).tolist()] for clock in clocks],
         "scenarios": scenarios,
     }
-    return description, codes_of(np.concatenate([np.empty(0), *values]))
+    return description, np.concatenate([np.empty(0, np.uint16), *values])
 
 
 def _bounds_drawn(limits: Limits, deviation: Series, chart: Chart) -> list[list[float | None]]:
@@ -96,7 +121,7 @@ def _bounds_drawn(limits: Limits, deviation: Series, chart: Chart) -> list[list[
     ]
 
 
-def _drawn(deviation: Series, channel: str) -> Array:
+def drawn_values(deviation: Series, channel: str) -> Array:
     """The errors as drawn: without the start, which is given and so has no error."""
     values = deviation.values[channel]
     start = (deviation.time == 0.0) & (values <= FLOOR)
@@ -109,7 +134,7 @@ def _axis_of(chart: Chart, channel: str, limits: Limits) -> dict[str, Any]:
     They hold the bounds and the floor too: what judges an error must be visible.
     """
     unit = chart.units[channel]
-    values = np.concatenate([_drawn(deviation, channel) for deviation in chart.deviations])
+    values = np.concatenate([drawn_values(deviation, channel) for deviation in chart.deviations])
     floor = limits.floor(channel, unit)
     seen = [bound for c in chart.deviations for _, bound in limits.bound(c, channel, unit)]
     known = np.append(values[~np.isnan(values)], seen + ([] if floor is None else [floor]))
