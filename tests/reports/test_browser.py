@@ -245,6 +245,7 @@ def test_long_names_do_not_widen_the_page(browser, tmp_path, width):
     browser.open(file, width=width, height=12000)
     browser.wait("document.documentElement.dataset.drawn")
     browser.evaluate("document.querySelectorAll('details').forEach((part) => (part.open = true))")
+    browser.wait("document.querySelector('.with-reasons')?.dataset.ready")
     root = "document.documentElement"
     assert browser.evaluate(f"{root}.scrollWidth - {root}.clientWidth") == 0
 

@@ -75,18 +75,18 @@ def test_zoom_in_time_acts_on_all_charts_over_time_of_the_scenario_and_on_no_oth
     page.evaluate("document.querySelector('fieldset[data-engine=mujoco] .all').click()")
     page.wait(DRAWN)
     assert page.evaluate(RANGES)[2] == pytest.approx([1, 3], abs=0.1)
+    page.evaluate("delete document.documentElement.dataset.drawn")
+    page.evaluate("document.getElementById('next').click()")
+    page.wait(DRAWN)
+    assert page.evaluate(RANGES) == [[0, 4]] * 4
+    drag(page, 1, 0.25, 0.75)
+    page.wait(f"{RANGES}.every((r) => r[0] > 0.9 && r[1] < 3.1)")
     left, top, width, height = plot(page, 3)
     for count in (1, 2):
         button = {"button": "left", "clickCount": count}
         mouse(page, "mousePressed", left + 0.5 * width, top + 0.1 * height, **button)
         mouse(page, "mouseReleased", left + 0.5 * width, top + 0.1 * height, **button)
     page.wait(f"{RANGES}.every((r) => r[0] === 0 && r[1] === 4)")
-    drag(page, 1, 0.25, 0.75)
-    page.wait(f"{RANGES}.every((r) => r[0] > 0.9 && r[1] < 3.1)")
-    page.evaluate("delete document.documentElement.dataset.drawn")
-    page.evaluate("document.getElementById('next').click()")
-    page.wait(DRAWN)
-    assert page.evaluate(RANGES) == [[0, 4]] * 4
 
 
 def test_the_time_under_the_pointer_is_shown_in_all_charts_over_time(page):
@@ -172,7 +172,7 @@ def column(page, number):
 
 def test_a_table_sorts_filters_and_copies(page):
     page.evaluate("document.querySelectorAll('.scenario:not([hidden]) details')[2].open = true")
-    page.wait("document.querySelector('.with-reasons').dataset.ready === 'yes'")
+    page.wait("document.querySelector('.with-reasons')?.dataset.ready === 'yes'")
     heads = "[...document.querySelector('.with-reasons').tHead.querySelectorAll('button.sort')]"
     drift = f"{heads}.find((b) => b.textContent.startsWith('drift full'))"
     place = 2 + page.evaluate(f"[...{drift}.closest('tr').cells].indexOf({drift}.closest('th'))")
@@ -251,7 +251,7 @@ def test_paper_gets_every_scenario_with_its_charts_and_the_bodies(browser, path)
     charts = "document.querySelectorAll('.chart').length"
     assert browser.evaluate(charts) == CHARTS
     browser.evaluate("document.querySelectorAll('.scenario:not([hidden]) details')[2].open = true")
-    browser.wait("document.querySelector('.with-reasons').dataset.ready === 'yes'")
+    browser.wait("document.querySelector('.with-reasons')?.dataset.ready === 'yes'")
     browser.evaluate("dispatchEvent(new Event('beforeprint'))")
     drawn = "[...document.querySelectorAll('.chart')].map((c) => c.querySelectorAll('path').length)"
     assert browser.evaluate(charts) == 2 * CHARTS

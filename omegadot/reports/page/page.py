@@ -29,11 +29,6 @@ from omegadot.reports.summary.provenance import Sources, command_of, provenance_
 from omegadot.reports.summary.summary import STATUSES, summarise
 
 _JUDGED_SHOWN = 50
-# Beside each number of an engine on a phone, where the table has no heads.
-_OVERVIEW_HEADS = (
-    *("omega-dot residual", "drift, best", "drift, worst"),
-    *("attitude, best", "attitude, worst"),
-)
 
 CHART_TITLES = {
     "omega_dot": ("Omega-dot error", "|ω̇ − ω̇ exact| along the run"),
@@ -87,7 +82,6 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         clusters=[(sentence(c), extent(c)) for c in clusters_over_scenarios(record.run)],
         sections=sections,
         opened=_opened(sections),
-        overview_heads=_OVERVIEW_HEADS,
         lines=lines,
         line_groups=[(engine, list(own)) for engine, own in groupby(enumerate(lines), _engine_of)],
         choices=step_choices(charts.values()),

@@ -23,14 +23,6 @@ async function draw(section, chart) {
   root.dataset.drawn = Number(root.dataset.drawn || 0) + 1;
 }
 
-let scrolled = -Infinity;
-addEventListener("scroll", () => { scrolled = performance.now(); }, { passive: true, capture: true });
-const idle = () => new Promise((done) => { window.requestIdleCallback ? requestIdleCallback(done, { timeout: 400 }) : setTimeout(done); });
-async function rest() {
-  while (performance.now() - scrolled < 250) await new Promise((done) => { setTimeout(done, 100); });
-  await idle();
-}
-
 let working = false;
 const next = () => current?.charts.find((one) => one.near) ?? current?.charts.find((one) => one.wanted);
 async function work() {

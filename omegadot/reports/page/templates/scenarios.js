@@ -3,10 +3,23 @@ const panels = [...document.querySelectorAll(".scenario")], tabs = [...document.
 const folds = new Set(); // the folds that are open, by what they hold: so they stay from tab to tab
 const nameOfFold = (fold) => fold.querySelector("summary").textContent;
 
+// What a closed fold holds is kept aside until it is opened.
+const aside = new WeakMap();
 function fill(node) {
-  node.insertAdjacentHTML("beforeend", node.querySelector("noscript").textContent);
-  for (const fold of node.querySelectorAll("details")) fold.open = folds.has(nameOfFold(fold));
+  const content = made("template", { innerHTML: node.querySelector("noscript").textContent }).content;
+  for (const fold of content.querySelectorAll("details")) {
+    fold.open = folds.has(nameOfFold(fold));
+    if (!fold.open) aside.set(fold, [...fold.childNodes].filter((child) => child.tagName !== "SUMMARY"));
+    aside.get(fold)?.forEach((child) => child.remove());
+  }
+  node.append(content);
   node.hidden = false;
+}
+
+function unfold(fold) {
+  fold.append(...(aside.get(fold) ?? []));
+  aside.delete(fold);
+  fold.querySelectorAll("table").forEach(enhance);
 }
 
 function clear(node) {
@@ -66,7 +79,9 @@ if (panels.length) {
     turn(moves[event.key], true);
   });
   document.addEventListener("toggle", (event) => {
-    if (event.target.closest(".scenario")) folds[event.target.open ? "add" : "delete"](nameOfFold(event.target));
+    if (!event.target.closest(".scenario")) return;
+    folds[event.target.open ? "add" : "delete"](nameOfFold(event.target));
+    if (event.target.open) unfold(event.target);
   }, true);
   if (!follow()) show(panels.find((panel) => "opened" in panel.dataset) ?? panels[0]);
   addEventListener("hashchange", follow);
@@ -90,6 +105,7 @@ if (controls) {
 function print(on) {
   printing = on;
   root.classList.toggle("printing", on);
+  for (const fold of document.querySelectorAll("header details, #settings details")) fold.open = on;
   for (const node of panels) if (node !== current.node) (on ? fill : clear)(node);
   for (const chart of current?.charts ?? []) if (chart.data) draw(current, chart);
 }

@@ -43,6 +43,15 @@ async function arrive(...ids) {
   return { data: await description.json(), codes: undifference(new Uint8Array(await codes.arrayBuffer())) };
 }
 
+// What takes long waits until the page is not being scrolled.
+let scrolled = -Infinity;
+addEventListener("scroll", () => { scrolled = performance.now(); }, { passive: true, capture: true });
+const idle = () => new Promise((done) => { window.requestIdleCallback ? requestIdleCallback(done, { timeout: 400 }) : setTimeout(done); });
+async function rest() {
+  while (performance.now() - scrolled < 250) await new Promise((done) => { setTimeout(done, 100); });
+  await idle();
+}
+
 let loading = null;
 const load = () => (loading ??= arrive("plotly-data", "charts-data", "codes-data"));
 
