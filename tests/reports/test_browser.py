@@ -146,9 +146,10 @@ def test_one_step_is_shown_at_a_time_and_axes_stay(page):
 
 def test_engine_is_colour_and_scheme_is_dash(page):
     again(page, changed("shown", "all"))
-    script = "[...document.querySelectorAll('.panel label:has(.one)')].map((l) => [l.textContent,"
-    script += " ...['stroke', 'strokeDasharray'].map((n) => getComputedStyle(l.querySelector('path'))[n])])"
-    looks = {name.strip(): look for name, *look in page.evaluate(script)}
+    script = """[...document.querySelectorAll('.panel label:has(.one)')].map((label) => {
+        const look = getComputedStyle(label.querySelector('path'));
+        return [label.textContent.trim(), look.stroke, look.strokeDasharray]; })"""
+    looks = {name: look for name, *look in page.evaluate(script)}
     assert looks["Euler"][0] == looks["RK4"][0] != looks["semi-implicit"][0]
     assert looks["Euler"][1] == looks["semi-implicit"][1] == "none"
     assert looks["RK4"][1] == looks["lie-rk4"][1] != "none"

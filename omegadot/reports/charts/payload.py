@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
@@ -61,41 +62,31 @@ def payload(
     """
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
     clocks: dict[bytes, int] = {}
-    values: list[Array] = []
-    stored: dict[int, Array] = {}
-    used = 0
+    codes = Codes()
     scenarios: dict[str, Any] = {}
     for name, chart in charts.items():
-        rank = rank_of(chart)
-        entries: list[list[Any]] = []
         own = limits.get(name, Limits())
-        axes = [_axis_of(chart, channel, own) for channel in chart.units]
-        drawn = [{c: drawn_values(run, c) for c in chart.units} for run in chart.deviations]
+        drawn = [[drawn_values(run, c) for run in chart.deviations] for c in chart.units]
+        axes = [_axis_of(chart, c, own, d) for c, d in zip(chart.units, drawn, strict=True)]
         led = [
-            leaders(
-                chart.deviations,
-                [found[axis["channel"]] for found in drawn],
-                axis["high"] - axis["low"],
-                axis["resolvable"],
-            )
-            for axis in axes
+            leaders(chart.deviations, found, axis["high"] - axis["low"], axis["resolvable"])
+            for axis, found in zip(axes, drawn, strict=True)
         ]
-        for deviation, found, *leader in zip(chart.deviations, drawn, *led, strict=True):
-            clock = clocks.setdefault(deviation.time.tobytes(), len(clocks))
-            line = places[lane_of(deviation)]
-            count = len(deviation.time)
-            knobs = rank[deviation.timestep, deviation.accuracy]
-            bounds, source = _bounds_drawn(own, deviation, chart), sources.number(vars(deviation))
-            starts = []
-            for k, own_values in enumerate(found.values()):
-                codes = codes_of(own_values)
-                first = entries[leader[k]][3][k] if leader[k] < len(entries) else None
-                if first is None or np.any(np.abs(stored[first] - codes.astype(int)) > 1):
-                    first, used = used, used + count
-                    stored[first] = codes.astype(int)
-                    values.append(codes)
-                starts.append(first)
-            entries.append([line, knobs, clock, starts, count, bounds, source, leader])
+        starts = [codes.keep(found, lead) for found, lead in zip(drawn, led, strict=True)]
+        rank = rank_of(chart)
+        entries = [
+            [
+                places[lane_of(run)],
+                rank[run.timestep, run.accuracy],
+                clocks.setdefault(run.time.tobytes(), len(clocks)),
+                [own_starts[k] for own_starts in starts],
+                len(run.time),
+                _bounds_drawn(own, run, chart),
+                sources.number(vars(run)),
+                [own_led[k] for own_led in led],
+            ]
+            for k, run in enumerate(chart.deviations)
+        ]
         scenarios[name] = {
             "charts": axes,
             "deviations": entries,
@@ -110,7 +101,34 @@ def payload(
         "times": [[rounded(t, 6) for t in np.frombuffer(clock).tolist()] for clock in clocks],
         "scenarios": scenarios,
     }
-    return description, np.concatenate([np.empty(0, np.uint16), *values])
+    return description, np.concatenate(codes.parts)
+
+
+@dataclass
+class Codes:
+    """The codes of all charts in a row. parts: those kept so far; used: how many these are."""
+
+    parts: list[Array] = field(default_factory=lambda: [np.empty(0, np.uint16)])
+    used: int = 0
+
+    def keep(self, drawn: Sequence[Array], led: Sequence[int]) -> list[int]:
+        """Where the codes of each run of a chart start: one that is equal to its leader's to a
+        code, a thousandth, has the place of that.
+        """
+        if not drawn:
+            return []
+        ends = np.cumsum([len(values) for values in drawn])[:-1]
+        coded = np.split(codes_of(np.concatenate(drawn)), ends)
+        starts: list[int] = []
+        for place, (codes, leader) in enumerate(zip(coded, led, strict=True)):
+            difference = codes.astype(int) - coded[leader]
+            if leader < place and np.all(np.abs(difference) <= 1):
+                starts.append(starts[leader])
+                continue
+            starts.append(self.used)
+            self.parts.append(codes)
+            self.used += len(codes)
+        return starts
 
 
 def _bounds_drawn(limits: Limits, deviation: Series, chart: Chart) -> list[list[float | None]]:
@@ -128,13 +146,13 @@ def drawn_values(deviation: Series, channel: str) -> Array:
     return np.where(start, np.nan, values)
 
 
-def _axis_of(chart: Chart, channel: str, limits: Limits) -> dict[str, Any]:
+def _axis_of(chart: Chart, channel: str, limits: Limits, drawn: Sequence[Array]) -> dict[str, Any]:
     """Decades that hold the errors of every step size, so that a change of step moves no axis.
 
     They hold the bounds and the floor too: what judges an error must be visible.
     """
     unit = chart.units[channel]
-    values = np.concatenate([drawn_values(deviation, channel) for deviation in chart.deviations])
+    values = np.concatenate(drawn)
     floor = limits.floor(channel, unit)
     seen = [bound for c in chart.deviations for _, bound in limits.bound(c, channel, unit)]
     known = np.append(values[~np.isnan(values)], seen + ([] if floor is None else [floor]))

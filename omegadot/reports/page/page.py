@@ -24,7 +24,7 @@ from omegadot.reports.page.why import order_table, scheme_table
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
-from omegadot.reports.summary.headline import headline, remarks, truth
+from omegadot.reports.summary.headline import headline, remarks, step_notes, truth
 from omegadot.reports.summary.provenance import Sources, command_of, provenance_payload, sources_for
 from omegadot.reports.summary.summary import STATUSES, summarise
 
@@ -76,6 +76,7 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         numbers=matrix.NUMBERS,
         anchors=anchors,
         glances=engines,
+        step_notes=step_notes(record.run["engines"]),
         judged=judged,
         schemes=schemes,
         orders=orders,
