@@ -104,8 +104,8 @@ def lines_of(charts: Iterable[Chart], engines: list[Mapping[str, Any]]) -> list[
     order = {entry["name"]: place for place, entry in enumerate(engines)}
     names = sorted({engine for engine, _, _ in runs}, key=lambda n: (order.get(n, len(order)), n))
     colour, dash = colours(names), dashes(engines)
-    narrower = 2.4 / max(3, len(names) - 1)
-    width = {name: round(1.6 + narrower * k, 1) for k, name in enumerate(reversed(names))}
+    narrower = 1.4 / max(3, len(names) - 1)
+    width = {name: round(1.8 + narrower * k, 2) for k, name in enumerate(reversed(names))}
     lines = []
     for engine, setup, name in sorted(runs, key=lambda run: names.index(run[0])):
         broad = width[engine] * (1.0 if setup == "physics" else 0.5)
