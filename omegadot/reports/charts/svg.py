@@ -83,7 +83,8 @@ def _few(points: Array) -> Array:
 
 def text_at(x: float, y: float, text: str, kind: str = "") -> str:
     """kind: "e" for a text that ends there; others are centred."""
-    return f"<text{f' class={kind}' if kind else ''} x={x:.0f} y={y:.0f}>{escape(text)}</text>"
+    own = f' class="{kind}"' if kind else ""
+    return f'<text{own} x="{x:.0f}" y="{y:.0f}">{escape(text)}</text>'
 
 
 def decades(scale: Scale, most: int) -> list[tuple[float, str]]:
@@ -109,7 +110,7 @@ def grid(
     bottom = HEIGHT - BOTTOM
     rules = "".join(f"M{LEFT} {y:.0f}H{WIDTH - RIGHT}" for y, _ in ys)
     rules += "".join(f"M{x:.0f} {TOP}V{bottom}" for x, _ in xs)
-    yield f'<path class=g d="{rules}"/>'
+    yield f'<path class="g" d="{rules}"/>'
     yield from (text_at(LEFT - 5, y + 4, label, "e") for y, label in ys)
     yield from (text_at(x, bottom + 14, label) for x, label in xs)
     yield text_at((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 4, title)
