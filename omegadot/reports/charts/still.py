@@ -100,7 +100,7 @@ def _floor(value: float | None, y: Scale) -> list[str]:
 def over_sweep(drawn: Mapping[str, Any], kind: str) -> Still:
     """Attitude error over the step (kind convergence) or the cost, of the lines shown first."""
     sweeps, at = drawn["sweeps"], 2 if kind == "cost" else 0
-    known = {n: [p for p in own if p[at] and p[1] is not None] for n, own, _ in sweeps["lines"]}
+    known = {n: [p for p in own if _drawable(p, at)] for n, own, _ in sweeps["lines"]}
     every = sorted({p[at] for points in known.values() for p in points})
     if not every:
         return Still(whole([]), [])
@@ -124,6 +124,14 @@ def over_sweep(drawn: Mapping[str, Any], kind: str) -> Still:
     return Still(whole(parts), list(groups.values()))
 
 
+def _drawable(point: Sequence[Any], at: int) -> bool:
+    return point[1] is not None and _positive(point[at])
+
+
+def _positive(value: float | None) -> bool:
+    return value is not None and 0.0 < value < math.inf
+
+
 def _places(points: Iterable[Any], at: int, x: Scale, y: Scale) -> tuple[Array, Array]:
     table = np.array([(p[at], max(p[1], FLOOR)) for p in points])
     return x.at(table[:, 0]), y.at(table[:, 1])
@@ -141,7 +149,7 @@ def _below(name: str, points: Sequence[Any], x: Scale, y: Scale) -> list[str]:
 
 def at_states(rows: Sequence[Sequence[Any]]) -> Markup:
     """Omega-dot residuals at identical states, a row an engine, with the bound."""
-    sizes = [math.log10(value) for row in rows for value in row[4:] if value]
+    sizes = [math.log10(value) for row in rows for value in row[4:] if _positive(value)]
     low, high = math.floor(min([*sizes, -16.0])), math.ceil(max([*sizes, -13.0]))
     left, apart = 90, 16 if len(rows) > _MOST_STEPS else 24
     floor = max(HEIGHT - BOTTOM, TOP + apart * len(rows))
@@ -156,11 +164,11 @@ def at_states(rows: Sequence[Sequence[Any]]) -> Markup:
         parts.append(text_at(left - 6, y + 4, label if len(label) < 15 else label[:14] + "…", "e"))
         parts.append(f'<g class="k" style="--light:{colour[0]};--dark:{colour[1]}">')
         parts += [
-            text_at(float(x.at(value)) if value else zero, y + 4, sign)
+            text_at(float(x.at(value)) if _positive(value) else zero, y + 4, sign)
             for value, sign in ((figures[2], "◇"), (figures[0], "●"))
             if value is not None
         ]
         parts.append("</g>")
-        if figures[1]:
+        if _positive(figures[1]):
             parts.append(f'<path class="m" d="M{float(x.at(figures[1])):.0f} {y - 7:.0f}v14"/>')
     return whole(parts, floor + BOTTOM)

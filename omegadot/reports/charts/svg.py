@@ -97,7 +97,9 @@ def decades(scale: Scale, most: int) -> list[tuple[float, str]]:
 
 def linear(scale: Scale) -> list[tuple[float, str]]:
     """Places and labels of about four round values, from zero on."""
-    step = 10.0 ** math.floor(math.log10((scale.high - scale.low) / 4.0 or 1.0))
+    if not 0.0 < scale.high - scale.low < math.inf:
+        return []
+    step = 10.0 ** math.floor(math.log10((scale.high - scale.low) / 4.0))
     step *= max(k for k in (1, 2, 5) if k * step <= (scale.high - scale.low) / 4.0)
     count = math.floor(scale.high / step + 1e-9)
     return [(float(scale.at(k * step)), plain(k * step)) for k in range(count + 1)]
