@@ -48,8 +48,10 @@ let scrolled = -Infinity;
 addEventListener("scroll", () => { scrolled = performance.now(); }, { passive: true, capture: true });
 const idle = () => new Promise((done) => { window.requestIdleCallback ? requestIdleCallback(done, { timeout: 400 }) : setTimeout(done); });
 async function rest() {
-  while (performance.now() - scrolled < 250) await new Promise((done) => { setTimeout(done, 100); });
-  await idle();
+  do {
+    while (performance.now() - scrolled < 250) await new Promise((done) => { setTimeout(done, 100); });
+    await idle();
+  } while (performance.now() - scrolled < 250);
 }
 
 let loading = null;

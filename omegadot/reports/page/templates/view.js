@@ -139,5 +139,5 @@ if (box) {
     if (show.visible) beginOnce();
     run();
   }, { rootMargin: "100px 0px" }).observe(box);
-  addEventListener("load", beginOnce); // for print
+  addEventListener("load", () => setTimeout(beginOnce, 300)); // for print
 }
