@@ -2,13 +2,16 @@
 
 import shlex
 import tomllib
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from fit_traces import Truth, fitted, run_fit, write_trace
 from score_line import run_score
 
+import omegadot
 from omegadot import scenario
+from omegadot.commands.fit.picture import residuals_of
 
 TIMES = np.linspace(0.0, 4.0, 61)
 QUICK = ("--no-bias", "--no-damping")
@@ -87,6 +90,26 @@ def test_the_scenario_scores_the_trace_that_it_was_fitted_to(tmp_path, capsys, t
     written = scenario(str(out))
     assert (written.name, written.body.mass) == ("box", 2.5)
     assert tomllib.loads(out.read_text())["run"]["duration"] == TIMES[-1]
+
+
+def test_the_picture_stands_beside_the_scenario_and_replaces_none_but_its_own(
+    tmp_path, capsys, trace
+):
+    """It shows the trace and what the motion leaves of it."""
+    out, drawn = tmp_path / "box.toml", tmp_path / "box.svg"
+    drawn.write_text("<svg>somebody else's</svg>")
+    result = run_fit(capsys, trace, *QUICK, "--out", out)
+    assert result.code == 2
+    assert "box.svg" in result.err
+    assert not out.exists()
+    drawn.unlink()
+    found = omegadot.fit(trace, bias=False, damping=False, out=out)
+    left = residuals_of(found)
+    np.testing.assert_allclose(np.sqrt(np.mean(left**2, axis=0)), found.rms, rtol=1e-6)
+    picture = ElementTree.parse(drawn).getroot()
+    dots = [p.get("d") for p in picture.iter() if p.get("class") in ("d c0", "d c1", "d c2")]
+    assert [d.count("h0") for d in dots] == [len(TIMES)] * 6
+    omegadot.fit(trace, bias=False, damping=False, out=out)  # its own is replaced
 
 
 @pytest.mark.parametrize("unit", ["rad/s", "deg/s"])

@@ -39,6 +39,7 @@ def opened(browser, path, **look):
     browser.open(path, **look)
     browser.wait(f"Number(document.documentElement.dataset.drawn || 0) >= {CHARTS}")
     browser.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    browser.wait("document.querySelector('.with-reasons') !== null")
     browser.wait("[...document.querySelectorAll('table')].every((t) => t.dataset.ready)")
     browser.evaluate(axe() + "; 0")
 

@@ -9,9 +9,9 @@ from synthetic_record import build, scenario_entry
 
 from omegadot.reports.page.page import draw_page
 
-CHARTS = 14
+CHARTS = 7
 DRAWN = f"Number(document.documentElement.dataset.drawn || 0) >= {CHARTS}"
-RANGES = "[...document.querySelectorAll('.scenario')[{}].querySelectorAll('[data-place]')].map("
+RANGES = "[...document.querySelectorAll('.scenario [data-place]')].map("
 RANGES += "(c) => [...c._fullLayout.xaxis.range].map((v) => Number(v.toPrecision(3))))"
 HOSTILE = "it's <b>bold</b>; rm -rf $HOME"
 CARD = "document.getElementById('card')"
@@ -67,21 +67,26 @@ def drag(page, place, start, end):
 
 
 def test_zoom_in_time_acts_on_all_charts_over_time_of_the_scenario_and_on_no_other(page):
-    assert page.evaluate(RANGES.format(0)) == [[0, 4]] * 4
+    assert page.evaluate(RANGES) == [[0, 4]] * 4
     drag(page, 1, 0.25, 0.75)
-    page.wait(f"{RANGES.format(0)}.every((r) => r[0] > 0.9 && r[1] < 3.1)")
-    assert len({tuple(r) for r in page.evaluate(RANGES.format(0))}) == 1
-    assert page.evaluate(RANGES.format(1)) == [[0, 4]] * 4
+    page.wait(f"{RANGES}.every((r) => r[0] > 0.9 && r[1] < 3.1)")
+    assert len({tuple(r) for r in page.evaluate(RANGES)}) == 1
     page.evaluate("delete document.documentElement.dataset.drawn")
-    page.evaluate("document.querySelectorAll('fieldset[data-engine] .all')[1].click()")
+    page.evaluate("document.querySelector('fieldset[data-engine=mujoco] .all').click()")
     page.wait(DRAWN)
-    assert page.evaluate(RANGES.format(0))[2] == pytest.approx([1, 3], abs=0.1)
+    assert page.evaluate(RANGES)[2] == pytest.approx([1, 3], abs=0.1)
+    page.evaluate("delete document.documentElement.dataset.drawn")
+    page.evaluate("document.getElementById('next').click()")
+    page.wait(DRAWN)
+    assert page.evaluate(RANGES) == [[0, 4]] * 4
+    drag(page, 1, 0.25, 0.75)
+    page.wait(f"{RANGES}.every((r) => r[0] > 0.9 && r[1] < 3.1)")
     left, top, width, height = plot(page, 3)
     for count in (1, 2):
         button = {"button": "left", "clickCount": count}
         mouse(page, "mousePressed", left + 0.5 * width, top + 0.1 * height, **button)
         mouse(page, "mouseReleased", left + 0.5 * width, top + 0.1 * height, **button)
-    page.wait(f"{RANGES.format(0)}.every((r) => r[0] === 0 && r[1] === 4)")
+    page.wait(f"{RANGES}.every((r) => r[0] === 0 && r[1] === 4)")
 
 
 def test_the_time_under_the_pointer_is_shown_in_all_charts_over_time(page):
@@ -119,7 +124,7 @@ def test_a_cell_of_the_matrix_shows_its_runs_by_keyboard(page):
 
 
 def test_a_row_shows_its_run_and_the_command_is_safe_to_paste(page):
-    page.evaluate("document.querySelectorAll('.scenario details')[2].open = true")
+    page.evaluate("document.querySelectorAll('.scenario:not([hidden]) details')[2].open = true")
     page.wait("document.querySelector('.with-reasons button.source') !== null")
     rows = "[...document.querySelectorAll('.with-reasons button.source')]"
     page.evaluate(f"{rows}.find((b) => b.textContent === 'RK4, step 0.01 s').focus()")
@@ -142,12 +147,12 @@ def test_a_point_shows_its_run_by_keyboard_and_by_click(page):
     for key, code in (("ArrowDown", 40), ("End", 35)):
         page.press(key, code)
     message = page.evaluate("document.getElementById('announcement').textContent")
-    assert message.startswith("reference lie-rk4 at 4 s: ")
+    assert message.startswith("mujoco RK4 at 4 s: ")
     assert page.evaluate("document.querySelectorAll('.hoverlayer .hovertext').length") >= 1
     page.press("Enter", 13, "\r")
     page.wait(f"{CARD}.open")
     (command,) = page.evaluate(COMMANDS)
-    assert "--engine reference:lie-rk4 --timestep 0.005" in command
+    assert "--engine mujoco:RK4 --timestep 0.005" in command
     assert "Attitude error" in page.evaluate(f"{CARD}.textContent")
     page.press("Escape", 27)
     chart = "document.querySelector('[data-kind=equation]')"
@@ -166,8 +171,8 @@ def column(page, number):
 
 
 def test_a_table_sorts_filters_and_copies(page):
-    page.evaluate("document.querySelectorAll('.scenario details')[2].open = true")
-    page.wait("document.querySelector('.with-reasons').dataset.ready === 'yes'")
+    page.evaluate("document.querySelectorAll('.scenario:not([hidden]) details')[2].open = true")
+    page.wait("document.querySelector('.with-reasons')?.dataset.ready === 'yes'")
     heads = "[...document.querySelector('.with-reasons').tHead.querySelectorAll('button.sort')]"
     drift = f"{heads}.find((b) => b.textContent.startsWith('drift full'))"
     place = 2 + page.evaluate(f"[...{drift}.closest('tr').cells].indexOf({drift}.closest('th'))")
@@ -238,20 +243,32 @@ def test_a_page_without_charts_still_has_its_tables_and_cards(browser, tmp_path)
     assert browser.messages == []
 
 
-def test_paper_gets_every_chart_and_the_bodies(browser, path):
-    """Printing does not wait: what was never scrolled to is drawn at once."""
+def test_paper_gets_every_scenario_with_its_charts_and_the_bodies(browser, path):
+    """Printing does not wait: what was never scrolled to is there at once, as a picture."""
     browser.messages.clear()
     browser.open(path, width=1000, height=200)
-    browser.wait(
-        "typeof Plotly !== 'undefined' && document.getElementById('view-box').dataset.ready"
-    )
-    assert browser.evaluate("document.querySelectorAll('.chart:empty').length") > 0
+    browser.wait("document.getElementById('view-box').dataset.ready")
+    charts = "document.querySelectorAll('.chart').length"
+    assert browser.evaluate(charts) == CHARTS
+    browser.evaluate("document.querySelectorAll('.scenario:not([hidden]) details')[2].open = true")
+    browser.wait("document.querySelector('.with-reasons')?.dataset.ready === 'yes'")
     browser.evaluate("dispatchEvent(new Event('beforeprint'))")
-    assert browser.evaluate("document.querySelectorAll('.chart:empty').length") == 0
-    width = "document.querySelector('.chart .main-svg').clientWidth"
+    drawn = "[...document.querySelectorAll('.chart')].map((c) => c.querySelectorAll('path').length)"
+    assert browser.evaluate(charts) == 2 * CHARTS
+    assert min(browser.evaluate(drawn)) > 3
+    assert browser.evaluate("document.querySelectorAll('details[open] .with-reasons').length") == 2
+    browser.call("Emulation.setEmulatedMedia", media="print")
+    hidden = "[...document.querySelectorAll('.still')].filter((s) => !s.clientWidth).length"
+    assert browser.evaluate(hidden) == 0
+    assert browser.evaluate("document.querySelector('.controls').offsetHeight") == 0
+    browser.call("Emulation.setEmulatedMedia", media="")
+    browser.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert browser.evaluate(charts) == CHARTS
+    width = "document.querySelector('.chart .main-svg')?.clientWidth"
+    browser.evaluate("document.querySelector('.chart').scrollIntoView()")
+    browser.wait(f"{width} > 21 * 16")
+    browser.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert browser.evaluate(width) == 21 * 16
     browser.evaluate("dispatchEvent(new Event('afterprint'))")
-    assert not browser.evaluate("document.documentElement.classList.contains('printing')")
-    browser.evaluate("document.querySelector('.chart').scrollIntoView()")
     browser.wait(f"{width} > 21 * 16")
     assert browser.messages == []

@@ -241,7 +241,7 @@ def test_only_lines_of_the_page_are_drawn():
     found = sweep_payload([sweep(1.0, 1e-3, 2e-3, None)], {("x", "physics", "a"): 4}, Sources())
     # Step, error, cost, and the number of the run that they are of.
     points = [[0.01, 0.001, 1.0, 0], [0.02, 0.002, 1.0, 1], [0.04, None, 1.0, 2]]
-    assert found["lines"] == [[4, points]]
+    assert found["lines"] == [[4, points, 0]]
     assert sweep_payload([sweep(1.0, 1e-3, 2e-3, 4e-3)], {}, Sources())["lines"] == []
 
 

@@ -63,7 +63,10 @@ def fit(
         typer.Option("--damping/--no-damping", help="Fit viscous damping. Default: if supported."),
     ] = None,
     name: Annotated[Text, option("NAME", "Name of the scenario. Default: the trace's.")] = None,
-    out: Annotated[Path | None, option("FILE.toml", "Write the scenario to this file.")] = None,
+    out: Annotated[
+        Path | None,
+        option("FILE.toml", "Write the scenario to this file, and a picture next to it."),
+    ] = None,
     output: Output = Format.text,
 ) -> None:
     """Fit moments of inertia, principal axes, bias and damping to a trace of omega.

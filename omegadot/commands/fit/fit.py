@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from omegadot.commands.fit import picture
 from omegadot.commands.fit.estimates import Estimates, estimates_of
 from omegadot.commands.fit.models import Terms, compare_models
 from omegadot.commands.fit.result import FitResult
@@ -55,7 +56,8 @@ def fit(
     how it is to be read, and what part of it, as of `score`.
     torque: N m, constant in the body's axes.  moment: one that is known, ``"largest=0.0123"`` in
     kg m^2, where there is no torque.  mass: kg, for the scenario.  bias, damping: True to fit it,
-    False not to, None where the data decide.  name, out: of the scenario, and its file.
+    False not to, None where the data decide.  name, out: of the scenario, and its file; beside that
+    a picture of the same name, ``.svg``.
     Raises UsageError, TraceError (a UsageError), ScenarioError for the name and RecordError for the
     file.
     """
@@ -68,8 +70,10 @@ def fit(
         check_number("--mass", mass, 0.0)
     if name is not None:
         scenario("sphere", name=name)  # refuses what is no name, before the work
-    if out is not None:
+    drawn = None if out is None else picture.beside(Path(out))
+    if out is not None and drawn is not None:
         check_target(Path(out), MARK)
+        check_target(drawn, picture.MARK)
     mapped = Path(map_file) if map_file else None
     reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
     samples = samples_of(reading)
@@ -80,9 +84,7 @@ def fit(
     own = estimates_of(spread, scale, samples.size)
     found_out = sentences(samples, compared, spread, own, scale, terms)
     found = scenario_of_fit(samples, own, load, mass or 1.0, name)
-    if out is not None:
-        write_whole(Path(out), text_of(found, found_out), MARK)
-    return FitResult(
+    result = FitResult(
         samples,
         own,
         scale,
@@ -91,6 +93,10 @@ def fit(
         found,
         [*_options(columns, mapped, settings, reading), *_bias(own, reading)],
     )
+    if out is not None and drawn is not None:
+        write_whole(Path(out), text_of(found, found_out), MARK)
+        write_whole(drawn, picture.picture(result), picture.MARK)
+    return result
 
 
 def _options(

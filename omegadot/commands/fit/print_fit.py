@@ -11,6 +11,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
+from omegadot.commands.fit.picture import beside
 from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.sentences import direction
 from omegadot.reference_impl.system import Array
@@ -133,4 +134,4 @@ def _next(result: FitResult, out: Path) -> list[str]:
     """Where the file is, and the command that scores the trace by it."""
     samples = result.samples
     line = ["omegadot", "score", samples.file, "--scenario", str(out), *result.options]
-    return [f"Scenario: {out}", f"Score the trace: {shlex.join(line)}"]
+    return [f"Scenario: {out}; picture: {beside(out)}", f"Score the trace: {shlex.join(line)}"]

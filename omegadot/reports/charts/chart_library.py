@@ -5,7 +5,6 @@ three.js comes out of the installed trimesh, which ships it in its own viewer.
 
 from __future__ import annotations
 
-import base64
 import gzip
 import re
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -15,15 +14,31 @@ from io import BytesIO
 from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
+import numpy as np
+from markupsafe import Markup
+
 # The library ends with this line of its universal build; trimesh's own scripts follow it.
 _BUILD = re.compile(
     r"<script>(.*?Object\.defineProperty\(\w+,\"__esModule\",\{value:!0\}\)\}+\)+;)", re.DOTALL
 )
 
 
-def pack(data: bytes) -> str:
-    """Gzip and base64, the same text for the same bytes."""
-    return base64.b64encode(gzip.compress(data, compresslevel=6, mtime=0)).decode("ascii")
+# RFC 1924's letters, with a comma for the one that may not stand in a page.
+_LETTERS = b"0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;,=>?@^_`{|}~"
+
+
+def pack(data: bytes) -> Markup:
+    """Gzip and base 85, 25 % longer than the bytes: the same text for the same bytes.
+
+    Five letters stand for four bytes, the highest first; as many letters as zeros were added at
+    the end are left out.
+    """
+    packed = gzip.compress(data, compresslevel=6, mtime=0)
+    missing = -len(packed) % 4
+    words = np.frombuffer(packed + bytes(missing), ">u4").astype(np.uint32)
+    digits = words[:, None] // np.array([85**k for k in (4, 3, 2, 1, 0)], np.uint32) % 85
+    letters = np.frombuffer(_LETTERS, np.uint8)[digits].tobytes()
+    return Markup(letters[: len(letters) - missing].decode("ascii"))
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Numbers and scripts made small enough to travel inside a page: gzip, then base64."""
+"""Numbers and scripts made small enough to travel inside a page: gzip, then base 85."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -50,24 +51,30 @@ def colours(engines: Iterable[str]) -> dict[str, tuple[str, str]]:
 def dashes(engines: Iterable[Mapping[str, Any]]) -> dict[tuple[str, str], str]:
     """The dash by engine and integrator.
 
-    Integrators of the same scheme share a dash across engines; a second one of that scheme within
-    an engine takes the next that is free there.
+    Integrators of the same scheme share a dash across engines, and the commonest schemes have the
+    plainest; a second one of that scheme within an engine takes the next that is free there.
     """
-    schemes: dict[str, int] = {}
+    # The yardstick itself is never drawn.
+    own = {e["name"]: _schemes(e) for e in engines if e["name"] != "exact"}
+    counted = Counter(s for found in own.values() for s in dict.fromkeys(found.values()))
+    schemes = {scheme: place for place, (scheme, _) in enumerate(counted.most_common())}
     given: dict[tuple[str, str], str] = {}
-    for engine in engines:
-        if engine["name"] == "exact":  # the yardstick itself is never drawn
-            continue
-        places = {}
-        for integrator in engine.get("integrators") or ():
-            scheme = integrator.get("scheme") or f"{engine['name']} {integrator['name']}"
-            places[integrator["name"]] = schemes.setdefault(scheme, len(schemes)) % len(DASHES)
+    for engine, found in own.items():
+        places = {name: schemes[scheme] % len(DASHES) for name, scheme in found.items()}
         first = {place: name for name, place in reversed(places.items())}
         free = [place for place in range(len(DASHES)) if place not in first] or [0]
         others = [name for name, place in places.items() if first[place] != name]
         places |= {name: free[k % len(free)] for k, name in enumerate(others)}
-        given |= {(engine["name"], name): DASHES[place] for name, place in places.items()}
+        given |= {(engine, name): DASHES[place] for name, place in places.items()}
     return given
+
+
+def _schemes(engine: Mapping[str, Any]) -> dict[str, str]:
+    """The scheme of each integrator; one that declares none has its own."""
+    return {
+        i["name"]: i.get("scheme") or f"{engine['name']} {i['name']}"
+        for i in engine.get("integrators") or ()
+    }
 
 
 @dataclass(frozen=True)
@@ -97,7 +104,8 @@ def lines_of(charts: Iterable[Chart], engines: list[Mapping[str, Any]]) -> list[
     order = {entry["name"]: place for place, entry in enumerate(engines)}
     names = sorted({engine for engine, _, _ in runs}, key=lambda n: (order.get(n, len(order)), n))
     colour, dash = colours(names), dashes(engines)
-    width = {name: min(4.0, 1.4 + 0.7 * k) for k, name in enumerate(reversed(names))}
+    narrower = 1.4 / max(3, len(names) - 1)
+    width = {name: round(1.8 + narrower * k, 2) for k, name in enumerate(reversed(names))}
     lines = []
     for engine, setup, name in sorted(runs, key=lambda run: names.index(run[0])):
         broad = width[engine] * (1.0 if setup == "physics" else 0.5)

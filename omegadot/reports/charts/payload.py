@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from omegadot.reference_impl.system import Array
 from omegadot.reports.charts.bounds import Limits, Residual, floor_of
+from omegadot.reports.charts.coinciding import Lane, lane_of, leaders, shown_first
 from omegadot.reports.charts.deviations import Chart, Series
 from omegadot.reports.charts.packing import CEILING_DECADE, FLOOR, FLOOR_DECADE, codes_of, rounded
 from omegadot.reports.charts.palette import Line, colours
@@ -47,34 +50,47 @@ def payload(
     lines: list[Line],
     limits: Mapping[str, Limits],
     sources: Sources,
+    failing: Mapping[str, Collection[Lane]] = MappingProxyType({}),
 ) -> tuple[dict[str, Any], Array]:
     """The script's description of every chart, by the scenario's place, and all codes in a row.
 
-    A run is ``[line, rank, times, start, count, bounds, source]``: its channels' codes follow
-    each other from `start`, `count` of each, in the order of the scenario's charts; bounds, a
-    channel each, are ``[fraction, bound, fraction, bound, ...]``.
+    A run is ``[line, rank, times, starts, count, bounds, source, leaders]``, with a channel each in
+    the order of the scenario's charts: where its codes start, `count` of them, which runs share
+    that are equal to a code; bounds, ``[fraction, bound, fraction, bound, ...]``; leaders, the
+    places of the first run that it coincides with.  first: the lines shown before any is selected.
+    failing: by scenario, the lines of which a gate fails.
     """
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
     clocks: dict[bytes, int] = {}
-    values: list[Array] = []
-    used = 0
+    codes = Codes()
     scenarios: dict[str, Any] = {}
     for name, chart in charts.items():
-        rank, entries = rank_of(chart), []
         own = limits.get(name, Limits())
-        for deviation in chart.deviations:
-            clock = clocks.setdefault(deviation.time.tobytes(), len(clocks))
-            line = places[deviation.engine, deviation.setup, deviation.integrator]
-            count = len(deviation.time)
-            knobs = rank[deviation.timestep, deviation.accuracy]
-            bounds, source = _bounds_drawn(own, deviation, chart), sources.number(vars(deviation))
-            entries.append([line, knobs, clock, used, count, bounds, source])
-            for channel in chart.units:
-                values.append(_drawn(deviation, channel))
-                used += count
+        drawn = [[drawn_values(run, c) for run in chart.deviations] for c in chart.units]
+        axes = [_axis_of(chart, c, own, d) for c, d in zip(chart.units, drawn, strict=True)]
+        led = [
+            leaders(chart.deviations, found, axis["high"] - axis["low"], axis["resolvable"])
+            for axis, found in zip(axes, drawn, strict=True)
+        ]
+        starts = [codes.keep(found, lead) for found, lead in zip(drawn, led, strict=True)]
+        rank = rank_of(chart)
+        entries = [
+            [
+                places[lane_of(run)],
+                rank[run.timestep, run.accuracy],
+                clocks.setdefault(run.time.tobytes(), len(clocks)),
+                [own_starts[k] for own_starts in starts],
+                len(run.time),
+                _bounds_drawn(own, run, chart),
+                sources.number(vars(run)),
+                [own_led[k] for own_led in led],
+            ]
+            for k, run in enumerate(chart.deviations)
+        ]
         scenarios[name] = {
-            "charts": [_axis_of(chart, channel, own) for channel in chart.units],
+            "charts": axes,
             "deviations": entries,
+            "first": sorted(places[lane] for lane in shown_first(chart, failing.get(name, ()))),
             "steps": _captions(rank),
             "sweeps": sweep_payload(sweeps.get(name, []), places, sources, floor_of(own)),
         }
@@ -85,7 +101,34 @@ def payload(
         "times": [[rounded(t, 6) for t in np.frombuffer(clock).tolist()] for clock in clocks],
         "scenarios": scenarios,
     }
-    return description, codes_of(np.concatenate([np.empty(0), *values]))
+    return description, np.concatenate(codes.parts)
+
+
+@dataclass
+class Codes:
+    """The codes of all charts in a row. parts: those kept so far; used: how many these are."""
+
+    parts: list[Array] = field(default_factory=lambda: [np.empty(0, np.uint16)])
+    used: int = 0
+
+    def keep(self, drawn: Sequence[Array], led: Sequence[int]) -> list[int]:
+        """Where the codes of each run of a chart start: one that is equal to its leader's to a
+        code, a thousandth, has the place of that.
+        """
+        if not drawn:
+            return []
+        ends = np.cumsum([len(values) for values in drawn])[:-1]
+        coded = np.split(codes_of(np.concatenate(drawn)), ends)
+        starts: list[int] = []
+        for place, (codes, leader) in enumerate(zip(coded, led, strict=True)):
+            difference = codes.astype(int) - coded[leader]
+            if leader < place and np.all(np.abs(difference) <= 1):
+                starts.append(starts[leader])
+                continue
+            starts.append(self.used)
+            self.parts.append(codes)
+            self.used += len(codes)
+        return starts
 
 
 def _bounds_drawn(limits: Limits, deviation: Series, chart: Chart) -> list[list[float | None]]:
@@ -96,20 +139,20 @@ def _bounds_drawn(limits: Limits, deviation: Series, chart: Chart) -> list[list[
     ]
 
 
-def _drawn(deviation: Series, channel: str) -> Array:
+def drawn_values(deviation: Series, channel: str) -> Array:
     """The errors as drawn: without the start, which is given and so has no error."""
     values = deviation.values[channel]
     start = (deviation.time == 0.0) & (values <= FLOOR)
     return np.where(start, np.nan, values)
 
 
-def _axis_of(chart: Chart, channel: str, limits: Limits) -> dict[str, Any]:
+def _axis_of(chart: Chart, channel: str, limits: Limits, drawn: Sequence[Array]) -> dict[str, Any]:
     """Decades that hold the errors of every step size, so that a change of step moves no axis.
 
     They hold the bounds and the floor too: what judges an error must be visible.
     """
     unit = chart.units[channel]
-    values = np.concatenate([_drawn(deviation, channel) for deviation in chart.deviations])
+    values = np.concatenate(drawn)
     floor = limits.floor(channel, unit)
     seen = [bound for c in chart.deviations for _, bound in limits.bound(c, channel, unit)]
     known = np.append(values[~np.isnan(values)], seen + ([] if floor is None else [floor]))

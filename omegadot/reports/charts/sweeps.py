@@ -11,6 +11,7 @@ import numpy as np
 import polars as pl
 
 from omegadot.reference_impl.system import Array
+from omegadot.reports.charts.coinciding import sweep_leaders
 from omegadot.reports.charts.packing import CEILING_DECADE, FLOOR, rounded
 from omegadot.reports.summary.provenance import Sources
 
@@ -130,23 +131,31 @@ def sweep_payload(
     sources: Sources,
     floor: float = 0.0,
 ) -> dict[str, Any]:
-    """What the script draws: ``[line, [[h, error, cost, source], ...]]`` an integrator, guides,
-    axis.
+    """What the script draws: ``[line, [[h, error, cost, source], ...], leader]`` an integrator,
+    guides, axis.
 
+    leader: the place of the first with the same errors over the step.
     floor: rad, below which attitude errors cannot be distinguished; 0 where it is unknown.
     """
-    lines = [
-        [places[lane], [_drawn(sweep, point, sources) for point in sweep.points]]
-        for sweep in sweeps
-        if (lane := (sweep.engine, sweep.setup, sweep.integrator)) in places
-    ]
+    drawn = [s for s in sweeps if (s.engine, s.setup, s.integrator) in places]
     errors = [p.error for sweep in sweeps for p in sweep.points if p.error is not None]
+    axis = decades(np.array(errors + ([floor] if floor else [])))
+    by_step = [{p.timestep: p.error for p in sweep.points} for sweep in drawn]
+    led = sweep_leaders(by_step, axis["high"] - axis["low"])
+    lines = [
+        [
+            places[sweep.engine, sweep.setup, sweep.integrator],
+            [_drawn(sweep, point, sources) for point in sweep.points],
+            leader,
+        ]
+        for sweep, leader in zip(drawn, led, strict=True)
+    ]
     return {
         "lines": lines,
         "guides": [[rounded(value) for value in guide] for guide in guides(sweeps)],
         "rounding": [[step, rounded(bound)] for step, bound in rounding(sweeps)],
         "resolvable": rounded(floor) if floor else None,
-        **decades(np.array(errors + ([floor] if floor else []))),
+        **axis,
     }
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from omegadot.reports.record.run_json import impossible_bodies
+from omegadot.reports.summary.headline import step_notes
 from omegadot.reports.text.numbers import grouped, listed, plain, quantity, times
 
 Row = Mapping[str, Any]
@@ -142,6 +143,7 @@ def notes(choice: Row) -> Iterator[str]:
             yield f"{engine['name']} {engine['version']} is excluded: {clause}."
         if engine["note"] and not engine["refused"]:
             yield f"{engine['name']} {engine['version']}: {engine['note']}."
+    yield from (f"{note}." for note in step_notes(choice["engines"]))
     for death in choice["worker_deaths"]:
         yield f"{death['engine']}: a worker died, {death['how']}"
     yield from impossible_bodies(choice["scenarios"])

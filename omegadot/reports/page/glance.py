@@ -16,8 +16,8 @@ from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import YARDSTICKS, Cell, Column, Summary, worst
 from omegadot.reports.text.numbers import grouped, knob, short, times
 
-# A cell: the value, and in smaller letters its details.
-Detailed = tuple[str, str]
+# A cell: the value, its details, which may be folded away, and what stands beside it in any case.
+Detailed = tuple[str, str] | tuple[str, str, str]
 
 
 def glances(summary: Summary, metrics: pl.DataFrame, sources: Sources) -> list[dict[str, Any]]:
@@ -77,7 +77,7 @@ def _spread(figures: list[Figure]) -> Detailed:
     settings = (largest.integrator, knob(largest.timestep, largest.accuracy), largest.scenario)
     run = ", ".join(filter(None, settings))
     details = f"usually {usual}; largest {short(largest.value)} rad ({run})"
-    return f"{middle} rad", details
+    return f"{middle} rad", details, usual or ""
 
 
 def _error_source(own: pl.DataFrame) -> Detailed:

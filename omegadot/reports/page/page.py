@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import Any
 
 import polars as pl
+from markupsafe import Markup
 
 from omegadot.reports.charts.chart_library import packed_library
 from omegadot.reports.charts.deviations import POINTS, chart_deviations
@@ -16,14 +17,14 @@ from omegadot.reports.charts.payload import step_choices
 from omegadot.reports.choice.page import Section
 from omegadot.reports.page.glance import glances
 from omegadot.reports.page.glossary import INTRODUCTION, TERMS
-from omegadot.reports.page.sections import drawings, measured_in, sections_of
+from omegadot.reports.page.sections import drawings, failing_lanes, measured_in, sections_of
 from omegadot.reports.page.templating import asset, environment, script
 from omegadot.reports.page.view_3d.view import view_section
 from omegadot.reports.page.why import order_table, scheme_table
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
-from omegadot.reports.summary.headline import headline, remarks, truth
+from omegadot.reports.summary.headline import headline, remarks, step_notes, truth
 from omegadot.reports.summary.provenance import Sources, command_of, provenance_payload, sources_for
 from omegadot.reports.summary.summary import STATUSES, summarise
 
@@ -51,12 +52,15 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
     lines = lines_of(charts.values(), record.run["engines"])
     anchors = _anchors(summary.scenarios)
     measured = measured_in(record.metrics)
-    sections = [*sections_of(record, summary, charts, anchors, sources, measured)]
-    description, codes = drawings(measured, charts, lines, anchors, sources)
+    failing = failing_lanes(record.metrics)
+    description, codes = drawings(measured, charts, lines, anchors, sources, failing)
+    drawn = description["scenarios"]
+    sections = [*sections_of(record, summary, charts, anchors, sources, measured, drawn)]
     judged = _judged(record.metrics, sources)
     schemes, orders = scheme_table(record, sources), order_table(record, sources)
     engines = glances(summary, record.metrics, sources)
     cards = matrix.cards(summary, sources, anchors)
+    styles = ["report.css", "scenarios.css", "view.css"] + (["plot.css"] if choice else [])
     # Last, when every table and chart has named its sources.
     origins = provenance_payload(record.run, sources, anchors) | {"cards": cards}
     template = environment().get_template("report.html.j2")
@@ -72,11 +76,13 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         numbers=matrix.NUMBERS,
         anchors=anchors,
         glances=engines,
+        step_notes=step_notes(record.run["engines"]),
         judged=judged,
         schemes=schemes,
         orders=orders,
         clusters=[(sentence(c), extent(c)) for c in clusters_over_scenarios(record.run)],
         sections=sections,
+        opened=_opened(sections),
         lines=lines,
         line_groups=[(engine, list(own)) for engine, own in groupby(enumerate(lines), _engine_of)],
         choices=step_choices(charts.values()),
@@ -85,7 +91,7 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         points=POINTS,
         glossary=TERMS,
         glossary_introduction=INTRODUCTION,
-        css=asset("report.css") + asset("view.css") + (asset("plot.css") if choice else ""),
+        css=Markup("").join(asset(name) for name in styles) + line_styles(lines),
         view=view_section(record, charts, lines, anchors),
         js=script(),
         plotly=library.result() if charts else "",
@@ -120,6 +126,25 @@ def _anchors(names: tuple[str, ...]) -> dict[str, str]:
         slug = "scenario-" + (re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-") or str(place))
         anchors[name] = slug if slug not in anchors.values() else f"{slug}-{place}"
     return anchors
+
+
+def _opened(sections: list[dict[str, Any]]) -> str:
+    """The address of the scenario that is shown first: one with the worst verdict."""
+    worst = min(sections, key=lambda s: STATUSES.index(s["status"]), default={"anchor": ""})
+    return str(worst["anchor"])
+
+
+def line_styles(lines: list[Line]) -> Markup:
+    """A class a line, `n` and its number: on paper colours are those of the light."""
+    pairs = list(dict.fromkeys(line.colour for line in lines))
+    light, dark = ("".join(f"--c{k}:{p[n]};" for k, p in enumerate(pairs)) for n in (0, 1))
+    looks = [
+        f".n{k}{{stroke:var(--c{pairs.index(line.colour)});stroke-width:{line.width}px"
+        + (f";stroke-dasharray:{line.dash}}}" if line.dash else "}")
+        for k, line in enumerate(lines)
+    ]
+    screen = f"@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}"
+    return Markup("\n".join([f":root{{{light}}}", screen, *looks]))
 
 
 def _engine_of(numbered: tuple[int, Line]) -> str:

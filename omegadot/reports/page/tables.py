@@ -18,6 +18,8 @@ from omegadot.reports.text.numbers import engine_name, knob, short
 
 # One value an engine, whatever it is stepped with; the others are one value a run.
 ENGINE_GATES = ("model", "equation")
+# Of the exact solution, and so one value a scenario.
+FLOOR_METRIC = "resolvable_floor"
 _PLAIN_NUMBERS = ("scheme", "cost")
 _ENGINE = ["engine", "engine_version", "setup"]
 _RUN = [*_ENGINE, "integrator", "timestep", "accuracy"]
@@ -76,7 +78,8 @@ def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]], sources
     """What each run came to, one row a run, with its verdict and the reason of it."""
     # A match stands under the channel that is farthest off; here it has a column of its own.
     whole = pl.when(pl.col("metric") == "match").then(pl.lit("")).otherwise(pl.col("channel"))
-    own = metrics.filter(~pl.col("gate").is_in(ENGINE_GATES)).with_columns(channel=whole)
+    of_runs = ~pl.col("gate").is_in(ENGINE_GATES) & (pl.col("metric") != FLOOR_METRIC)
+    own = metrics.filter(of_runs).with_columns(channel=whole)
     table = _pivot(own, _RUN, run_heads, sources)
     left = {row.heads: row for row in table.rows}
     blank = (EMPTY,) * len(table.columns)
@@ -92,6 +95,15 @@ def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]], sources
     rows += [replace(row, values=(EMPTY, *row.values, EMPTY)) for row in left.values()]
     groups = (("outcome", 1), *table.groups, ("reason", 1))
     return Table(("engine", "run"), groups, ("verdict", *table.columns, "why"), tuple(rows))
+
+
+def floors_text(metrics: pl.DataFrame) -> str:
+    """The floors of a scenario, channel by channel; empty where none is known."""
+    rows = metrics.filter(pl.col("metric") == FLOOR_METRIC).select("channel", "value", "unit")
+    return ", ".join(
+        f"{channel_name(channel)} {short(value)} {unit_text(unit)}".rstrip()
+        for channel, value, unit in rows.iter_rows()
+    )
 
 
 def deviation_table(chart: Chart, sources: Sources) -> Table:

@@ -18,7 +18,7 @@ from omegadot.reports.text.numbers import knob, short
 # One idea a file; later files use what earlier ones define.
 SCRIPTS = (
     *("unpack", "copying", "cards", "tables"),
-    *("looks", "deviations", "sweeps", "equation", "linked", "report"),
+    *("looks", "lines", "deviations", "sweeps", "equation", "linked", "report", "scenarios"),
 )
 
 
@@ -46,7 +46,7 @@ def table_body(table: Table) -> Markup:
             else f"<td>{_cell(value.text)}"
             for value in row.values
         ]
-        lines.append(f"<tr{source}>{''.join(heads)}{''.join(cells)}</tr>\n")
+        lines.append(f"<tr{source}>{''.join(heads)}{''.join(cells)}\n")
     return Markup("".join(lines))
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from typing import Any
+
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.summary import YARDSTICKS, Cell, Summary
 from omegadot.reports.text.numbers import first, knob, listed, quantity, times
@@ -27,6 +30,16 @@ def truth(summary: Summary) -> list[str]:
     if not kinds:
         return []
     return [f"Exact solution: {listed(kinds)} of {times(len(summary.scenarios), 'scenario')}."]
+
+
+def step_notes(engines: Iterable[Mapping[str, Any]]) -> list[str]:
+    """What the times of an engine are those of, where all its integrators have one note."""
+    found = []
+    for engine in engines:
+        kinds = {integrator.get("note") for integrator in engine.get("integrators") or ()}
+        if engine["name"] not in YARDSTICKS and len(kinds) == 1 and (note := kinds.pop()):
+            found.append(f"{engine['name']}: a step is {note}")
+    return found
 
 
 def _judged_engines(summary: Summary) -> dict[str, list[Cell]]:

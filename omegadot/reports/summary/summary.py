@@ -6,7 +6,7 @@ Pure functions: the terminal's table and the page show the same summary.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -124,15 +124,17 @@ def summarise(record: Record) -> Summary:
     """The matrix of scenarios and engines, the counts, and what did not run."""
     tasks = record.run["tasks"]
     singles = {e["name"] for e in record.run["engines"] if e.get("precision") == "float32"}
-    columns = _columns(tasks, singles)
+    failures = record.metrics.filter(pl.col("verdict") == "fail")
+    failed = set(failures.select("scenario", "engine", "engine_version", "setup").rows())
+    failing = {key[1:] for key in failed}
+    failing |= {column_of(task) for task in tasks if task_status(task) == "fail"}
+    columns = _columns(tasks, singles, failing)
     named = [entry["name"] for entry in record.run["scenarios"]]
     scenarios = tuple(dict.fromkeys([*named, *(task["scenario"] for task in tasks)]))
     statuses: dict[Key, list[str]] = {}
     for task in tasks:
         statuses.setdefault((task["scenario"], *column_of(task)), []).append(task_status(task))
     figures = figures_of(record.metrics)
-    failures = record.metrics.filter(pl.col("verdict") == "fail")
-    failed = set(failures.select("scenario", "engine", "engine_version", "setup").rows())
     cells = {}
     for scenario, column in product(scenarios, columns):
         key = (scenario, column.engine, column.version, column.setup)
@@ -178,10 +180,13 @@ def column_of(task: Mapping[str, Any]) -> tuple[str, str, str]:
     return task["engine"], task.get("engine_version") or "", task.get("setup") or "physics"
 
 
-def _columns(tasks: Iterable[Mapping[str, Any]], singles: set[str]) -> tuple[Column, ...]:
-    # The engines stand first: they are what the reader came for, and a phone shows two columns.
+def _columns(
+    tasks: Iterable[Mapping[str, Any]], singles: set[str], failing: Collection[tuple[str, ...]]
+) -> tuple[Column, ...]:
+    # The engines stand first, those that fail before the others: of twenty a screen shows some.
     keys = sorted(
-        dict.fromkeys(column_of(task) for task in tasks), key=lambda k: k[0] in YARDSTICKS
+        dict.fromkeys(column_of(task) for task in tasks),
+        key=lambda k: (k[0] in YARDSTICKS, k not in failing),
     )
     columns = []
     for engine, version, setup in keys:

@@ -1,17 +1,11 @@
 // The error along the run: one line a run, and its round-off bound.
-const step = element("step");
-// The rank shown of a scenario: a scenario with fewer steps shows its coarsest.
-const rankIn = (scenario) => Math.min(Number(step?.value ?? 0), scenario.steps.length - 1);
-const deviationsShown = (scenario) => scenario.deviations
-  .filter((c) => c[1] === rankIn(scenario) && !hidden.has(c[0])).sort((a, b) => a[0] - b[0]);
-
 function deviationTraces({ data, codes }, scenario, place) {
   const axis = scenario.charts[place];
-  return deviationsShown(scenario).map(([line, , clock, start, count, , source]) => {
-    const look = data.lines[line], from = start + place * count, own = ownColour(look.colour);
+  return runsShown(scenario, place).map((group) => {
+    const [line, , clock, starts, count] = group[0], look = data.lines[line], from = starts[place], own = ownColour(look.colour);
     const ownCodes = codes.subarray(from, from + count);
     return {
-      type: "scatter", mode: count > 1 ? "lines" : "markers", name: look.name, meta: { line, source },
+      type: "scatter", mode: count > 1 ? "lines" : "markers", name: briefOf(group, data), meta: { lines: group.map((run) => run[0]), group: group.map((run) => run[6]) },
       x: data.times[clock], y: Array.from(ownCodes, (code) => value(code, data)),
       text: Array.from(ownCodes, (code) => code === 0
         ? `at or below 1e${data.floor}` : value(code, data)?.toExponential(2) + unitText(axis.unit)),
@@ -25,7 +19,7 @@ function deviationTraces({ data, codes }, scenario, place) {
 // The bounds of the runs shown, from the smallest to the largest: a staircase, each stair up to the
 // fraction of the run that it holds for.
 function boundTraces({ data }, scenario, place) {
-  const known = deviationsShown(scenario).filter((c) => c[5][place].length);
+  const known = shownAt(scenario).filter((c) => c[5][place].length);
   if (!known.length) return [];
   const end = Math.max(...known.map((c) => data.times[c[2]].at(-1)));
   const bounds = known.map((c) => c[5][place]);

@@ -7,8 +7,9 @@ function equationScale(rows) {
   return { low, high, zero, lane: low - 0.6 };
 }
 
-// An engine goes when all its lines are switched off.
+// An engine goes when lines are selected and none of its own is.
 function engineShown(name, data) {
+  if (selection?.value !== "selected") return true;
   const own = data.lines.map((look, k) => (look.engine === name ? k : -1)).filter((k) => k >= 0);
   return !own.length || own.some((line) => !hidden.has(line));
 }

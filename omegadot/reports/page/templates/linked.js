@@ -36,8 +36,7 @@ function resetZoom(section, chart) {
   const charts = chart.dataset.kind ? [chart] : timeCharts(section);
   if (!chart.dataset.kind) section.range = null;
   for (const one of charts) one.zoomed = one.zoomedAcross = null;
-  section.dirty = true;
-  draw(section);
+  want(charts);
 }
 
 function ruleOf(chart) {
@@ -68,11 +67,11 @@ function timeUnder(chart, event) {
 
 // The same run at the same sample in every chart of the scenario.
 function hoverEverywhere(section, chart, point) {
-  const line = point.data.meta?.line;
+  const line = point.data.meta?.lines?.[0];
   if (line === undefined || chart.dataset.kind) return;
   showTime(section, point.x);
   for (const other of timeCharts(section).filter((c) => c !== chart)) {
-    const curve = other.data.findIndex((trace) => trace.meta?.line === line);
+    const curve = other.data.findIndex((trace) => trace.meta?.lines?.includes(line));
     if (curve >= 0 && other.data[curve].y[point.pointNumber] !== null) hoverAt(other, curve, point.pointNumber);
     else Plotly.Fx.unhover(other);
   }
@@ -90,10 +89,10 @@ const pointText = (chart, trace, k) => {
 };
 
 async function pointCard(section, chart, trace, k) {
-  const number = trace.meta?.sources?.[k] ?? trace.meta?.source;
-  if (number === undefined) return;
+  const { sources, group } = trace.meta ?? {}, numbers = sources ? [sources[k]] : group;
+  if (!numbers) return;
   const origins = await loadOrigins(), title = chart.closest("figure").querySelector("b").textContent;
-  openCard(origins, nameOf(sourceOf(origins, number)), section.node.id, [[`(${title})`, pointText(chart, trace, k), number]]);
+  openCard(origins, numbers.map((n) => nameOf(sourceOf(origins, n))).join(" = "), section.node.id, numbers.map((n) => [`(${title})`, pointText(chart, trace, k), n]));
 }
 
 // Arrow keys walk: along a line, and from line to line. Enter opens the card of the point.

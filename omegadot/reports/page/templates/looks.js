@@ -10,7 +10,6 @@ const ownColour = ([light, night]) => (dark.matches && !printing ? night : light
 const dashOf = (look) => look.dash.replaceAll(" ", "px,") + (look.dash && "px") || "solid";
 const unitText = (unit) => (unit === "1" ? "" : ` ${unit}`);
 const settings = { displayModeBar: false, responsive: true, doubleClick: false };
-const hidden = new Set();
 
 function value(code, data) {
   if (code === 65535) return null;

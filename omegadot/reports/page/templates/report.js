@@ -1,4 +1,7 @@
-// Charts are drawn when they come near; one legend and one step act on all of them.
+// Charts are pictures at first. When the page comes to rest those in view become interactive, one
+// after the other, so that scrolling is never held up.
+let current = null; // the scenario shown: its node, its charts, the time that is zoomed to
+
 function parts(section, chart, loaded, scenario) {
   const kind = chart.dataset.kind;
   if (kind === "equation") return [equationTraces(loaded, scenario), equationLayout(scenario, loaded.data)];
@@ -7,68 +10,55 @@ function parts(section, chart, loaded, scenario) {
   return [[...bounds, ...deviationTraces(loaded, scenario, place)], deviationLayout(scenario, place, loaded.data, bounds)];
 }
 
-async function draw(section) {
-  if (!section.dirty) return;
-  section.dirty = false;
+async function draw(section, chart) {
+  const loaded = await load(), scenario = loaded.data.scenarios[section.node.id];
+  if (!chart.isConnected) return;
+  if (!section.settled) settleBoxes(scenario);
+  section.settled = true;
+  const [traces, found] = parts(section, chart, loaded, scenario);
+  chart.classList.add("live");
+  nameLines(chart, loaded, scenario);
+  await quietly(() => Plotly.react(chart, traces, zoomedLayout(section, chart, found), settings));
+  link(section, chart);
+  root.dataset.drawn = Number(root.dataset.drawn || 0) + 1;
+}
+
+let working = false;
+const next = () => current?.charts.find((one) => one.near) ?? current?.charts.find((one) => one.wanted);
+async function work() {
+  if (working) return;
+  working = true;
   try {
-    const loaded = await load(), scenario = loaded.data.scenarios[section.node.id];
-    const caption = scenario.steps[rankIn(scenario)];
-    for (const span of section.node.querySelectorAll(".at-step")) span.textContent = ` · ${caption}`;
-    for (const chart of section.charts) {
-      const [traces, found] = parts(section, chart, loaded, scenario);
-      await quietly(() => Plotly.react(chart, traces, zoomedLayout(section, chart, found), settings));
-      link(section, chart);
+    for (let chart; (chart = next()); ) {
+      await rest();
+      if (chart !== next()) continue;
+      chart.wanted = chart.near = false;
+      await draw(current, chart);
     }
-    root.dataset.drawn = Number(root.dataset.drawn || 0) + section.charts.length;
   } catch (error) {
     console.error(error);
     element("no-charts").hidden = false;
-    element("no-charts").textContent = `The charts cannot be drawn in this browser (${error.message}); every number is in the tables.`;
+    element("no-charts").textContent = `The interactive charts cannot be drawn in this browser (${error.message}); the pictures show the finest step, and every number is in the tables.`;
   }
+  working = false;
 }
 
-const sections = [...document.querySelectorAll(".scenario")]
-  .map((node) => ({ node, charts: [...node.querySelectorAll(".chart")], dirty: true, near: false, range: null }))
-  .filter((section) => section.charts.length);
-
-const redraw = () => sections.forEach((section) => {
-  section.dirty = true;
-  if (section.near) draw(section);
-});
-
-// One legend for the whole page: a box for each line, and one for all of an engine's.
-function legend(group) {
-  const all = group.querySelector(".all"), ones = [...group.querySelectorAll(".one")];
-  const settle = () => {
-    const on = ones.filter((box) => box.checked).length;
-    all.checked = on > 0;
-    all.indeterminate = on > 0 && on < ones.length;
-    for (const box of ones) box.checked ? hidden.delete(Number(box.value)) : hidden.add(Number(box.value));
-    redraw();
-  };
-  all.addEventListener("change", () => { ones.forEach((box) => { box.checked = all.checked; }); settle(); });
-  ones.forEach((box) => box.addEventListener("change", settle));
-  if (ones.some((box) => !box.checked)) settle();
+function want(charts) {
+  for (const chart of charts) chart.wanted = true;
+  work();
 }
 
-if (sections.length) {
-  const observer = new IntersectionObserver((entries) => {
-    for (const entry of entries) {
-      const section = sections.find((s) => s.node === entry.target);
-      section.near = entry.isIntersecting;
-      if (section.near) draw(section);
-    }
-  }, { rootMargin: "400px 0px" });
-  sections.forEach((section) => observer.observe(section.node));
-  document.querySelectorAll("fieldset[data-engine]").forEach(legend);
-  step.addEventListener("change", redraw);
-  dark.addEventListener("change", redraw);
-  element("lines").open = !narrow.matches;
-  const controls = document.querySelector(".controls");
-  new ResizeObserver(() => root.style.setProperty("--covered", `${controls.offsetHeight}px`)).observe(controls);
-  // Printing does not wait: what it needs is unpacked as soon as the page is idle.
-  const print = (on) => { printing = on; root.classList.toggle("printing", on); };
-  addEventListener("beforeprint", () => { print(true); sections.forEach((s) => { s.dirty = true; draw(s); }); });
-  addEventListener("afterprint", () => { print(false); redraw(); });
-  addEventListener("load", () => (window.requestIdleCallback ?? setTimeout)(load));
+// What was only passed by is not drawn.
+const nearby = new IntersectionObserver((entries) => {
+  for (const { target, isIntersecting } of entries) target.near = isIntersecting && !target.data;
+  work();
+}, { rootMargin: "100px 0px" });
+
+// Another step, other lines, other colours: all charts of the scenario follow.
+async function redraw() {
+  if (!current?.charts.length) return;
+  const section = current, loaded = await load(), scenario = loaded.data.scenarios[section.node.id];
+  for (const span of section.node.querySelectorAll(".at-step")) span.textContent = ` · ${scenario.steps[rankIn(scenario)]}`;
+  settleBoxes(scenario);
+  want(section.charts);
 }

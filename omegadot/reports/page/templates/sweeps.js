@@ -1,11 +1,10 @@
 // Error over the step and over the cost: one point a run, one line an integrator.
 function sweepTraces({ data }, scenario, kind) {
   const sweeps = scenario.sweeps, over = kind === "cost" ? (point) => point[2] : (point) => point[0];
-  const shown = sweeps.lines.filter(([line]) => !hidden.has(line)).sort((a, b) => a[0] - b[0]);
-  const lines = shown.map(([line, all]) => {
-    const look = data.lines[line], points = all.filter((p) => over(p) && p[1] !== null), own = ownColour(look.colour);
+  const lines = sweepsShown(scenario, kind).map((group) => {
+    const [line, all] = group[0], look = data.lines[line], points = all.filter((p) => over(p) && p[1] !== null), own = ownColour(look.colour);
     return {
-      type: "scatter", mode: "lines+markers", name: look.name, cliponaxis: false, meta: { line, sources: points.map((p) => p[3]) },
+      type: "scatter", mode: "lines+markers", name: briefOf(group, data), cliponaxis: false, meta: { lines: [line], sources: points.map((p) => p[3]) },
       x: points.map(over), y: points.map((p) => Math.max(p[1], 10 ** data.floor)),
       text: points.map((p) => `step ${p[0]} s: ${p[1] > 10 ** data.floor ? p[1].toExponential(2) : `at or below 1e${data.floor}`} rad`
         + (p[2] ? `<br>${p[2].toExponential(2)} s per simulated second` : "")),

@@ -132,12 +132,12 @@ if (box) {
   const beginOnce = () => {
     if (begun) return;
     begun = true;
-    begin().catch((error) => { console.error(error); element("view-description").textContent = `The bodies cannot be drawn in this browser (${error.message}).`; });
+    rest().then(begin).catch((error) => { console.error(error); element("view-description").textContent = `The bodies cannot be drawn in this browser (${error.message}).`; });
   };
   new IntersectionObserver((entries) => {
     show.visible = entries.at(-1).isIntersecting;
     if (show.visible) beginOnce();
     run();
   }, { rootMargin: "100px 0px" }).observe(box);
-  addEventListener("load", () => (window.requestIdleCallback ?? setTimeout)(beginOnce)); // for print
+  addEventListener("load", () => setTimeout(beginOnce, 300)); // for print
 }
