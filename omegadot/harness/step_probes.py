@@ -32,8 +32,8 @@ def probe_steps(
         how = {"integrator": integrator.name, "accuracy": finest}
         answer = driver.request(case, "first_steps", **how, **vars(probe))
         result.first_steps[integrator.name] = (probe, answer)
-        # A known scheme's run is the reference's, and an accuracy's depends on its tolerance.
-        again = integrator.scheme not in SCHEMES and integrator.knob != "accuracy"
+        # A known scheme's run is the reference's; steps of the integrator's own may be others.
+        again = integrator.scheme not in SCHEMES and integrator.knob == "timestep"
         for sweep, run in runs.items() if again else ():
             found = restart.restart_of(sweep)
             if found and run is not None and run.ok and len(run.result["time"]) == len(sweep.times):

@@ -148,7 +148,8 @@ def test_a_run_that_is_requested_again_is_the_same_or_fails() -> None:
             runs = judge_case(truth, case, result, {})
         rows = [row for run in runs for row in run.rows if row.metric in ("repeated", "reloaded")]
         found.append([row.verdict for row in rows])
-    assert found == [["pass", "pass"], ["fail", "fail"]]
+    # two runs alike, before another system and after it, show what is left of that alone
+    assert found == [["pass", "pass"], ["fail", "pass"]]
 
 
 def test_the_samples_of_accuracies_are_those_of_the_steps() -> None:

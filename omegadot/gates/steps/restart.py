@@ -66,10 +66,6 @@ def row(
         return Row(GATE, *start, "info", "not judged: the run blows up")
     if found.agree:
         return Row(GATE, *start, "pass")
-    if integrator.knob == "fixed-accuracy":
-        return Row(
-            GATE, *start, "info", "not judged: its steps are its own, and so is its accuracy"
-        )
     if not integrator.one_step:
         return Row(GATE, *start, "info", "steps use earlier ones, as is declared")
     if yardstick.is_stiff(sweep.timestep):
