@@ -53,7 +53,7 @@ OTHERS = tuple(
 def short_sweep(sweep: Sweep) -> Sweep:
     """The first samples of a sweep, of a few steps: as many as its own at most."""
     samples = -(-FEWEST_STEPS // sweep.every)
-    return Sweep(sweep.timestep, min(sweep.steps, samples * sweep.every), sweep.every)
+    return replace(sweep, steps=min(sweep.steps, samples * sweep.every))
 
 
 def request_again(
