@@ -16,7 +16,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.runs.repeats import How
 from omegadot.gates.states.equation import EvaluationStates
-from omegadot.gates.steps.vanishing_step import Probe
+from omegadot.gates.steps.probe import Probe
 from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import State, System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess

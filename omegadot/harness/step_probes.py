@@ -9,6 +9,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.steps import restart, vanishing_step
 from omegadot.gates.steps.accuracy import finest_of, tolerated_by
+from omegadot.gates.steps.probe import probe_of
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.reference_impl.schemes import SCHEMES
@@ -27,7 +28,7 @@ def probe_steps(
         runs = {s: result.runs.get((integrator.name, s.knob)) for s in sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue
-        probe = vanishing_step.probe_of(case.system, evaluation_states, eps)
+        probe = probe_of(case.system, evaluation_states, eps)
         finest = finest_of(integrator) if integrator.knob == "accuracy" else None
         how = {"integrator": integrator.name, "accuracy": finest}
         answer = driver.request(case, "first_steps", **how, **vars(probe))

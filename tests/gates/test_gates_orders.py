@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from omegadot.gates.errors.excess import excess_of
 from omegadot.gates.errors.orders import (
     LARGEST_RISE,
     NEAR_ROUNDING,
@@ -11,7 +12,6 @@ from omegadot.gates.errors.orders import (
     VANISHED,
     Errors,
     ObservedOrder,
-    excess_of,
     highest_order,
     is_whole,
     observed_order,
