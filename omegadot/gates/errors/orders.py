@@ -160,7 +160,23 @@ def _over(sweep: Iterable[Errors], horizon: float) -> tuple[ObservedOrder | None
     found = observed_order([h for h, _ in used], [error for _, error in used])
     if found is not None and not enough:
         found = replace(found, resolved=False)
+    elif found is not None and not found.resolved:
+        found = replace(found, rise=max(found.rise, _rise(sorted(points), found.value)))
     return found, enough, any(saturated for *_, saturated in points)
+
+
+def _rise(points: Sequence[Point], order: float) -> float:
+    """By how much an order may be rising from the finest error clear of rounding to the next.
+
+    Terms that nearly cancel at one step leave slopes that follow no power there. The next finer
+    error is close to rounding, and shows whether they rise again.
+    """
+    clear = next(n for n, (_, e, b, _) in enumerate(points) if e > CLEAR_OF_ROUNDING * b)
+    fine, coarse = points[max(clear - 1, 0)], points[clear]
+    if clear == 0 or fine[1] <= fine[2]:
+        return 0.0
+    most, shown = _slope_at_most(fine, coarse)
+    return most - order if shown > order + ORDER_TOLERANCE else 0.0
 
 
 def _jumps(sweep: Sequence[Errors]) -> bool:
@@ -196,8 +212,12 @@ def highest_order(sweep: Sequence[Errors]) -> float:
 
 
 def _highest(fine: Point, middle: Point, coarse: Point) -> float:
-    most, shown = [], []
-    for (h2, e2, b2, _), (h1, e1, b1, _) in ((fine, middle), (middle, coarse)):
-        most.append(np.log((e1 + b1) / (e2 - b2)) / np.log(h1 / h2))
-        shown.append(np.log(e1 / e2) / np.log(h1 / h2))
-    return float(max(most)) if shown[0] - shown[1] <= ORDER_TOLERANCE else np.inf
+    (one, first), (other, second) = _slope_at_most(fine, middle), _slope_at_most(middle, coarse)
+    return max(one, other) if first - second <= ORDER_TOLERANCE else np.inf
+
+
+def _slope_at_most(fine: Point, coarse: Point) -> tuple[float, float]:
+    """The slope between two errors above rounding: as far as rounding lets it be, and as seen."""
+    (h2, e2, b2, _), (h1, e1, b1, _) = fine, coarse
+    ratio = np.log(h1 / h2)
+    return float(np.log((e1 + b1) / (e2 - b2)) / ratio), float(np.log(e1 / e2) / ratio)
