@@ -15,8 +15,9 @@ from omegadot.gates.steps.scheme import comparison_keys
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.engines import Engines, outcome_of
-from omegadot.harness.judge import JudgedRun, judge_case
+from omegadot.harness.judge import JudgedRun
 from omegadot.harness.judge_engine import shared_rows
+from omegadot.harness.judge_runs import judge_case
 from omegadot.harness.outcome import (
     EngineCase,
     JudgedCase,

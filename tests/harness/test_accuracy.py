@@ -36,7 +36,8 @@ from omegadot.gates.states.equation import EvaluationStates, evaluation_states_o
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
 from omegadot.harness.in_process import driver_of
-from omegadot.harness.judge import JudgedRun, judge_case
+from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judge_runs import judge_case
 from omegadot.harness.random_cases import random_case
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
 from omegadot.harness.repeats import request_again
