@@ -16,7 +16,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.runs.repeats import How
 from omegadot.gates.states.equation import EvaluationStates
-from omegadot.gates.steps.vanishing_step import Probe
+from omegadot.gates.steps.probe import Probe
 from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import State, System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
@@ -36,7 +36,7 @@ class CaseResult:
     integrators: those that are run, as the engine declares them for this system.
     runs: by integrator and its step or accuracy.
     first_steps, restarts: of integrators whose scheme is unknown, what was requested and what came:
-    steps from several states, and the sample from which a run was restarted with the rest of it.
+    steps from several states, and the sample from which a run was restarted with some of its rest.
     alone, inverse_alone: forward and inverse dynamics of the first random state by itself.
     siblings: by what was changed in the system, the system that was loaded next, the states, and
     forward dynamics there.
@@ -52,7 +52,7 @@ class CaseResult:
     inverse: Answer = INTERRUPTED
     runs: dict[tuple[str, float], Answer] = field(default_factory=dict)
     first_steps: dict[str, tuple[Probe, Answer]] = field(default_factory=dict)
-    restarts: dict[tuple[str, float], tuple[int, Answer]] = field(default_factory=dict)
+    restarts: dict[tuple[str, float], tuple[int, Sweep, Answer]] = field(default_factory=dict)
     alone: Answer = LACKING
     inverse_alone: Answer = LACKING
     siblings: dict[str, tuple[System, State, Answer]] = field(default_factory=dict)

@@ -15,6 +15,7 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Sweep
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
+from omegadot.harness.judge import is_finite
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
@@ -24,6 +25,7 @@ SOLVABLE = 1.0  # rad a step
 LOST = 1e-3  # of omega
 ROUNDINGS = 2**12  # of a run of a few steps
 NO_ROOT = "not judged: at so long a step omega solves no equation, or another, and keeps its size"
+OVERFLOWS = "not judged: the scheme itself blows up at so large a step, where the engine raises {}"
 NO_STEP = "not judged: at steps of {turn:.2g} rad the engine raises {reason}, and not at finer ones"
 
 
@@ -52,9 +54,12 @@ def reason_without_a_solution(
 ) -> str:
     """Why a run that raises is not judged: it steps more than a radian, and no finer one raises.
 
-    "" where it is judged. A known scheme has its solutions.
+    "" where it is judged. A known scheme has its solutions, and may be raised at if it overflows.
     """
     turn, answer = _turn_of_a_step(truth, sweep), dict(answers)[sweep]
+    own = truth.companion(integrator, sweep)
+    if answer.outcome == "raised" and own is not None and not is_finite(own.state):
+        return OVERFLOWS.format(answer.reason)
     finer = [one.ok for other, one in answers if other.timestep < sweep.timestep]
     raised = answer.outcome == "raised" and bool(finer) and all(finer)
     if not raised or integrator.scheme is not None or turn <= SOLVABLE:

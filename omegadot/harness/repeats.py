@@ -53,7 +53,7 @@ OTHERS = tuple(
 def short_sweep(sweep: Sweep) -> Sweep:
     """The first samples of a sweep, of a few steps: as many as its own at most."""
     samples = -(-FEWEST_STEPS // sweep.every)
-    return Sweep(sweep.timestep, min(sweep.steps, samples * sweep.every), sweep.every)
+    return replace(sweep, steps=min(sweep.steps, samples * sweep.every))
 
 
 def request_again(
@@ -61,24 +61,30 @@ def request_again(
 ) -> None:
     """Have the coarsest run of every integrator repeated, in two ways or three, into `result`.
 
+    Its first samples are, twice, as the first time differs from the run in its length. All of it is
+    where the steps are the integrator's own, for these may depend on the length; its first samples
+    are requested as well, to be compared with those after another system.
     Forward dynamics of systems that differ in one thing are requested. At the end another system is
     loaded and stepped, and then this one again; forward dynamics are requested then as well.
     """
-    sweeps = {i.name: _repeated(case, i) for i in result.integrators}
+    sweeps = {i.name: case.sweeps_of(i)[0] for i in result.integrators}
     runs = {name: result.runs.get((name, sweep.knob)) for name, sweep in sweeps.items()}
     steppers = [i for i in result.integrators if (run := runs[i.name]) is not None and run.ok]
     if not steppers:
         return
 
-    def replay(integrator: Integrator, how: How, initial: State) -> None:
+    def replay(integrator: Integrator, how: How, initial: State, whole: bool = False) -> None:
         name, sweep = integrator.name, sweeps[integrator.name]
-        result.again[name, sweep.knob, how] = driver.replay(case, name, sweep, initial)
+        requested = sweep if whole else short_sweep(sweep)
+        result.again[name, sweep.knob, how] = driver.replay(case, name, requested, initial)
 
     negated = replace(case.initial, orientation=-case.initial.orientation)
     # an unknown scheme may step a chart of its own, in which q and -q are different points
     known = {i.name for i in result.integrators if i.scheme in SCHEMES and i.knob == "timestep"}
-    for integrator in (*steppers, *steppers):  # the first differs from the run in its length
-        replay(integrator, "repeated", case.initial)
+    for integrator in steppers:
+        whole = integrator.knob != "timestep"
+        replay(integrator, "repeated", case.initial, whole)
+        replay(integrator, "short" if whole else "repeated", case.initial)
     for integrator in steppers:
         if integrator.name in known:
             replay(integrator, "negated", negated)
@@ -89,14 +95,6 @@ def request_again(
         result.reloaded = driver.request(case, "forward", states=evaluation_states.random)
     for integrator in steppers:
         replay(integrator, "reloaded", case.initial)
-
-
-def _repeated(case: Case, integrator: Integrator) -> Sweep:
-    """The coarsest run's first samples; all of them where the steps are the integrator's own, for
-    these may depend on the length of the run.
-    """
-    coarsest = case.sweeps_of(integrator)[0]
-    return short_sweep(coarsest) if integrator.knob == "timestep" else coarsest
 
 
 def _load_another(driver: Driver, case: Case, integrator: Integrator) -> bool:
@@ -112,14 +110,19 @@ def rows_again(
     truth: Truth, integrator: Integrator, sweep: Sweep, result: CaseResult, measured: MeasuredRun
 ) -> Iterator[Row]:
     """The rows of these answers, for the run that they repeat; none for other runs."""
-    state = State(**result.runs[integrator.name, sweep.knob].result["state"])
-    count = len((short_sweep(sweep) if integrator.knob == "timestep" else sweep).times)
+    first = result.runs[integrator.name, sweep.knob]
     for how in repeats.NOTES:
         answer = result.again.get((integrator.name, sweep.knob, how))
         if answer is None:
             continue
+        whole = integrator.knob != "timestep" and how == "repeated"
+        count = len((sweep if whole else short_sweep(sweep)).times)
+        before = first
+        if how == "reloaded":
+            before = result.again.get((integrator.name, sweep.knob, "short"), first)
         if answer.ok and len(answer.result["time"]) == count:
-            yield repeats.row(truth, measured, state, how, State(**answer.result["state"]))
+            state, again = (State(**one.result["state"]) for one in (before, answer))
+            yield repeats.row(truth, measured, state, how, again)
         elif answer.ok:
             yield repeats.refused(how, "it has another number of samples")
         elif answer.outcome == "raised":

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from functools import partial
 
 import numpy as np
 
+from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.states.equation import evaluation_states_of
 from omegadot.gates.steps.scheme import comparison_keys
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.engines import Engines, outcome_of
-from omegadot.harness.judge import JudgedRun, judge_case
+from omegadot.harness.judge import JudgedRun
 from omegadot.harness.judge_engine import shared_rows
+from omegadot.harness.judge_runs import judge_case
 from omegadot.harness.outcome import (
     EngineCase,
     JudgedCase,
@@ -40,16 +42,20 @@ class Runner:
         self.on_start: Callable[[], None] = lambda: None
         self.on_advance: Callable[[int], object] = lambda _: None
 
-    def _keys(self, case: Case) -> list[SchemeKey]:
-        """The reference's runs that this case's engines will be compared with."""
-        stepping = (engine for engine in self.engines.started if engine.name != "exact")
-        named = {
-            key
-            for engine in stepping
-            for integrator in engine.integrators
-            for key in comparison_keys(integrator, case.system)
-        }
-        return sorted(named, key=str)
+    def _declared(self, case: Case) -> list[SchemeKey]:
+        """The schemes that this case's engines declare, which their runs are held against."""
+        found = {scheme_key(integrator, case.system) for integrator in self._integrators()}
+        return sorted((key for key in found if key is not None), key=str)
+
+    def _compared(self, case: Case) -> list[SchemeKey]:
+        """The same, and for integrators that declare none every scheme, to name what they equal."""
+        found = {k for i in self._integrators() for k in comparison_keys(i, case.system)}
+        return sorted(found, key=str)
+
+    def _integrators(self) -> Iterator[Integrator]:
+        for engine in self.engines.started:
+            if engine.name != "exact":
+                yield from engine.integrators
 
     def _submit_companions(
         self,
@@ -121,10 +127,10 @@ class Runner:
             request_again(driver, case, evaluation_states, result)
         return result
 
-    def _submit_case(self, case: Case) -> PendingCase:
+    def _submit_case(self, case: Case, keys: list[SchemeKey]) -> PendingCase:
         exact = self.engines.drivers["exact"]
         truth = self.engines.submit("exact", lambda: case_truth(exact, case))
-        companions = self._submit_companions(case, truth.result, self._keys(case), case.sweeps)
+        companions = self._submit_companions(case, truth.result, keys, case.sweeps)
         pending = PendingCase(case, truth, companions)
         for engine in self.engines.started:
             call = partial(self._examine, engine, pending)
@@ -184,9 +190,33 @@ class Runner:
         return judged
 
     def run_case(self, case: Case) -> JudgedCase:
-        """One case by itself; the workers are started before and finished after by the caller."""
-        pending = self._submit_case(case)
+        """One case by itself; the workers are started before and finished after by the caller.
+
+        Runs whose scheme is not declared are judged, and compared with none: see `add_schemes`.
+        """
+        pending = self._submit_case(case, self._declared(case))
         return self._resolve(pending, self.judge(pending, {}))
+
+    def add_schemes(self, judged: JudgedCase) -> None:
+        """Have the reference step every scheme where a run fails that declares none.
+
+        A cause is sought in the difference from the nearest. No verdict depends on them, and they
+        take longer than all else.
+        """
+        case, truth = judged.case, judged.truth
+        failing = [
+            run.integrator
+            for engine in judged.engines
+            for run in engine.runs
+            if any(row.verdict == "fail" for row in run.rows)
+        ]
+        wanted = {key for one in failing for key in comparison_keys(one, case.system)}
+        if truth is not None:
+            keys = sorted(wanted - {key for key, _ in truth.companions}, key=str)
+            if keys:
+                call = self._submit_companions(case, lambda: truth, keys, case.sweeps)
+                found: Companions = outcome_of(call)
+                truth.companions.update(found)
 
     def execute(self) -> Outcome:
         """Run everything; Ctrl-C ends the workers and keeps what has come in."""
@@ -196,7 +226,7 @@ class Runner:
         try:
             self.engines.start()
             self.on_start()
-            pending = [self._submit_case(case) for case in self.request.cases]
+            pending = [self._submit_case(c, self._compared(c)) for c in self.request.cases]
             for case in pending:
                 judged.append(self.judge(case, {}))
             for index, case in enumerate(pending):

@@ -9,6 +9,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.steps import restart, vanishing_step
 from omegadot.gates.steps.accuracy import finest_of, tolerated_by
+from omegadot.gates.steps.probe import probe_of
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.reference_impl.schemes import SCHEMES
@@ -27,20 +28,20 @@ def probe_steps(
         runs = {s: result.runs.get((integrator.name, s.knob)) for s in sweeps}
         if not any(run is not None and run.ok for run in runs.values()):
             continue
-        probe = vanishing_step.probe_of(case.system, evaluation_states, eps)
+        probe = probe_of(case.system, evaluation_states, eps)
         finest = finest_of(integrator) if integrator.knob == "accuracy" else None
         how = {"integrator": integrator.name, "accuracy": finest}
         answer = driver.request(case, "first_steps", **how, **vars(probe))
         result.first_steps[integrator.name] = (probe, answer)
-        # A known scheme's run is the reference's, and an accuracy's depends on its tolerance.
-        again = integrator.scheme not in SCHEMES and integrator.knob != "accuracy"
+        # A known scheme's run is the reference's; steps of the integrator's own may be others.
+        again = integrator.scheme not in SCHEMES and integrator.knob == "timestep"
         for sweep, run in runs.items() if again else ():
-            found = restart.restart_of(sweep)
+            found = restart.restart_of(sweep, sweeps[0])
             if found and run is not None and run.ok and len(run.result["time"]) == len(sweep.times):
                 sample, left = found
                 start = State(**run.result["state"])[sample]
                 answer = driver.run(case, integrator.name, left, start)
-                result.restarts[integrator.name, sweep.timestep] = (sample, answer)
+                result.restarts[integrator.name, sweep.timestep] = (sample, left, answer)
 
 
 def rows_of_probes(
@@ -54,11 +55,11 @@ def rows_of_probes(
         stepped = State(**steps.result)
         known = integrator.scheme in SCHEMES
         found += vanishing_step.rows(own.system, probe, stepped, own.eps, tolerated, known)
-    sample, restarted = result.restarts.get((integrator.name, sweep.knob), (0, None))
+    sample, left, restarted = result.restarts.get((integrator.name, sweep.knob), (0, sweep, None))
     if restarted is not None and restarted.ok:
         state = State(**result.runs[integrator.name, sweep.knob].result["state"])
         rest = State(**restarted.result["state"])
-        if len(rest.angular_velocity) == len(sweep.times) - sample:
+        if len(rest.angular_velocity) == len(left.times):
             found.append(restart.row(truth, integrator, sweep, state, sample, rest))
         else:
             found.append(restart.refused("it has another number of samples"))

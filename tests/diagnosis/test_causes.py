@@ -19,7 +19,7 @@ from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_acceleration, random_states
-from omegadot.gates.steps.vanishing_step import DOUBLE, Probe
+from omegadot.gates.steps.probe import DOUBLE, Probe
 from omegadot.reference_impl.loads import damping_torque
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.schemes import SCHEMES

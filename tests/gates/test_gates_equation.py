@@ -231,3 +231,16 @@ def test_states_that_are_not_finite_are_left_to_others() -> None:
     assert reported_rows(FREE, states, np.full_like(reported, np.nan)) == []
     reported[5] *= 1.0 + 1e-9
     assert reported_rows(FREE, states, reported)[0].verdict == "fail"
+
+
+def test_where_squares_underflow_omega_dot_is_not_judged() -> None:
+    """Damping brings a body there; a residual is relative to the size of terms that are zero."""
+    damped = System(PIVOTED.bodies, Load(pivot=PIVOTED.load.pivot, damping=np.array(0.3)))
+    states = random_states(case(damped), 6, SEED)
+    states.angular_velocity[1] *= 1e-170 / norm(states.angular_velocity[1])
+    reported = forward_dynamics(damped, states).angular
+    reported[1] *= 1.0 + EPS
+    assert reported_rows(damped, states, reported)[0].verdict == "pass"
+    states.angular_velocity[2] = 0.0
+    reported[2] = 1e-30  # at rest nothing acts
+    assert reported_rows(damped, states, reported)[0].verdict == "fail"

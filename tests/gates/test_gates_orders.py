@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from omegadot.gates.errors.excess import excess_of
 from omegadot.gates.errors.orders import (
     LARGEST_RISE,
     NEAR_ROUNDING,
@@ -11,7 +12,6 @@ from omegadot.gates.errors.orders import (
     VANISHED,
     Errors,
     ObservedOrder,
-    excess_of,
     highest_order,
     is_whole,
     observed_order,
@@ -100,6 +100,21 @@ def test_errors_that_saturate_by_a_jump_show_that_they_do_not_shrink(
     assert seen is not None
     assert seen.resolved
     assert seen.value == pytest.approx(0.0 if jumps else 2.0, abs=0.05)
+
+
+def test_an_order_may_rise_again_in_what_is_close_to_rounding() -> None:
+    """Terms that cancel at one step leave 1.97 and 1.45, then 1.78 with the finest error near."""
+    parts = {0.04: 1.19, 0.02: 1.22, 0.01: 1.78, 0.005: 2.08}
+    sizes = {h: part * h**2 * SAMPLES for h, part in parts.items()}
+    near = np.full(65, 1.5e-5)
+    seen = order_of(over_time(sizes, near))
+    assert seen is not None
+    assert (round(seen.value, 2), seen.resolved) == (1.46, False)
+    assert seen.value + seen.rise > 2.0 - ORDER_TOLERANCE
+    for part in (7.12, 4.0):  # the error at 0.01 s stays, or falls no faster than before
+        stuck = order_of(over_time(sizes | {0.005: part * 0.005**2 * SAMPLES}, near))
+        assert stuck is not None
+        assert stuck.value + stuck.rise < 1.5
 
 
 def test_errors_that_are_hidden_say_by_what() -> None:

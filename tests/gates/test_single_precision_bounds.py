@@ -22,7 +22,8 @@ from omegadot.gates.runs import phase, trajectory
 from omegadot.gates.runs.exact import floors
 from omegadot.gates.states import equation, model
 from omegadot.gates.steps import vanishing_step
-from omegadot.gates.steps.vanishing_step import DOUBLE, SINGLE, Probe, ladder_of, probe_of
+from omegadot.gates.steps.limits import limits
+from omegadot.gates.steps.probe import DOUBLE, SINGLE, Probe, ladder_of, probe_of
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
@@ -179,10 +180,10 @@ def test_what_the_limit_leaves_open_is_little(eps: float, part: float, fault: fl
         ]
         return State(still[0], spin, still[1], still[2])
 
-    found = vanishing_step.limits(SYSTEM, probe, stepped(true.angular), eps)["omega"]
+    found = limits(SYSTEM, probe, stepped(true.angular), eps)["omega"]
     assert np.max(found.shares()) <= 1.0
     assert np.all(np.min(found.bound, axis=0) < part * np.linalg.norm(true.angular, axis=-1))
-    wrong = vanishing_step.limits(SYSTEM, probe, stepped((1 + fault) * true.angular), eps)["omega"]
+    wrong = limits(SYSTEM, probe, stepped((1 + fault) * true.angular), eps)["omega"]
     assert np.min(wrong.shares()) > 1.0
 
 

@@ -36,7 +36,8 @@ from omegadot.gates.states.equation import EvaluationStates, evaluation_states_o
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
 from omegadot.harness.in_process import driver_of
-from omegadot.harness.judge import JudgedRun, judge_case
+from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judge_runs import judge_case
 from omegadot.harness.random_cases import random_case
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
 from omegadot.harness.repeats import request_again
@@ -150,7 +151,8 @@ def test_a_run_that_is_requested_again_is_the_same_or_fails() -> None:
             runs = judge_case(truth, case, result, {})
         rows = [row for run in runs for row in run.rows if row.metric in ("repeated", "reloaded")]
         found.append([row.verdict for row in rows])
-    assert found == [["pass", "pass"], ["fail", "fail"]]
+    # two runs alike, before another system and after it, show what is left of that alone
+    assert found == [["pass", "pass"], ["fail", "pass"]]
 
 
 def test_the_samples_of_accuracies_are_those_of_the_steps() -> None:

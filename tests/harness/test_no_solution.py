@@ -6,6 +6,7 @@ or at the finer ones as well, or whose scheme is known to have a solution.
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from omegadot.adapters.protocol import Trajectory
@@ -13,8 +14,10 @@ from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.detect import Nameless, judge
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.harness.arguments import case_of
+from omegadot.harness.no_solution import reason_without_a_solution
 from omegadot.reference_impl.system import State
 from omegadot.scenarios import scenario
+from omegadot.workers.harness_end.process import Answer
 
 NOTE = "not judged: at steps of 1.2 rad the engine raises ArithmeticError: no solution"
 
@@ -68,3 +71,19 @@ def test_a_step_without_a_solution(
         assert {run.outcome for run in found.runs} == {"ok", "diverged"}
         assert all(run.reason.startswith(NOTE) for run in found.runs if run.outcome != "ok")
     assert judge(pool, case, "own", engine).accused  # its schemes are known
+
+
+def test_an_engine_may_raise_where_its_scheme_overflows() -> None:
+    pool = Pool(0)
+    case = prepared(pool, 0.9)
+    sweep, truth = case.case.sweeps[0], case.truth
+    own = next(i for i in ReferenceAdapter().description.integrators if i.name == "lie-rk4")
+    pool.step_companions(case, [own], [sweep])
+    raised = [(sweep, Answer("raised", "FloatingPointError: overflow"))]
+    assert reason_without_a_solution(truth, own, sweep, raised) == ""
+    companion = truth.companion(own, sweep)
+    assert companion is not None
+    companion.state.angular_velocity[-1] = np.inf
+    note = "not judged: the scheme itself blows up at so large a step, where the engine raises"
+    found = reason_without_a_solution(truth, own, sweep, raised)
+    assert found == f"{note} FloatingPointError: overflow"

@@ -191,6 +191,11 @@ def test_a_run_is_restarted_at_its_middle() -> None:
     assert restart_of(Sweep(0.1, 10, 3)) == (2, Sweep(0.1, 4, 3))  # samples 0 3 6 9 10
     assert restart_of(Sweep(0.1, 3, 2)) == (1, Sweep(0.1, 1, 2))
     assert restart_of(Sweep(0.1, 2, 5)) is None
+    coarsest = Sweep(0.4, 21, 2)  # 11 steps are left of it
+    assert restart_of(coarsest, coarsest) == restart_of(coarsest) == (5, Sweep(0.4, 11, 2))
+    assert restart_of(Sweep(0.2, 42, 4), coarsest) == (5, Sweep(0.2, 8, 4))
+    assert restart_of(Sweep(0.1, 84, 8), coarsest) == (5, Sweep(0.1, 8, 8))
+    assert restart_of(Sweep(0.025, 336, 32), coarsest) == (5, Sweep(0.025, 32, 32))
 
 
 def test_a_run_that_cannot_be_restarted_fails(pool: Pool) -> None:

@@ -20,8 +20,9 @@ from omegadot.gates.errors.verdicts import UNDECIDED
 from omegadot.gates.rows import Row
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.harness.in_process import driver_of
-from omegadot.harness.judge import JudgedRun, judge_case
+from omegadot.harness.judge import JudgedRun
 from omegadot.harness.judge_engine import shared_rows
+from omegadot.harness.judge_runs import judge_case
 from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
 from omegadot.harness.repeats import request_again
 from omegadot.harness.step_probes import probe_steps

@@ -16,12 +16,12 @@ from omegadot.reference_impl.system import Array, State
 def restart_cause(truth: Truth, result: CaseResult, run: JudgedRun) -> str:
     """How a restarted run differs from the rest of the run; "" where it does not, or anyhow."""
     name, sweep = run.integrator.name, run.sweep
-    sample, answer = result.restarts.get((name, sweep.timestep), (0, None))
+    sample, left, answer = result.restarts.get((name, sweep.timestep), (0, sweep, None))
     whole = result.runs.get((name, sweep.timestep))
     if answer is None or whole is None or not answer.ok or not whole.ok:
         return ""
     state, again = State(**whole.result["state"]), State(**answer.result["state"])
-    rest = state[sample:]
+    rest = state[sample : sample + len(left.times)]
     count = len(rest.angular_velocity)
     if len(again.angular_velocity) != count or count < 3:
         return ""

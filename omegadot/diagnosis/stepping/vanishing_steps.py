@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
-from omegadot.gates.steps.vanishing_step import Limit, Probe, Tolerated
-from omegadot.gates.steps.vanishing_step import limits as rates_at_no_step
+from omegadot.gates.steps.limits import Limit, Tolerated
+from omegadot.gates.steps.limits import limits as rates_at_no_step
+from omegadot.gates.steps.probe import Probe
 from omegadot.reference_impl.rotations import (
     attitude_angle,
 )

@@ -10,11 +10,11 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
+from omegadot.gates.errors.excess import excess_of
 from omegadot.gates.errors.orders import (
     FEWEST_STEPS,
     Errors,
     ObservedOrder,
-    excess_of,
     highest_order,
     order_of,
 )

@@ -1,4 +1,4 @@
-"""The order at which errors shrink with the step, and whether each step's error follows it.
+"""The order at which errors shrink with the step.
 
 An error shows an order where it is clear of rounding and small against the motion. Late errors may
 saturate, and late bounds of rounding may hide them; a shorter time is then looked at.
@@ -10,11 +10,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from omegadot.reference_impl.system import Array
 
-Known = tuple[Array, NDArray[np.bool_]]
 Point = tuple[float, float, float, bool]
 
 # How far an observed order may lie below the declared one where the sweep resolves it.
@@ -26,7 +24,6 @@ CLEAR_OF_ROUNDING = 10.0
 HORIZONS = tuple(0.5**n for n in range(7))  # of a run's samples
 FEWEST_STEPS = 3  # two slopes, which must agree
 FEWEST_SAMPLES = 5  # an error may be nothing at one sample, as its sign changes there
-EXCESS_ORDERS = 3.0  # by which an error may exceed what finer steps and their order explain
 # From one sample to the next, what stepping adds may be this many times all that it added before.
 LARGEST_RISE = 100.0
 SATURATE, NEAR_ROUNDING = "errors saturate", "errors are close to rounding"
@@ -163,7 +160,23 @@ def _over(sweep: Iterable[Errors], horizon: float) -> tuple[ObservedOrder | None
     found = observed_order([h for h, _ in used], [error for _, error in used])
     if found is not None and not enough:
         found = replace(found, resolved=False)
+    elif found is not None and not found.resolved:
+        found = replace(found, rise=max(found.rise, _rise(sorted(points), found.value)))
     return found, enough, any(saturated for *_, saturated in points)
+
+
+def _rise(points: Sequence[Point], order: float) -> float:
+    """By how much an order may be rising from the finest error clear of rounding to the next.
+
+    Terms that nearly cancel at one step leave slopes that follow no power there. The next finer
+    error is close to rounding, and shows whether they rise again.
+    """
+    clear = next(n for n, (_, e, b, _) in enumerate(points) if e > CLEAR_OF_ROUNDING * b)
+    fine, coarse = points[max(clear - 1, 0)], points[clear]
+    if clear == 0 or fine[1] <= fine[2]:
+        return 0.0
+    most, shown = _slope_at_most(fine, coarse)
+    return most - order if shown > order + ORDER_TOLERANCE else 0.0
 
 
 def _jumps(sweep: Sequence[Errors]) -> bool:
@@ -199,78 +212,12 @@ def highest_order(sweep: Sequence[Errors]) -> float:
 
 
 def _highest(fine: Point, middle: Point, coarse: Point) -> float:
-    most, shown = [], []
-    for (h2, e2, b2, _), (h1, e1, b1, _) in ((fine, middle), (middle, coarse)):
-        most.append(np.log((e1 + b1) / (e2 - b2)) / np.log(h1 / h2))
-        shown.append(np.log(e1 / e2) / np.log(h1 / h2))
-    return float(max(most)) if shown[0] - shown[1] <= ORDER_TOLERANCE else np.inf
+    (one, first), (other, second) = _slope_at_most(fine, middle), _slope_at_most(middle, coarse)
+    return max(one, other) if first - second <= ORDER_TOLERANCE else np.inf
 
 
-def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
-    """How many times larger a step's error is than the errors at finer steps let it be.
-
-    With e1, e2, e3 at the next finer steps the error follows from e1 by an order: the declared one,
-    or the slope s12 from e1 to e2 where that is higher. It may be three orders more, since leading
-    terms may nearly cancel, and a slope may differ from the next by four times what that differs
-    from the one after. This must hold up to where the error saturates, and up to parts of that
-    time; there e1 is the largest up to twice that time, as an error may pass through nothing. It
-    may do so as the step changes: e1 is at least what e2 is by the declared order, where e2 is
-    above rounding. Zero for the finest step.
-    """
-    finer = sorted((one for one in sweep if one.timestep < own.timestep), key=lambda e: -e.timestep)
-    count = min(own.saturates_at + own.saturates, len(own.size))
-    if not finer or count == 0:
-        return 0.0
-    ends = np.unique([max(FEWEST_SAMPLES, round(part * count)) for part in HORIZONS])
-    ends = np.minimum(ends, count) - 1
-    until = own.times[ends]
-    near = [_at(one, until) for one in finer[:3]]
-    later = np.minimum(2.0 * until, own.times[count - 1])
-    e1, _ = _at(finer[0], later)
-    if len(finer) > 1:
-        ratio = finer[0].timestep / finer[1].timestep
-        e1 = np.maximum(e1, ratio**declared * _above_rounding(finer[1], later))
-    order = np.full(len(ends), float(declared))
-    if len(near) > 1:
-        first = _slopes(finer[0], finer[1], near[0], near[1])
-        second = np.full(len(ends), np.nan)
-        if len(near) > 2:
-            second = _slopes(finer[1], finer[2], near[1], near[2])
-        second = np.where(np.isnan(second), np.fmin(first, declared), second)
-        change = 4.0 * np.abs(first - second)
-        # What is hidden by rounding at one time may show at another.
-        order = np.maximum(order, np.max(first, where=~np.isnan(first), initial=declared))
-        order = np.where(np.isnan(first), order, np.maximum(first, declared) + change)
-    error = np.maximum.accumulate(own.size)[ends]
-    if own.saturates:
-        error = np.minimum(error, SATURATED)
-    least = CLEAR_OF_ROUNDING * np.maximum.accumulate(own.bound)[ends]
-    with np.errstate(all="ignore"):
-        allowed = e1 * (own.timestep / finer[0].timestep) ** (order + EXCESS_ORDERS)
-        excess = error / np.maximum(allowed, least)
-    return float(np.max(np.nan_to_num(excess, nan=0.0, posinf=np.inf)))
-
-
-def _slopes(one: Errors, finer: Errors, e1: Known, e2: Known) -> Array:
-    """(n,): the order from one step to a finer one; NaN where an error is not above rounding."""
-    with np.errstate(all="ignore"):
-        slopes = np.log(e1[0] / e2[0]) / np.log(one.timestep / finer.timestep)
-    return np.where(e1[1] & e2[1], slopes, np.nan)
-
-
-def _above_rounding(errors: Errors, until: Array) -> Array:
-    """(n,): the largest error up to each of these times; zero where it is within rounding."""
-    place = np.searchsorted(errors.times, until * (1.0 + 1e-9), side="right") - 1
-    size = np.maximum.accumulate(errors.size)[place]
-    return np.where(size > np.maximum.accumulate(errors.bound)[place], size, 0.0)
-
-
-def _at(errors: Errors, until: Array) -> Known:
-    """The largest error up to each of these times, at least ten times its bound, and if above it.
-
-    Below that nothing is known of an error but that it is no larger.
-    """
-    place = np.searchsorted(errors.times, until * (1.0 + 1e-9), side="right") - 1
-    size = np.maximum.accumulate(errors.size)[place]
-    least = CLEAR_OF_ROUNDING * np.maximum.accumulate(errors.bound)[place]
-    return np.maximum(size, least), size > least
+def _slope_at_most(fine: Point, coarse: Point) -> tuple[float, float]:
+    """The slope between two errors above rounding: as far as rounding lets it be, and as seen."""
+    (h2, e2, b2, _), (h1, e1, b1, _) = fine, coarse
+    ratio = np.log(h1 / h2)
+    return float(np.log((e1 + b1) / (e2 - b2)) / ratio), float(np.log(e1 / e2) / ratio)

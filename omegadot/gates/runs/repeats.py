@@ -20,7 +20,8 @@ from omegadot.gates.truth import Truth
 from omegadot.reference_impl.system import State
 
 GATE = "trajectory"
-How = Literal["repeated", "negated", "reloaded"]
+# "short" is no answer to judge: it is what one "reloaded" is compared with.
+How = Literal["repeated", "short", "negated", "reloaded"]
 NOTES: dict[How, str] = {
     "repeated": "the same run, requested again, gives other samples: it depends on earlier runs",
     "negated": "a run from -q gives other samples than from q, which is the same attitude",

@@ -159,10 +159,15 @@ def reported_rows(system: System, states: State, omega_dot: Array, eps: float = 
     """The omega-dot reported along a run, against equation (8) at the very states that it reports.
 
     States that are not finite, or whose squares overflow, have no omega-dot to be held against.
+    Neither have those that damping has brought so near to rest that squares lose digits to
+    underflow.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         rate = norm(states.angular_velocity) ** 2
     kept = np.isfinite(rate) & np.isfinite(norm(states.orientation)) & np.isfinite(norm(omega_dot))
+    least = np.sqrt(np.finfo(float if eps <= EPS else np.float32).tiny / eps)
+    largest = np.max(np.abs(states.angular_velocity), axis=-1)
+    kept &= (largest == 0.0) | (largest >= least)
     if not kept.any():
         return []
     sound = states[kept]

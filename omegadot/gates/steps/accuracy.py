@@ -23,7 +23,7 @@ from omegadot.gates.case import ACCURACIES, Sweep
 from omegadot.gates.errors.measured_run import ROTATION, MeasuredRun, measure
 from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
-from omegadot.gates.steps.vanishing_step import Tolerated
+from omegadot.gates.steps.limits import Tolerated
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.system import Array, State
 

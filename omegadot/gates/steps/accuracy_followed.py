@@ -138,6 +138,16 @@ def _follows(runs: Sequence[AccuracyRun], channel: str) -> Finding:
     return Finding("unexplained", f"does not follow its accuracy: the error stays at {text}")
 
 
+def _keeps(run: AccuracyRun, channel: str) -> bool:
+    """Whether an error is within what its accuracy leaves open, which is not everything.
+
+    A method that changes its order with the accuracy, or begins anew at every sample with a short
+    step of order 1, keeps its accuracy and follows no power of it.
+    """
+    resolves = float(np.max(run.kept["attitude"])) <= SATURATED
+    return resolves and bool(np.all(run.error[channel] <= run.kept[channel]))
+
+
 def _finding(measured: AccuracyRun, runs: Sequence[AccuracyRun], channel: str) -> Finding:
     error, bound = measured.error[channel], measured.round_off[channel]
     if not np.all(np.isfinite(error)):
@@ -147,7 +157,7 @@ def _finding(measured: AccuracyRun, runs: Sequence[AccuracyRun], channel: str) -
     if np.all(error <= bound + measured.floor.get(channel, 0.0)):
         return Finding("beyond", "not judged: below the resolvable floor of this motion")
     over, _ = _split(runs)
-    for finer in over[over.index(measured) + 1 :]:
+    for finer in [] if _keeps(measured, channel) else over[over.index(measured) + 1 :]:
         pair = _pair(measured, finer, channel)
         if pair.leaps:
             times = pair.coarse / max(pair.fine, pair.rounding)
