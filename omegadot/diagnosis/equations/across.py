@@ -209,7 +209,7 @@ class Across:
 def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:
     """A candidate with its own numbers or with those of another scenario, where it fits there."""
     made = one.predicted(evidence)
-    if made is not None and evidence.fits(made):
+    if made is not None and one.fits(evidence, made):
         return one
     return one.refitted(evidence)
 

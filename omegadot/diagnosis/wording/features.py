@@ -57,6 +57,7 @@ def features_of(system: System, initial: State) -> Features:
     sizes = {
         "the mass": (mass, "kg"),
         "the body's radius of gyration": (float(np.sqrt(np.trace(tensor) / mass)), "m"),
+        "the trace of the inertia": (float(np.trace(tensor)), "kg m^2"),
         "the least moment of inertia": (float(moments[0]), "kg m^2"),
         "the ratio of the largest moment of inertia to the least": (
             float(moments[-1] / moments[0]),
