@@ -20,11 +20,13 @@ from omegadot.diagnosis.stepping.kinematics import (
     still_cause,
     velocity_share_cause,
 )
+from omegadot.diagnosis.stepping.order_lost import order_lost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
 from omegadot.diagnosis.wording.kinds import agreed, either, is_of_one_run
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
+from omegadot.gates.errors.measured_run import orders_for
 from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
@@ -71,11 +73,15 @@ class IntegratorCauses:
         self._of_runs: RunCauses | None = None
         self._followed: dict[tuple[str, ...], bool | None] = {}
         self.steps: VanishingSteps | None = None
+        self._order_lost = ""
         probe, answer = result.first_steps.get(self._name, (None, None))
         if probe is not None and answer is not None and answer.ok:
             tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
             stepped = State(**answer.result)
             self.steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
+            if any(map(fails, runs)) and self.steps.sound:
+                due = orders_for(integrator, case.system)
+                self._order_lost = order_lost(case.system, probe, stepped, eps, due)
 
     def release(self, wanted: bool) -> None:
         """Work out what needs the trajectories, where it is wanted, and let go of them."""
@@ -94,7 +100,7 @@ class IntegratorCauses:
             seen = self._of_trajectories()
             return [one for one in seen if is_of_one_run(one)] or [self._again]
         if steps is None or steps.sound:
-            return self._of_trajectories()
+            return self._of_trajectories() or either([self._order_lost])
         found = self._of_steps(steps) or self._of_trajectories()
         last = (
             found or either([jump_cause(steps, self._beginning)]) or either(kinematic_causes(steps))
