@@ -25,6 +25,7 @@ from omegadot.reference_impl.system import Acceleration, Array, State, System
 SLACK = 4.0
 # Nothing within a few bounds has a cause: the bounds are of sound engines, and not exact.
 BEYOND_ROUNDING = 16.0
+FAR_FROM_ROUNDING = 1e3
 SCREENED = 10  # states at which every hypothesis is tried; only what fits there is tried at all
 LANES = 512
 
@@ -65,6 +66,11 @@ class Evidence:
     def clear(self) -> bool:
         """Whether the engine is off by more than a few times what rounding may account for."""
         return not bool(np.all(self.shares(self.true) <= BEYOND_ROUNDING))
+
+    @property
+    def far(self) -> bool:
+        """Whether it is off by so much that several numbers that fit it are no chance."""
+        return bool(np.quantile(self.shares(self.true), 0.75) > FAR_FROM_ROUNDING)
 
     def shares(self, candidate: Acceleration) -> Array:
         """(..., n): the distance of a candidate (..., n, 3) from the engine's, in bounds."""

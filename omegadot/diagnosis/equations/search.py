@@ -142,11 +142,13 @@ def levels(evidence: Evidence, deep: bool = True) -> Iterator[list[Candidate]]:
     if deep:
         seen = _visible(evidence, known, forms)
         yield unlikely + _pairs(evidence, known, forms, seen)
-        yield _fitted(evidence, THREE_NUMBERS) + _with_terms(evidence, MORE)
+        yield (_fitted(evidence, THREE_NUMBERS) if evidence.far else []) + _with_terms(
+            evidence, MORE
+        )
         yield _fitted(evidence, EXTRA)
         yield _mixed(evidence, known, seen)
         yield _with_terms(evidence, MOST)
-        yield _fitted(evidence, SIX_NUMBERS)
+        yield _fitted(evidence, SIX_NUMBERS) if evidence.far else []
     else:
         yield unlikely
 

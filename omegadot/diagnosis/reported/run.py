@@ -23,6 +23,7 @@ LEAST_SAMPLES = 6
 MOST_GUESSES = 3
 # In parts of what rounding may do: a fitted number is then good to six digits.
 DISTINCT = 1e6
+SLACK = 4.0
 MOST_STEPS = 5000  # of a run that is stepped for a guess
 
 
@@ -71,14 +72,18 @@ class ReportedRun:
         return len(self.time) == len(self.own.position) and self.agrees(self.state, self.own)
 
     @property
-    def distance_at_first(self) -> float:
-        """How far the run is from the reference's in its first samples, in parts of the bound."""
+    def distance_at_first(self) -> tuple[int, float]:
+        """How many quantities are off in the first samples, and how far, in parts of the bound.
+
+        A run of one scheme in which one quantity is misreported is nearer to it than to others.
+        """
         bounds, first = self.bounds, slice(1, LEAST_SAMPLES)
         shares = [
             self.truth.yardstick.distance(c, self.state[first], self.own[first]) / bounds[c][first]
             for c in CHANNELS
         ]
-        return float(np.nan_to_num(np.median(np.max(shares, axis=0)), nan=np.inf))
+        off = sum(not bool(np.all(one <= SLACK)) for one in shares)
+        return off, float(np.nan_to_num(np.median(np.max(shares, axis=0)), nan=np.inf))
 
     def stepped(
         self,
@@ -133,7 +138,7 @@ def reported_run_guesses(
     if answer is None or not answer.ok or integrator.scheme in SCHEMES:
         return []
     time, state = answer.result["time"], State(**answer.result["state"])
-    ranked = list[tuple[float, ReportedRun]]()
+    ranked = list[tuple[tuple[int, float], ReportedRun]]()
     for (key, timestep), own in truth.companions.items():
         if timestep != sweep.timestep:
             continue
@@ -149,7 +154,9 @@ def reported_run_guesses(
     return [_until_it_shows(one) for _, one in ranked[:MOST_GUESSES]]
 
 
-def _explicit(nearest: ReportedRun, distance: float) -> list[tuple[float, ReportedRun]]:
+def _explicit(
+    nearest: ReportedRun, distance: tuple[int, float]
+) -> list[tuple[tuple[int, float], ReportedRun]]:
     """The run next to explicit schemes that are nearer than the reference's nearest.
 
     Each is stepped through the first samples, and the one that is nearest there through the run.

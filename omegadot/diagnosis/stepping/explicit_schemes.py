@@ -52,14 +52,16 @@ def by_exponential(rows: Rows, weights: Sequence[float]) -> Step:
     def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
         slopes = list[tuple[Array, Array]]()
         for row in rows:
-            u, at_v = np.zeros_like(v), v
+            u: Array = np.zeros_like(v)
+            at_v: Array = v
             for a, (moved, pushed) in zip(row, slopes, strict=True):
-                u, at_v = u + (a * h) * moved, at_v + (a * h) * pushed
+                u = np.asarray(u + (a * h) * moved)
+                at_v = np.asarray(at_v + (a * h) * pushed)
             at_q = motion.retract(q, u) if row else q
             slopes.append((at_v, np.array(motion.acceleration(at_q, at_v))))
-        u = h * sum(b * k for b, (k, _) in zip(weights, slopes, strict=True))
+        whole = h * sum(b * k for b, (k, _) in zip(weights, slopes, strict=True))
         v = v + h * sum(b * k for b, (_, k) in zip(weights, slopes, strict=True))
-        return motion.retract(q, np.asarray(u)), np.asarray(v)
+        return motion.retract(q, np.asarray(whole)), np.asarray(v)
 
     return step
 

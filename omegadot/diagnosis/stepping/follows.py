@@ -9,9 +9,11 @@ import numpy as np
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.search import Candidate
 from omegadot.diagnosis.stepping.restep import on_rows
+from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, common_factor
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
+from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, Array, State, System
@@ -62,6 +64,21 @@ def follows(system: System, beginning: Beginning, candidate: Candidate, eps: flo
         answer = True if to_wrong < NEAR else False if to_right < NEAR and to_wrong > FAR else None
         found[float(np.max(apart)) / size] = answer
     return found[max(found)] if found else None
+
+
+def keeps_pace(beginning: Beginning, steps: VanishingSteps) -> bool:
+    """Whether the samples after the first go on as much too fast, or too slowly, as first steps do.
+
+    By how far the attitude turns from sample to sample, next to the exact motion.
+    """
+    k = common_factor(steps.rates)
+    with np.errstate(all="ignore"):
+        came, due = (
+            norm(rotation_between(x.orientation[1:-1], x.orientation[2:]))
+            for x in (beginning.reported, beginning.exact)
+        )
+        pace = float(np.median(came / due)) if len(came) else np.nan
+    return k is None or not np.isfinite(pace) or abs(pace - 1.0) > NEAR * abs(k - 1.0)
 
 
 def _solved(

@@ -22,7 +22,7 @@ FACTS = (
     "times are",
     "time alone is off",
     "one time, that of",
-    "the clock runs",
+    "the run jumps once",
     "does not move in the run",
     "is stepped in full",
 )

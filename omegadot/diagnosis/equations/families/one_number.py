@@ -10,6 +10,7 @@ import numpy as np
 from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.families.family import (
     AXES,
+    NOTHING,
     Family,
     always,
     driven,
@@ -76,6 +77,13 @@ def _lever_scaled(form: Form, system: System, k: float) -> Form:
     return form_of(with_body(system, center_of_mass=center))
 
 
+def _solve_text(_: System, k: float) -> str:
+    if abs(k) < NOTHING:
+        return "omega-dot is zero"
+    other = f"the inertia that it is solved for with is scaled by {number(1.0 / k)}"
+    return f"omega-dot is scaled by {factor(k)}, as where {other}"
+
+
 def _damping_text(system: System, p: Array) -> str:
     acting, requested = float(p[0]), float(system.load.damping)
     if not requested:
@@ -99,10 +107,7 @@ ONE_NUMBER: tuple[Family, ...] = (
         1.0,
         always,
         lambda f, s, k: replace(f, solve=k * f.solve),
-        lambda s, k: (
-            f"omega-dot is scaled by {factor(k)}, as where the inertia that it is solved for with "
-            f"is scaled by {number(1.0 / k)}"
-        ),
+        _solve_text,
     ),
     _moment(0),
     _moment(1),
@@ -168,6 +173,18 @@ ONE_NUMBER: tuple[Family, ...] = (
         _damping_text,
         lambda s: np.array([float(s.load.damping)]),
         "N m s/rad",
+    ),
+    Family(
+        "damping rate",
+        "damping",
+        lambda s: [np.array([float(s.load.damping)])] if float(s.load.damping) else [],
+        lambda f, s, p: replace(f, damping=float(p[0]) * np.linalg.inv(f.solve)),
+        lambda s, p: (
+            f"the damping acts as a rate, not as a torque: omega-dot has {number(-float(p[0]))} "
+            "omega in it, whatever the inertia"
+        ),
+        lambda s: np.zeros(1),
+        "1/s",
     ),
     scalar(
         "loads",

@@ -67,7 +67,7 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
         )
         yield of_form(
             f"in the gyroscopic term, {text}",
-            f"inertia:{text}",
+            "spin",
             given(text, lambda t, f, s: {"spin": _about(s) + _tensor(s, t)}),
         )
     yield of_form(

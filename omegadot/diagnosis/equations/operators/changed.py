@@ -106,6 +106,7 @@ def changed_vectors(evidence: Evidence, steps: bool) -> list[tuple[Changed, Arra
         due = operand.of(evidence)
         lanes = np.stack([one.change(due, evidence.states, NONE)[places] for one in plain])
         close = np.all(few.shares(operand.put(few, lanes)) <= SLACK, axis=-1)
+        close &= np.any(lanes, axis=(-1, -2))  # what leaves nothing is missing
         likely = [one for one, good in zip(plain, close, strict=True) if good]
         likely += NUMBERS if operand.unit and not operand.constant else ()
         fitted = [(one, one.fit(evidence)) for one in (Changed(operand, x) for x in likely)]

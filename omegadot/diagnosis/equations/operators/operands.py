@@ -101,6 +101,10 @@ def _whole_omega(e: Evidence, w: Array) -> Acceleration:
     return forward_dynamics(e.system, replace(e.states, angular_velocity=w))
 
 
+def _whole_attitude(e: Evidence, q: Array) -> Acceleration:
+    return forward_dynamics(e.system, replace(e.states, orientation=normalize(q)))
+
+
 OPERANDS = (
     _of_torque("the gyroscopic term", gyroscopic),
     _of_torque("the torque in body axes", lambda s, x: s.load.torque_body, constant=True),
@@ -113,6 +117,7 @@ OPERANDS = (
     _omega("the damping", (damping_torque,)),
     _attitude("the torque of gravity", gravity_torque),
     _attitude("the torque in world axes", _world),
+    Operand("the attitude on its way in", "", lambda e: e.states.orientation, _whole_attitude),
     Operand("omega on its way in", "rad/s", lambda e: e.states.angular_velocity, _whole_omega),
     Operand(
         "omega-dot",
