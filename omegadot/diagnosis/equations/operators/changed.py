@@ -12,7 +12,7 @@ from omegadot.diagnosis.equations.operators.operators import (
     Operator,
     Seen,
     flips,
-    of_any,
+    of_quaternions,
     of_vectors,
     with_numbers,
 )
@@ -20,7 +20,7 @@ from omegadot.reference_impl.system import Acceleration, Array, System
 
 TRIES = 6
 DELTA = 1e-6
-VECTORS, QUATERNIONS, NUMBERS = tuple(of_vectors()), tuple(of_any()), with_numbers()
+VECTORS, QUATERNIONS, NUMBERS = tuple(of_vectors()), tuple(of_quaternions()), with_numbers()
 FLIPS = tuple(flips())
 NONE = np.zeros(0)
 OFTEN = 3  # states at which a change must show

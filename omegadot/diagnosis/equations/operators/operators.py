@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orders
 from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.rotations import rotate, rotate_inverse
+from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, State
 
 DECIMALS = range(9)
@@ -89,6 +89,14 @@ def flips() -> Iterator[Operator]:
     for order, signs in signed_orders():
         if order == [0, 1, 2]:
             yield _ordered(order, signs)
+
+
+def of_quaternions() -> Iterator[Operator]:
+    """Those without numbers, of an attitude on its way into a term."""
+    identity = np.array([1.0, 0.0, 0.0, 0.0])
+    yield _plain(lambda q, x: 0.0 * q + identity, "is left out: it is taken for the identity")
+    yield _plain(lambda q, x: conjugate(q), "is transposed")
+    yield from of_any()
 
 
 def of_any() -> Iterator[Operator]:
