@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import Evidence
-from omegadot.diagnosis.wording.digits import number
+from omegadot.diagnosis.wording.digits import listed, number
 from omegadot.gates.bounds.scales import norm
 from omegadot.harness.scaled import STATES, TWICE
 from omegadot.reference_impl.system import Array
-from omegadot.reports.text.numbers import listed
 
 CLEAN = 1e-4  # of an exponent
 CLEAR_OF_ROUNDING = 1e4

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from omegadot.diagnosis.wording.digits import listed
 from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State
-from omegadot.reports.text.numbers import listed
 
 CLEAR, CLEAR_OF_SINGLE = 1e4, 64.0  # times rounding
 CLEAN = 0.05  # of an exponent

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from omegadot.diagnosis.equations.operators.operands import gyroscopic
+from omegadot.diagnosis.wording.digits import listed
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.steps.vanishing_step import Probe
 from omegadot.reference_impl.inertia import moving_inertia
@@ -17,7 +18,6 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, State, System
-from omegadot.reports.text.numbers import listed
 
 CLEAR = 1e3  # times rounding
 WHOLE = 0.2  # how near an exponent lies to the whole number that it is taken for

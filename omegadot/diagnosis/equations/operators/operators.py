@@ -252,7 +252,7 @@ def _power(seen: Seen, of: Array) -> Array | None:
 
 def _power_text(of: str) -> Callable[[str, str, Array], str]:
     def text(what: str, unit: str, p: Array) -> str:
-        shown = "" if abs(p[1] - 1.0) < NEAR else f"{p[1]:.6g} "
+        shown = "" if abs(p[1] - 1.0) < NEAR else f"{p[1]:.6g} times "
         return f"{what} is multiplied by {shown}{of}^{p[0]:.6g}"
 
     return text
