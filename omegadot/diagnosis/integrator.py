@@ -12,7 +12,7 @@ from omegadot.diagnosis.equations.wrong_equation import known_difference
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
-from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, follows, keeps_pace
+from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, Followed, follows, keeps_pace
 from omegadot.diagnosis.stepping.jumps import jump_cause, jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import (
     kinematic_causes,
@@ -79,7 +79,7 @@ class IntegratorCauses:
         )
         self._brief = all(len(run.sweep.times) < LEAST_SAMPLES for run in runs)
         self._of_runs: RunCauses | None = None
-        self._followed: dict[tuple[str, ...], bool | None] = {}
+        self._followed: dict[tuple[str, ...], Followed | None] = {}
         self.steps: VanishingSteps | None = None
         self._order_lost, self._seen = "", ""
         probe, answer = result.first_steps.get(self._name, (None, None))
@@ -173,7 +173,10 @@ class IntegratorCauses:
             if one.key not in self._followed:
                 followed = follows(self._case.system, self._beginning, one, steps.eps)
                 self._followed[one.key] = followed
-            if self._followed[one.key] is False:
+            if self._followed[one.key] == "between":
+                later = f"in the first step of a run, {text}; later steps come nearer to the right"
+                return self._of_trajectories() or [f"{later} equation"]
+            if self._followed[one.key] == "right":
                 first = f"{IN_THE_FIRST}, {text}"
                 return either([velocity_share_cause(steps), first])
         return [f"in the steps, {text}"]

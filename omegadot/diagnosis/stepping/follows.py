@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 SAMPLES = 12
 RADIANS, MOST_STEPS = 0.1, 80  # of a step here; over the whole beginning
+Followed = Literal["wrong", "right", "between"]
+BETWEEN = 0.2  # by how much the distances to both may add up to another than their own
 NEAR, FAR = 0.3, 0.7  # of the distance of the two solutions
 SEEN = 1e-4  # relative: what the steps here leave
 
@@ -33,8 +36,10 @@ class Beginning:
     exact: State
 
 
-def follows(system: System, beginning: Beginning, candidate: Candidate, eps: float) -> bool | None:
-    """Whether a run follows a wrong equation, or the right one (False); None where it is open.
+def follows(
+    system: System, beginning: Beginning, candidate: Candidate, eps: float
+) -> Followed | None:
+    """Which equation a run follows, or whether it lies between the two; None where it is open.
 
     A scheme's own error is small against the distance of the two where the answer is given.
     """
@@ -50,7 +55,7 @@ def follows(system: System, beginning: Beginning, candidate: Candidate, eps: flo
     if wrong is None:
         return None
     reported, exact = (x[1 : kept + 1] for x in (beginning.reported, beginning.exact))
-    found = dict[float, bool | None]()
+    found = dict[float, Followed | None]()
     names = ("angular_velocity", "linear_velocity")
     for name in names[: 1 if system.load.pivot is not None else 2]:
         near, far, came = (getattr(x, name) for x in (exact, wrong, reported))
@@ -61,7 +66,15 @@ def follows(system: System, beginning: Beginning, candidate: Candidate, eps: flo
         to_wrong, to_right = (
             float(np.median(norm(came - x)[used] / apart[used])) for x in (far, near)
         )
-        answer = True if to_wrong < NEAR else False if to_right < NEAR and to_wrong > FAR else None
+        answer: Followed | None = None
+        if to_wrong < NEAR:
+            answer = "wrong"
+        elif to_right < NEAR and to_wrong > FAR:
+            answer = "right"
+        elif abs(to_wrong + to_right - 1.0) < BETWEEN:
+            # a scheme's own error is as large a part of the distance at every sample
+            parts = (norm(came - far) / apart)[used]
+            answer = "between" if parts[0] < NEAR and parts[-1] > FAR else None
         found[float(np.max(apart)) / size] = answer
     return found[max(found)] if found else None
 
