@@ -59,7 +59,7 @@ class Changed:
         return p if p is not None and self._shows(evidence, p) else None
 
     def _shows(self, evidence: Evidence, p: Array) -> bool:
-        """Whether it changes enough to be told from anything that acts at a state or two."""
+        """Whether it changes more states than the one or two that anything may change."""
         changed = evidence.shares_between(self.made(evidence, p), evidence.true) > SLACK
         return int(np.count_nonzero(changed)) >= OFTEN
 
