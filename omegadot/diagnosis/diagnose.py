@@ -109,8 +109,11 @@ class CaseCauses:
             rates = [r for r in self._shared_rows if r.metric == metric and r.channel != "torque"]
             if rates:
                 found = equation_causes(across, self._case.name, source)
-                named = found and not found[0].startswith("none is known")
-                return found if named else lever_causes(*model) or found
+                if not found or found[0].startswith("none is known"):
+                    return lever_causes(*model) or found
+                steps = [one.steps for one in self._integrators.values()]
+                right = bool(steps) and all(one is not None and one.sound for one in steps)
+                return [f"{one}{ALONE * right}" for one in found]
         if ("equation", "residual_reloaded") in failed:
             found = equation_causes(across, self._case.name, RELOADED)
             return [f"{AFTER_ANOTHER}: {one}" for one in found] or [AFTER_ANOTHER]
@@ -124,6 +127,7 @@ class CaseCauses:
         return lever_causes(*model)
 
 
+ALONE = ", in forward dynamics alone: steps are right"
 AFTER_ANOTHER = "something of a system that was loaded before is left over"
 
 

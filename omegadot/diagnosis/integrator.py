@@ -7,11 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.describe import scenarios_in_common
 from omegadot.diagnosis.equations.wrong_equation import known_difference
+from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
-from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, follows
-from omegadot.diagnosis.stepping.jumps import jump_cause, jumps
+from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, Followed, follows, keeps_pace
+from omegadot.diagnosis.stepping.jumps import jump_cause, jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import (
     kinematic_causes,
     moves_by_cause,
@@ -20,17 +22,22 @@ from omegadot.diagnosis.stepping.kinematics import (
     still_cause,
     velocity_share_cause,
 )
+from omegadot.diagnosis.stepping.order_lost import order_lost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
 from omegadot.diagnosis.wording.kinds import agreed, either, is_of_one_run
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
+from omegadot.gates.errors.measured_run import orders_for
 from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judge import JudgedRun
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State
+
+IN_THE_FIRST = "in the first step of a run alone"
+OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
 
 def source_of(integrator: str) -> str:
@@ -60,8 +67,11 @@ class IntegratorCauses:
         integrator = runs[0].integrator
         self._name, self._declares = integrator.name, integrator.scheme in SCHEMES
         self._again = next(filter(None, (again_cause(run.rows) for run in runs)), "")
+        if self._again:
+            across.again.setdefault(self._name, self._again)
         self._beginning = _beginning_of(truth, result, runs)
         failed = [run for run in runs if fails(run)]
+        across.fails.setdefault(self._name, {})[case.name] = bool(failed)
         self._turned_wrong = any(
             row.channel == "attitude" and row.verdict == "fail"
             for run in failed
@@ -69,17 +79,23 @@ class IntegratorCauses:
         )
         self._brief = all(len(run.sweep.times) < LEAST_SAMPLES for run in runs)
         self._of_runs: RunCauses | None = None
-        self._followed: dict[tuple[str, ...], bool | None] = {}
+        self._followed: dict[tuple[str, ...], Followed | None] = {}
         self.steps: VanishingSteps | None = None
+        self._order_lost, self._seen = "", ""
         probe, answer = result.first_steps.get(self._name, (None, None))
         if probe is not None and answer is not None and answer.ok:
             tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
             stepped = State(**answer.result)
             self.steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
+            if any(map(fails, runs)) and self.steps.sound:
+                due = orders_for(integrator, case.system)
+                self._order_lost = order_lost(case.system, probe, stepped, eps, due)
 
     def release(self, wanted: bool) -> None:
         """Work out what needs the trajectories, where it is wanted, and let go of them."""
-        if wanted and any(map(fails, self._runs)):
+        if wanted and any(map(fails, self._runs)) and self._result is not None:
+            failed = [run for run in self._runs if fails(run)]
+            self._seen = known_of_runs(self._truth, self._result, failed)
             self.sentences()
         self._result, self._runs = None, []
 
@@ -94,18 +110,31 @@ class IntegratorCauses:
             seen = self._of_trajectories()
             return [one for one in seen if is_of_one_run(one)] or [self._again]
         if steps is None or steps.sound:
-            return self._of_trajectories()
+            found = self._of_trajectories()
+            lost = either([self._order_lost])
+            if not found or any(OF_ONE_FIELD in text for text in found):
+                found = lost or found
+            return found or self._known_of_runs()
+        elsewhere = self._across.again.get(self._name)
+        if elsewhere:  # what is left over from a run spoils the short ones that follow
+            return [elsewhere]
         found = self._of_steps(steps) or self._of_trajectories()
-        last = (
-            found or either([jump_cause(steps, self._beginning)]) or either(kinematic_causes(steps))
-        )
-        return last or either([still_cause(steps)]) or ([] if steps.still else self._known(steps))
+        jumped = either([jump_cause(steps, self._beginning)])
+        if any(OF_ONE_FIELD in text for text in found):
+            found = jumped or found
+        last = found or jumped or either(kinematic_causes(steps))
+        last = last or either([still_cause(steps)])
+        if last or steps.still:
+            return last
+        slight = either([slight_jump_cause(steps)])
+        return slight or self._known(steps) or self._known_of_runs()
 
     def _of_steps(self, steps: VanishingSteps) -> list[str]:
         """Where every state is off by the steps alone, the more basic first."""
         common = steps.common_cause()
         if common:
-            return [common]
+            first = self._beginning is not None and not keeps_pace(self._beginning, steps)
+            return [f"{IN_THE_FIRST}: {common}" if first else common]
         if jumps(steps):
             return [] if self._declares else either([jump_cause(steps, self._beginning)])
         if steps.still:
@@ -123,6 +152,8 @@ class IntegratorCauses:
         if share and not self._turned_wrong and not self._brief:
             return [share]
         found = self._of_equation(steps)
+        if any(one.startswith(IN_THE_FIRST) or f"or {IN_THE_FIRST}" in one for one in found):
+            found = self._of_trajectories() or found
         if share and not self._turned_wrong:
             return either([share, *found])
         return found
@@ -132,16 +163,21 @@ class IntegratorCauses:
         if np.all(steps.evidence.sound) or not steps.turns:
             return []
         where = (self._case.name, source_of(self._name))
+        still = omega_still_cause(steps)
+        if still:
+            return self._of_trajectories() or [still]
         text, one = self._across.cause(*where), self._across.chosen(*where)
         if not text:
-            still = omega_still_cause(steps)
-            return (self._of_trajectories() or [still]) if still else []
+            return []
         if one is not None and self._beginning is not None:
             if one.key not in self._followed:
                 followed = follows(self._case.system, self._beginning, one, steps.eps)
                 self._followed[one.key] = followed
-            if self._followed[one.key] is False:
-                first = f"in the first step of a run alone, {text}"
+            if self._followed[one.key] == "between":
+                later = f"in the first step of a run, {text}; later steps come nearer to the right"
+                return self._of_trajectories() or [f"{later} equation"]
+            if self._followed[one.key] == "right":
+                first = f"{IN_THE_FIRST}, {text}"
                 return either([velocity_share_cause(steps), first])
         return [f"in the steps, {text}"]
 
@@ -152,13 +188,23 @@ class IntegratorCauses:
         known = known_difference(self._across, self._case.name, source_of(self._name))
         return [f"in the steps, {one}" for one in known]
 
+    def _known_of_runs(self) -> list[str]:
+        """What is seen of the runs where nothing fits, and in which scenarios alone."""
+        fails_in = self._across.fails[self._name]
+        scenes = self._across.scenes
+        failing, passing = (
+            [s.features for name, s in scenes.items() if fails_in.get(name) is wrong]
+            for wrong in (True, False)
+        )
+        texts = [text for text in (self._seen, scenarios_in_common(failing, passing)) if text]
+        return [f"none is known; {'; '.join(texts)}"] if texts else []
+
     def _of_trajectories(self) -> list[str]:
         """What makes the runs, and most of those of the other cases."""
         over = self._across.of_runs.setdefault(self._name, {})
         if self._of_runs is None:
             self._of_runs = NOTHING
-            # In single precision much fits a run within its rounding, and decides little.
-            if self._result is not None and self._result.precision != "float32":
+            if self._result is not None:
                 # a wrong equation shows in steps that vanish, and from more states
                 wrong = self.steps is None or not np.all(self.steps.evidence.sound)
                 how = (self._case, self._truth, self._result, self._runs)

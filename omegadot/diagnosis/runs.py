@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.reported.clock import clock_cause
+from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import ReportedRun, reported_run, reported_run_guesses
 from omegadot.diagnosis.reported.run_causes import (
@@ -27,6 +28,7 @@ from omegadot.diagnosis.stepping.restarts import restart_cause
 from omegadot.diagnosis.stepping.slips import OF_SCHEME
 from omegadot.diagnosis.stepping.wrong_steps import is_decisive, is_steppable, stepping_causes
 from omegadot.diagnosis.wording.kinds import is_fact, kind_of
+from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
@@ -34,6 +36,7 @@ from omegadot.harness.judge import JudgedRun, is_finite
 
 ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
 LIMIT = "is held"
+CLEAR_OF_SINGLE = 64.0  # times rounding: what is off by less decides little
 MOST_TRIED = 1000  # steps of a second run, in which a cause is looked for again
 
 
@@ -175,6 +178,11 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
     if not reported.is_declared and reported.is_own:
         return NOTHING  # nothing in this run is wrong
     whole = len(reported.time) == len(reported.sweep.times)
+    single = reported.truth.yardstick.eps > EPS
+    slack = CLEAR_OF_SINGLE if single else BEYOND_ROUNDING
+    clear = not (whole and reported.agrees(reported.state, reported.own, slack=slack))
+    if single and not clear:
+        return NOTHING  # in single precision much fits a run within its rounding
     finite = whole and is_finite(reported.state)
     seen = precision_reported(reported) if finite else ""
     if not seen and begin_apart(reported, result):
@@ -183,7 +191,7 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
     if seen:
         return RunCauses((seen,))
     found = [*misread(reported), *filter(None, (cause(reported) for cause in CAUSES_REPORTED))]
-    clear = not (whole and reported.agrees(reported.state, reported.own, slack=BEYOND_ROUNDING))
+    found = found or field_causes(reported)
     found += stepping_causes(reported, equations) if clear else ()
     if found:
         return RunCauses(tuple(dict.fromkeys(found)), is_decisive(reported))

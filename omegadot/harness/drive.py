@@ -40,6 +40,7 @@ class CaseResult:
     alone, inverse_alone: forward and inverse dynamics of the first random state by itself.
     siblings: by what was changed in the system, the system that was loaded next, the states, and
     forward dynamics there.
+    scaled: the same by what was doubled, where forward dynamics are wrong; judged by no gate.
     reloaded: forward dynamics after another system was loaded in between.  again: the beginnings
     of runs that were requested again, by integrator, step, and how (see `gates.repeats`).
     via: the format of the file by which the body went in; "" for the engine's API.
@@ -56,6 +57,7 @@ class CaseResult:
     alone: Answer = LACKING
     inverse_alone: Answer = LACKING
     siblings: dict[str, tuple[System, State, Answer]] = field(default_factory=dict)
+    scaled: dict[str, tuple[System, State, Answer]] = field(default_factory=dict)
     reloaded: Answer = LACKING
     again: dict[tuple[str, float, How], Answer] = field(default_factory=dict)
     precision: str = "float64"

@@ -15,6 +15,7 @@ from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import CaseResult, Driver
+from omegadot.harness.scaled import request_scaled
 from omegadot.harness.siblings import request_siblings
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State
@@ -89,6 +90,7 @@ def request_again(
         if integrator.name in known:
             replay(integrator, "negated", negated)
     request_siblings(driver, case, evaluation_states, result)
+    request_scaled(driver, case, evaluation_states, result)
     if not _load_another(driver, case, steppers[0]):
         return
     if "forward_dynamics" in driver.engine.description.features:

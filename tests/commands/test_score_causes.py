@@ -60,7 +60,9 @@ def permuted(t, y):
 OF_A_BRICK = {
     "the gyroscopic term is missing": no_gyroscopic,
     "the gyroscopic term has the wrong sign": wrong_sign,
-    "the inertia's axes are permuted: x, y, z hold what belongs to y, x, z": permuted,
+    "in the dynamics, the inertia's axes are permuted: x, y, z hold what belongs to y, x, z": (
+        permuted
+    ),
 }
 
 
@@ -121,4 +123,4 @@ def scaled(t, y):
 
 def test_a_term_with_a_number_is_found_between_the_samples(causes):
     (cause,) = causes("nesc-checkcase-2", TIMES, brick_with(scaled), "--rate-unit", "rad/s")
-    assert cause.startswith("the gyroscopic term is scaled by 0.9")
+    assert "the gyroscopic term is scaled by 0.9" in cause

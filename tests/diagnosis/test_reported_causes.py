@@ -30,7 +30,7 @@ SWEEP = Sweep(0.0371234567, 40, 4)
 CLOCKS = {
     "late": (lambda t: t + 0.01, "every time is reported 0.01 s late"),
     "milliseconds": (lambda t: 1e3 * t, "the times are reported in milliseconds"),
-    "slow": (lambda t: 1.001 * t, "the clock runs 0.001 too slow"),
+    "slow": (lambda t: 1.001 * t, "every time is too large, by 0.001 of it"),
     "single": (lambda t: t.astype(np.float32).astype(float), "kept in single precision"),
     "micro": (lambda t: np.floor(t * 1e6) / 1e6, "the times are whole microseconds"),
     "last": (lambda t: np.append(t[:-1], t[-1] + 0.1), "the last time alone is off"),

@@ -271,7 +271,7 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
         gyroscopic_swapped,
         "the components of the gyroscopic term are others: x, y, z hold y, x, z",
     ),
-    "power": (damping_by_a_power, "the damping torque is -d |omega|^1.5 along omega"),
+    "power": (damping_by_a_power, "the damping torque is multiplied by |omega|^0.5"),
     "world-z": (damping_about_world_z, "damping in world axes the x and y components are missing"),
     "spring": (spring, "a torque of -0.1 N m a radian acts that depends on the attitude"),
     "first": (torque_of_first_attitude, "by the attitude of a batch's first state"),

@@ -6,8 +6,9 @@ nothing of every channel's error, and no two that differ do.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -15,22 +16,31 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from omegadot.commands.score.measured import Measured, distance, filled
-from omegadot.diagnosis.models.tensors import mistaken_inertias
+from omegadot.diagnosis.equations.equation_form import (
+    Form,
+    accelerations,
+    form_of,
+    same_form,
+    stacked,
+)
+from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
+from omegadot.diagnosis.equations.search import BY_MASS
 from omegadot.diagnosis.stepping import trace as diagnosis
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
-from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import AccelerationOf, acceleration_of
 from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
+from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.motion import slope_of
-from omegadot.reference_impl.symmetric import apply, inverse
-from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
+from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.system import Array, State, System
 
 LEAVES = 1e-3  # of an error, at most; schemes and digits leave something too
 SHOWS = 0.05  # of its largest, an error is compared first once it has grown to
 MOST_COMPARED = 60  # samples
+TURN, MOST_STEPS, FEW = 0.1, 1000, 10  # rad, of a coarse step; of these in all
+COARSE = 1e-2  # of an error, what coarse steps may leave of it
 MOST_TURNED = 1000.0  # rad, by the motion: beyond, each solution would take long
 MOST_EVALUATIONS = 20_000  # of a solution: an inertia that is far off may turn far faster
 PRECISION = 1e-11  # relative, of a solution
@@ -46,6 +56,7 @@ class Mistake:
     system: System
     initial: State
     acceleration: AccelerationOf
+    form: Form | None = None
 
 
 def causes_of_trace(found: Measured) -> list[str]:
@@ -80,7 +91,7 @@ def _from_the_start(found: Measured) -> list[str]:
     early = np.unique(np.linspace(0, first - 1, MOST_COMPARED).round().astype(int))
     whole = np.unique(np.linspace(0, count - 1, MOST_COMPARED).round().astype(int))
     fitting: list[tuple[str, State]] = []
-    for mistake in mistakes(found.case.system, found.case.initial):
+    for mistake in _likely(found, early, channels):
         if _follows(found, mistake, early, channels) is None:
             continue
         state = _follows(found, mistake, whole, channels)
@@ -89,6 +100,46 @@ def _from_the_start(found: Measured) -> list[str]:
     if any(_apart(found, a[1], b[1], whole, wrong) for a, b in pairwise(fitting)):
         return []
     return list(dict.fromkeys(statement for statement, _ in fitting))[:1]
+
+
+def _likely(found: Measured, rows: Rows, channels: list[str]) -> list[Mistake]:
+    """The mistakes that are near the trace at its first samples, all equations side by side."""
+    system, initial = found.case.system, found.case.initial
+    known = list(mistakes(system, initial))
+    equations = [(k, one.form) for k, one in enumerate(known) if one.form is not None]
+    rows = rows[np.unique(np.linspace(0, len(rows) - 1, FEW).round().astype(int))]
+    times = found.trace.times[rows]
+    counts = np.maximum(np.ceil(np.diff(times, prepend=0.0) * found.rate / TURN), 1).astype(int)
+    if not equations or int(np.sum(counts)) > MOST_STEPS:
+        return known
+    lanes = stacked([form for _, form in equations])
+    motion = motion_over(system, "com-world", lambda state: accelerations(lanes, state))
+    q, v = to_coordinates(system, initial, "com-world")
+    q, v = (np.broadcast_to(x, (len(equations), 1, *x.shape)).copy() for x in (q, v))
+    states = list[State]()
+    for count, length in zip(counts.tolist(), np.diff(times, prepend=0.0).tolist(), strict=True):
+        moved = step_through(SCHEMES["munthe-kaas-rk4"], motion, q, v, length / count, count, count)
+        q, v = moved.q[-1], moved.v[-1]
+        states.append(from_coordinates(system, q, v, "com-world"))
+    fields = zip(*(vars(state).values() for state in states), strict=True)
+    along = State(*(np.concatenate(values, axis=1) for values in fields))
+    far = {
+        k
+        for lane, (k, _) in enumerate(equations)
+        if not _near(found, State(*(f[lane] for f in vars(along).values())), rows, channels)
+    }
+    return [one for k, one in enumerate(known) if k not in far]
+
+
+def _near(found: Measured, state: State, rows: Rows, channels: list[str]) -> bool:
+    """Whether a motion by coarse steps is as near to the trace as may be worth a finer look."""
+    trace = found.trace.at(rows)
+    for channel in channels:
+        left = distance(found.truth, trace, channel, filled(trace, state), state)
+        allowed = COARSE * float(np.max(found.error[channel][rows])) + COARSE**2
+        if not np.all(left <= found.bound[channel][rows] + allowed):
+            return False
+    return True
 
 
 def _follows(found: Measured, mistake: Mistake, rows: Rows, channels: list[str]) -> State | None:
@@ -139,82 +190,21 @@ def _solved(mistake: Mistake, times: Array) -> State | None:
 
 
 def mistakes(system: System, initial: State) -> Iterator[Mistake]:
-    """Everything that is tried, the plainest first; nothing that changes nothing."""
-    for statement, load in _loads(system):
-        other = replace(system, load=load)
-        yield Mistake(statement, other, initial, acceleration_of(other))
-    for statement, acceleration in _equations(system):
-        yield Mistake(statement, system, initial, acceleration)
+    """Everything that is tried: the equations that `check` knows, then other starts.
+
+    Nothing that changes nothing, and nothing that is a factor of one mass, which many a number is.
+    """
+    kept = [form_of(system)]
+    for one in hypotheses(system):
+        if one.part in diagnosis.LEFT_OUT or one.unlikely or BY_MASS.search(one.text):
+            continue
+        form = wrong_form([one], system)
+        if form is not None and not any(same_form(form, other) for other in kept):
+            kept.append(form)
+            acceleration = partial(accelerations, form)
+            yield Mistake(one.text.strip(), system, initial, acceleration, form)
     for statement, state in _starts(initial):
         yield Mistake(statement, system, state, acceleration_of(system))
-    seen = [np.asarray(system.body.inertia, dtype=float)]
-    for statement, tensor in mistaken_inertias(system.body, system):
-        size = float(np.max(np.abs(tensor)))
-        if not any(np.allclose(tensor, known, rtol=0.0, atol=1e-9 * size) for known in seen):
-            seen.append(tensor)
-            other = replace(system, bodies=(replace(system.body, inertia=tensor),))
-            yield Mistake(statement, other, initial, acceleration_of(other))
-
-
-def _loads(system: System) -> Iterator[tuple[str, Load]]:
-    load = system.load
-    for name, value in (
-        ("gravity", load.gravity),
-        ("the torque in body axes", load.torque_body),
-        ("the torque in world axes", load.torque_world),
-        ("the damping", load.damping),
-    ):
-        if not np.any(value):
-            continue
-        field = {"gravity": "gravity", "the damping": "damping"}.get(
-            name, "torque_body" if "body" in name else "torque_world"
-        )
-        for text, factor in (("left out", 0.0), ("of the wrong sign", -1.0), ("doubled", 2.0)):
-            yield f"{name} is {text}", replace(load, **{field: factor * value})
-    torques = {"torque_body": load.torque_world, "torque_world": load.torque_body}
-    if np.any(load.torque_body) or np.any(load.torque_world):
-        yield "the torque is held in the other axes, body for world", replace(load, **torques)
-    for axis in range(3):
-        for field in ("torque_body", "torque_world"):
-            value = np.array(getattr(load, field), dtype=float)
-            if value[axis] and np.sum(value != 0.0) > 1:
-                value[axis] *= -1.0
-                text = f"the torque about {'xyz'[axis]} is of the wrong sign"
-                yield text, replace(load, **{field: value})
-    if load.pivot is not None:
-        c = system.body.center_of_mass
-        if np.any(load.pivot != c):
-            yield (
-                "the centre of mass is mirrored in the pivot",
-                replace(load, pivot=2 * c - load.pivot),
-            )
-        if np.any(load.pivot):
-            yield "the pivot is at the body's origin", replace(load, pivot=np.zeros(3))
-
-
-def _equations(system: System) -> Iterator[tuple[str, AccelerationOf]]:
-    inertia, load = moving_inertia(system), system.load
-    back, own = inverse(inertia), acceleration_of(system)
-
-    def with_more(more: Callable[[Array], Array]) -> AccelerationOf:
-        """With more of omega-dot; the linear acceleration of a free body does not depend on it."""
-
-        def acceleration(state: State) -> Acceleration:
-            found = own(state)
-            return Acceleration(found.angular + more(state.angular_velocity), found.linear)
-
-        return acceleration
-
-    def gyroscopic(w: Array) -> Array:
-        return np.asarray(apply(back, cross(w, apply(inertia, w))))
-
-    moments = np.linalg.eigvalsh(np.asarray(inertia, dtype=float))
-    if np.ptp(moments) > 0.0:
-        yield "the gyroscopic term is missing", with_more(gyroscopic)
-        yield "the gyroscopic term has the wrong sign", with_more(lambda w: 2.0 * gyroscopic(w))
-    if np.any(load.damping):
-        as_rate = "the damping is taken as a rate: omega-dot has -d omega"
-        yield as_rate, with_more(lambda w: load.damping * (apply(back, w) - w))
 
 
 def _starts(initial: State) -> Iterator[tuple[str, State]]:

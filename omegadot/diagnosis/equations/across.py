@@ -40,6 +40,10 @@ class Across:
         self._all = Scenes()
         # by integrator and scenario: each cause alone explains the runs; whether they are decisive
         self.of_runs: dict[str, dict[str, tuple[tuple[str, ...], bool]]] = {}
+        # by integrator and scenario, whether a run fails
+        self.fails: dict[str, dict[str, bool]] = {}
+        # by integrator, what shows where two answers to one request differ
+        self.again: dict[str, str] = {}
         self._accepted: list[list[Candidate]] = []
         self._weak: list[Candidate] = []
         self._texts: dict[tuple[str, str], str] = {}
@@ -209,7 +213,7 @@ class Across:
 def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:
     """A candidate with its own numbers or with those of another scenario, where it fits there."""
     made = one.predicted(evidence)
-    if made is not None and evidence.fits(made):
+    if made is not None and one.fits(evidence, made):
         return one
     return one.refitted(evidence)
 

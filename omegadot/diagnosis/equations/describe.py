@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from omegadot.reference_impl.system import Array
 PARALLEL = 1e-6  # the sine of the angle up to which two directions are the same
 CLEAN = 1e-4  # of an exponent, where a power law is exact but for rounding
 CLEAR_OF_ROUNDING = 1e4
+WAYS = 50  # in which scenarios can be sorted at least
 
 
 def description(evidence: Evidence) -> str:
@@ -97,6 +99,8 @@ def _power(x: Array, y: Array) -> float | None:
 
 def scenarios_in_common(failing: Sequence[Features], passing: Sequence[Features]) -> str:
     """What the scenarios that fail have in common and the others lack."""
+    if comb(len(failing) + len(passing), len(failing)) < WAYS:
+        return ""  # so few are sorted by chance
     common = in_common(failing, passing)
     if not common or len(common) > 2:
         return ""

@@ -25,6 +25,7 @@ from omegadot.reference_impl.system import Acceleration, Array, State, System
 SLACK = 4.0
 # Nothing within a few bounds has a cause: the bounds are of sound engines, and not exact.
 BEYOND_ROUNDING = 16.0
+FAR_FROM_ROUNDING = 1e3
 SCREENED = 10  # states at which every hypothesis is tried; only what fits there is tried at all
 LANES = 512
 
@@ -66,12 +67,21 @@ class Evidence:
         """Whether the engine is off by more than a few times what rounding may account for."""
         return not bool(np.all(self.shares(self.true) <= BEYOND_ROUNDING))
 
+    @property
+    def far(self) -> bool:
+        """Whether it is off by so much that several numbers that fit it are no chance."""
+        return bool(np.quantile(self.shares(self.true), 0.75) > FAR_FROM_ROUNDING)
+
     def shares(self, candidate: Acceleration) -> Array:
         """(..., n): the distance of a candidate (..., n, 3) from the engine's, in bounds."""
-        angular = _share(norm(self.found.angular - candidate.angular), self.angular_bound)
+        return self.shares_between(candidate, self.found)
+
+    def shares_between(self, one: Acceleration, other: Acceleration) -> Array:
+        """(..., n): the distance of two accelerations, in bounds."""
+        angular = _share(norm(other.angular - one.angular), self.angular_bound)
         if self.linear_is_apart:
             return angular
-        linear = _share(norm(self.found.linear - candidate.linear), self.linear_bound)
+        linear = _share(norm(other.linear - one.linear), self.linear_bound)
         return np.maximum(angular, linear)
 
     @cached_property
@@ -94,15 +104,11 @@ class Evidence:
 
     def visible(self, candidate: Acceleration) -> bool:
         """Whether a candidate differs from the right equation beyond rounding."""
-        return not Evidence.fits(self._with(self.true), candidate)
-
-    def _with(self, found: Acceleration) -> Evidence:
-        rest = (self.angular_bound, self.linear_bound, self.eps)
-        return Evidence(self.source, self.system, self.states, found, *rest)
+        return not bool(np.all(self.shares_between(candidate, self.true) <= SLACK))
 
     def fitting(self, forms: Sequence[Form | None]) -> list[int]:
         """The numbers of the forms that are the engine's at every state."""
-        few = self.at(np.linspace(0, len(self.angular_bound) - 1, SCREENED).round().astype(int))
+        few = self.few(SCREENED)
         if len(few.angular_bound) == 0:
             return []
         known = [k for k, form in enumerate(forms) if form is not None]
@@ -113,6 +119,11 @@ class Evidence:
             close = np.all(few.shares(tried) <= SLACK, axis=-1)
             kept += [k for k, one in zip(lanes, close, strict=True) if one]
         return [k for k in kept if (f := forms[k]) and self.fits(accelerations(f, self.states))]
+
+    def few(self, count: int) -> Evidence:
+        """The evidence of so many states, spread over all."""
+        places = np.linspace(0, len(self.angular_bound) - 1, count).round().astype(int)
+        return self.at(np.unique(places))
 
     def at(self, places: NDArray[np.intp]) -> Evidence:
         """The evidence of these states alone."""

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from omegadot.diagnosis.equations.evidence import Evidence
-from omegadot.diagnosis.equations.families import Family
+from omegadot.diagnosis.equations.families import THREE_NUMBERS, Family
 from omegadot.diagnosis.equations.hypotheses import wrong_form
 from omegadot.diagnosis.equations.search import Candidate, possible
 from omegadot.diagnosis.wording.features import Features, in_common
-from omegadot.diagnosis.wording.laws import law_of
+from omegadot.diagnosis.wording.laws import law_of, power_laws
 from omegadot.reference_impl.system import Array, Body, System
 
 PRECISE = 1e-5  # relative: what a number must be known to
+VECTORS = {  # what a factor of one vector may be the trace of
+    "gravity": THREE_NUMBERS[0],
+    "torque in body axes": THREE_NUMBERS[1],
+    "torque in world axes": THREE_NUMBERS[2],
+}
 LAWS = {
     "damping": "the damping",
     "gravity": "gravity",
@@ -27,8 +33,10 @@ LAWS = {
 
 @dataclass(frozen=True)
 class Scene:
-    """What is kept of one scenario. evidence: by where it comes from.  held: the body read
-    back.
+    """What is kept of one scenario.
+
+    evidence: by where it comes from.  held: the body read back.  scaled: of forward dynamics, by
+    what was doubled.
     """
 
     name: str
@@ -36,6 +44,7 @@ class Scene:
     features: Features
     evidence: dict[str, Evidence]
     held: Body | None = None
+    scaled: Mapping[str, Evidence] = field(default_factory=dict)
 
 
 @dataclass
@@ -57,7 +66,9 @@ class Held:
 
     @property
     def strong(self) -> bool:
-        """Whether one rule gives its numbers on every scenario."""
+        """Whether one rule gives its numbers on every scenario, and it is no chance of one mass."""
+        if self.candidate.by_mass and len({float(s.system.body.mass) for s in self.shown}) < 2:
+            return False
         return not self.numbers or bool(self.law)
 
     @property
@@ -97,7 +108,7 @@ class Scenes:
             tried = held.candidate.predicted(evidence)
             if tried is None:
                 continue
-            if evidence.fits(tried):
+            if held.candidate.fits(evidence, tried):
                 if evidence.visible(tried):
                     held.shown.append(other)
                 continue
@@ -109,17 +120,39 @@ class Scenes:
                 held.against.append(other)
             elif evidence.clear:
                 held.contradicted |= not self._explained(one, other, source)
-        if one.family is not None and one.family.name in LAWS and not one.fixed:
-            held.pairs = self._numbers(one.family, source)
+        family = one.family if not one.fixed else None
+        if family is not None and (held.numbers or held.against):
+            family = VECTORS.get(family.name, family)
+        if family is not None and family.name in LAWS:
+            held.pairs = self._numbers(family, source)
             if held.pairs:
-                law = law_of(held.pairs, LAWS[one.family.name], one.family.unit)
-                held.law = law
-        own = one.numbers
-        if held.numbers and not held.law and one.family is not None and own is not None:
-            known = [(s.features, s.evidence[source].system, p) for s, p in held.numbers]
-            known.append((scene.features, scene.evidence[source].system, own))
-            held.law = one.family.law(known) if one.family.law else ""
+                held.law = law_of(held.pairs, LAWS[family.name], family.unit)
+        if held.numbers and not held.law and one.numbers is not None and len(one.numbers) == 1:
+            known = [*held.numbers, (scene, one.numbers)]
+            held.law = self._power_law(one, known, source)
         return held
+
+    def _power_law(self, one: Candidate, known: Sequence[tuple[Scene, Array]], source: str) -> str:
+        """How a candidate's one number goes with the sizes of the scenarios."""
+        scenes, numbers = [scene for scene, _ in known], np.array([p[0] for _, p in known])
+        text, right = one.text(scenes[-1].system), np.zeros(len(known))
+        ways = [(text, right, np.ones(len(known)))]
+        if one.family is not None:
+            right = np.array([one.family.right(scene.system)[0] for scene in scenes])
+            if one.family.name in LAWS:
+                what = LAWS[one.family.name]
+                ways = [(f"{1} {one.family.unit} is added to {what}", right, np.ones(len(known)))]
+                if np.all(right):
+                    ways.append((f"{what} is scaled by 1", 0.0 * right, right))
+        for text, offset, unit in ways:
+            values = (numbers - offset) / unit
+            for law, due in power_laws(text, [one.features for one in scenes], values):
+                tried = [replace(one, numbers=np.array([p])) for p in offset + unit * due]
+                evidence = [scene.evidence[source] for scene in scenes]
+                made = [(c, c.predicted(e), e) for c, e in zip(tried, evidence, strict=True)]
+                if all(a is not None and c.fits(e, a) for c, a, e in made):
+                    return law
+        return ""
 
     def _with_own_numbers(self, held: Held, other: Scene, source: str) -> None:
         """Numbers of another scenario: the same where these fit here too, and known better there.
@@ -132,7 +165,7 @@ class Scenes:
             return
         back = [one.evidence[source] for one in held.shown]
         tried = [(one, there.predicted(one)) for one in back]
-        if all(made is not None and one.fits(made) for one, made in tried):
+        if all(made is not None and there.fits(one, made) for one, made in tried):
             held.candidate = there
         elif there.numbers is not None:
             held.numbers.append((other, there.numbers))

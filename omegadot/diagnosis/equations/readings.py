@@ -8,15 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.operators.operands import pushed
+from omegadot.diagnosis.equations.operators.operands import turned as turned_by
 from omegadot.diagnosis.models.misreadings import OF_ANY_STATE, Misreading
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
-from omegadot.reference_impl.motion import center_of_mass_acceleration, forward_dynamics
+from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
-from omegadot.reference_impl.symmetric import apply, inverse
-from omegadot.reference_impl.system import Acceleration, Array
+from omegadot.reference_impl.symmetric import apply
+from omegadot.reference_impl.system import Acceleration, Array, System
 
 
 @dataclass(frozen=True)
@@ -47,28 +49,28 @@ def _reported() -> Iterator[Reading]:
         w = e.states.angular_velocity
         inertia, turned = moving_inertia(e.system), rotate(e.states.orientation, w)
         more = cross(w, apply(inertia, w)) - cross(turned, apply(inertia, turned))
-        return _pushed(e, more)
+        return pushed(e, more)
 
     def torque_back(e: Evidence) -> Acceleration:
         wanted = e.system.load.torque_world
         q = e.states.orientation
-        return _pushed(e, rotate(q, wanted) - rotate_inverse(q, wanted))
+        return pushed(e, rotate(q, wanted) - rotate_inverse(q, wanted))
 
     def torque_of_first(e: Evidence) -> Acceleration:
         wanted, q = e.system.load.torque_world, e.states.orientation
-        return _pushed(e, rotate_inverse(0.0 * q + q[:1], wanted) - rotate_inverse(q, wanted))
+        return pushed(e, rotate_inverse(0.0 * q + q[:1], wanted) - rotate_inverse(q, wanted))
 
     def gravity_of_first(e: Evidence) -> Acceleration:
         q, pull = e.states.orientation, e.system.load.gravity * e.system.body.mass
         more = rotate_inverse(0.0 * q + q[:1], pull) - rotate_inverse(q, pull)
         held = e.system.load.pivot is not None
-        return _pushed(e, cross(lever(e.system), more) if held else 0 * more)
+        return pushed(e, cross(lever(e.system), more) if held else 0 * more)
 
     def gravity_back(e: Evidence) -> Acceleration:
         """On a pivot; a free body's centre of mass falls without being turned."""
         q, pull = e.states.orientation, e.system.load.gravity * e.system.body.mass
         more = cross(lever(e.system), rotate(q, pull) - rotate_inverse(q, pull))
-        return _pushed(e, more if e.system.load.pivot is not None else 0 * more)
+        return pushed(e, more if e.system.load.pivot is not None else 0 * more)
 
     def damped(power: int, each: bool) -> Callable[[Evidence], Acceleration]:
         """By a power of omega, of each component or of its size, instead of omega itself."""
@@ -76,7 +78,7 @@ def _reported() -> Iterator[Reading]:
         def there(e: Evidence) -> Acceleration:
             w, d = e.states.angular_velocity, float(e.system.load.damping)
             size = np.abs(w) if each else norm(w)[:, None]
-            return _pushed(e, d * (w - size ** (power - 1) * w))
+            return pushed(e, d * (w - size ** (power - 1) * w))
 
         return there
 
@@ -86,6 +88,28 @@ def _reported() -> Iterator[Reading]:
             f"the damping goes with the {named} of each component of omega",
             damped(power, each=True),
         )
+
+    def rescaled(weight: Callable[[System, Array], Array]) -> Callable[[Evidence], Acceleration]:
+        """Without what would change the size of something that is quadratic in omega."""
+
+        def there(e: Evidence) -> Acceleration:
+            w, a = e.states.angular_velocity, e.true.angular
+            due = weight(e.system, w)
+            size = np.sum(due * w, axis=-1, keepdims=True)
+            part = np.sum(due * a, axis=-1, keepdims=True) / np.where(size > 0.0, size, 1.0)
+            return turned_by(e, a - part * w)
+
+        return there
+
+    kept: dict[str, Callable[[System, Array], Array]] = {
+        "its size": lambda s, w: w,
+        "the kinetic energy of rotation": lambda s, w: apply(moving_inertia(s), w),
+        "the size of the angular momentum": lambda s, w: apply(
+            moving_inertia(s), apply(moving_inertia(s), w)
+        ),
+    }
+    for what, weight in kept.items():
+        yield Reading(f"omega is rescaled so that {what} stays the same", rescaled(weight))
     yield Reading("the gyroscopic term is formed with omega in world axes", of_world_omega)
     yield Reading(
         "the torque in world axes is turned into the body by the transposed rotation", torque_back
@@ -102,14 +126,6 @@ def _reported() -> Iterator[Reading]:
     yield Reading(
         "the linear acceleration is zero", lambda e: Acceleration(e.true.angular, 0 * e.true.linear)
     )
-
-
-def _pushed(e: Evidence, torque: Array) -> Acceleration:
-    """The right accelerations with one more torque, (n, 3) N m in body axes."""
-    angular = e.true.angular + apply(inverse(moving_inertia(e.system)), torque)
-    if e.system.load.pivot is None:
-        return Acceleration(angular, e.true.linear)
-    return Acceleration(angular, center_of_mass_acceleration(e.system, e.states, angular))
 
 
 def _misread(one: Misreading) -> Iterator[Reading]:

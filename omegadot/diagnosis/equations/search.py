@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -19,6 +20,7 @@ from omegadot.diagnosis.equations.families import (
     fit,
 )
 from omegadot.diagnosis.equations.hypotheses import Hypothesis, hypotheses, wrong_form
+from omegadot.diagnosis.equations.operators import Changed, changed_vectors
 from omegadot.diagnosis.equations.readings import READINGS, Reading
 from omegadot.diagnosis.equations.terms import FEW, MORE, MOST, Terms
 from omegadot.diagnosis.wording.digits import vector
@@ -27,6 +29,7 @@ from omegadot.reference_impl.system import Acceleration, Array, System
 
 STEPS = "steps"  # evidence of what moves a body, of which nothing is reported by itself
 MOST_PAIRS = 64
+BY_MASS = re.compile("(divided|multiplied) by the mass|left out of the weight|a mass of 1 kg")
 DISTINCT = 1e-14  # relative: of a fitted number no more can be known
 
 
@@ -41,7 +44,7 @@ class Candidate:
     family: Family | None = None
     numbers: Array | None = None
     reading: Reading | None = None
-    terms: Terms | None = None
+    terms: Terms | Changed | None = None
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -49,6 +52,17 @@ class Candidate:
         named = (one.text for one in self.fixed)
         other = self.reading.text if self.reading else self.terms.name if self.terms else ""
         return (*named, self.family.name if self.family else "", other)
+
+    def fits(self, evidence: Evidence, made: Acceleration) -> bool:
+        """Whether what it gives is the engine's, within the rounding of its numbers."""
+        if self.family is None or self.numbers is None:
+            return evidence.fits(made)
+        return evidence.fits(made, self.family.slack(evidence.system, self.numbers))
+
+    @property
+    def by_mass(self) -> bool:
+        """Whether it holds by a factor of the mass, which many a number is on one body."""
+        return any(BY_MASS.search(one.text) for one in self.fixed)
 
     @property
     def parts(self) -> set[str]:
@@ -123,16 +137,18 @@ def levels(evidence: Evidence, deep: bool = True) -> Iterator[list[Candidate]]:
     likely = [one for one in single if not one.fixed[0].unlikely]
     yield likely + _readings(evidence)
     yield _fitted(evidence, ONE_NUMBER) + _with_terms(evidence, FEW)
-    yield _fitted(evidence, LEAST)
+    yield _fitted(evidence, LEAST) + _changed(evidence)
     unlikely = [one for one in single if one.fixed[0].unlikely]
     if deep:
         seen = _visible(evidence, known, forms)
         yield unlikely + _pairs(evidence, known, forms, seen)
-        yield _fitted(evidence, THREE_NUMBERS) + _with_terms(evidence, MORE)
+        yield (_fitted(evidence, THREE_NUMBERS) if evidence.far else []) + _with_terms(
+            evidence, MORE
+        )
         yield _fitted(evidence, EXTRA)
         yield _mixed(evidence, known, seen)
         yield _with_terms(evidence, MOST)
-        yield _fitted(evidence, SIX_NUMBERS)
+        yield _fitted(evidence, SIX_NUMBERS) if evidence.far else []
     else:
         yield unlikely
 
@@ -172,8 +188,12 @@ def _differs(numbers: Array, right: Array) -> bool:
 
 
 def _few(evidence: Evidence) -> Evidence:
-    places = np.linspace(0, len(evidence.angular_bound) - 1, SCREENED).round().astype(int)
-    return evidence.at(np.unique(places))
+    return evidence.few(SCREENED)
+
+
+def _changed(evidence: Evidence) -> list[Candidate]:
+    found = changed_vectors(evidence, steps=evidence.source == STEPS)
+    return [Candidate(terms=one, numbers=p) for one, p in found]
 
 
 def _visible(

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.dependence import dependence
 from omegadot.diagnosis.equations.describe import description, scenarios_in_common
 from omegadot.diagnosis.equations.evidence import (
     BEYOND_ROUNDING,
@@ -52,7 +53,15 @@ def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult
         if answer.ok
     }
     held = body_from(result.model.result["bodies"][0]) if result.model.ok else None
-    return Scene(case.name, case.system, features_of(case.system, case.initial), evidence, held)
+    scaled = {
+        what: of_forward_dynamics(
+            system, states, Acceleration(**a.result), eps_of(result.precision)
+        )
+        for what, (system, states, a) in result.scaled.items()
+        if a.ok
+    }
+    features = features_of(case.system, case.initial)
+    return Scene(case.name, case.system, features, evidence, held, scaled)
 
 
 def equation_causes(across: Across, name: str, source: str) -> list[str]:
@@ -100,8 +109,10 @@ def known_difference(across: Across, name: str, source: str) -> list[str]:
     sound = [bool(np.all(scene.evidence[source].sound)) for scene in scenes]
     failing = [scene.features for scene, right in zip(scenes, sound, strict=True) if not right]
     passing = [scene.features for scene, right in zip(scenes, sound, strict=True) if right]
+    here = across.scenes[name]
     texts = (
-        description(across.scenes[name].evidence[source]),
+        description(here.evidence[source]),
+        dependence(here.evidence[source], here.scaled) if source == FORWARD else "",
         scenarios_in_common(failing, passing),
     )
     known = "; ".join(text for text in texts if text)

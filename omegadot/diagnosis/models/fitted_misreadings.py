@@ -20,6 +20,7 @@ FIELDS = {
     "linear_velocity": "the linear velocity",
 }
 ADDED = "the same at every sample"
+NOTHING = 1e-12  # relative: an addition that is none
 LEAST = 3  # samples that have the same addition
 CLOSE = 1e-6  # relative: a factor that is none
 LOOSE = 1e-3  # relative: what is fitted is tried, where it is as close as this
@@ -61,8 +62,10 @@ def _fitted(field: str, reported: State, meant: State) -> Iterator[Misreading]:
             yield Misreading(f"{what} is scaled by {factor(number)}", _by(field, number))
     more = np.mean(came - due, axis=0)
     several = came.ndim > 1 and len(came) >= LEAST  # any one vector is another and a rest
-    if several and np.max(np.abs(came - due - more)) <= LOOSE * float(norm(more)):
-        text = f"{what} is off by {vector(more)}, {ADDED}"
+    added = several and float(norm(more)) > NOTHING * size
+    if added and np.max(np.abs(came - due - more)) <= LOOSE * float(norm(more)):
+        shown = np.where(np.abs(more) > CLOSE * np.max(np.abs(more)), more, 0.0)
+        text = f"{what} is off by {vector(np.round(shown, DECIMALS + 3))}, {ADDED}"
         yield Misreading(text, _less(field, more))
     if size > 0.0:
         others = list(_other_axes(field, what, came, due))

@@ -11,6 +11,7 @@ import numpy as np
 from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Array, Body, Load, System
 
+DECIMALS, SMALL = range(1, 8), range(1, 7)
 SPHERE = "the inertia is that of a sphere with the same trace"
 UNIT = "the inertia is the unit matrix"
 
@@ -81,6 +82,12 @@ def _tensors(system: System, mass: float) -> dict[str, Array]:
         found[text] = other
     found[SPHERE] = np.trace(tensor) / 3.0 * np.eye(3)
     found[UNIT] = np.eye(3)
+    for digits in DECIMALS:
+        found[f"the inertia is rounded to {digits} decimals"] = np.round(tensor, digits)
+    for power in SMALL:
+        kept = np.abs(tensor) >= 10.0**-power * np.trace(tensor)
+        text = f"what is smaller than 1e-{power} of the trace is dropped from the inertia"
+        found[text] = np.where(kept, tensor, 0.0)
     found["the inertia is divided by the mass"] = tensor / mass
     found["the inertia is multiplied by the mass"] = tensor * mass
     if np.any(body.center_of_mass):

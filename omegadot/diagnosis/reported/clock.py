@@ -50,8 +50,8 @@ def _in_proportion(time: Array, expected: Array, tolerance: float) -> str:
             return f"the times are reported in {unit}"
     if abs(ratio - 1.0) > 0.1:
         return f"every time is scaled by {factor(ratio)}"
-    wrong = "fast" if ratio < 1.0 else "slow"
-    return f"the clock runs {abs(ratio - 1.0):.3g} too {wrong}: every time is off in proportion"
+    wrong = "small" if ratio < 1.0 else "large"
+    return f"every time is too {wrong}, by {abs(ratio - 1.0):.3g} of it"
 
 
 def _rounded(time: Array, expected: Array) -> str:
@@ -62,6 +62,9 @@ def _rounded(time: Array, expected: Array) -> str:
     for grid, unit in GRIDS.items():
         whole = time / grid
         near = np.abs(whole - np.round(whole)) <= 1e-6 * np.maximum(1.0, np.abs(whole) * 1e-9)
+        due = np.abs(expected / grid - np.round(expected / grid))
+        if np.all(due <= 1e-6 * np.maximum(1.0, np.abs(whole) * 1e-9)):
+            continue  # the right ones are as well
         if np.all(near) and np.all(np.abs(time - expected) <= 1.01 * grid):
             return f"the times are whole {unit}: what is left of them is cut off or rounded"
     return ""

@@ -8,6 +8,13 @@ from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.system import State
 
+MOST_DECIMALS = 11
+DECIMAL = {
+    "angular_velocity": "omega",
+    "orientation": "the attitude",
+    "position": "the position",
+    "linear_velocity": "the linear velocity",
+}
 MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
 
 
@@ -33,6 +40,19 @@ def precision_reported(reported: ReportedRun) -> str:
         return f"the {what} is reported in single precision, and kept in double"
     single_is_due = reported.truth.yardstick.eps > EPS
     return f"the {what} is kept in single precision" if found and not single_is_due else ""
+
+
+def decimals_reported(reported: ReportedRun) -> str:
+    """A quantity whose every number after the start is one of a few decimals."""
+    for name, what in DECIMAL.items():
+        came, own = (getattr(x, name)[1:] for x in (reported.state, reported.own))
+        for digits in range(1, MOST_DECIMALS):
+            rounded = np.round(came, digits)
+            if np.array_equal(rounded, came) and len(np.unique(came)) > came.size // 2:
+                if np.any(np.round(own, digits) != own):
+                    return f"{what} is rounded to {digits} decimals in the run"
+                break
+    return ""
 
 
 def digits_reported(reported: ReportedRun) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT, scheme_named
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import Truth
@@ -22,6 +23,8 @@ LEAST_SAMPLES = 6
 MOST_GUESSES = 3
 # In parts of what rounding may do: a fitted number is then good to six digits.
 DISTINCT = 1e6
+SLACK = 4.0
+MOST_STEPS = 5000  # of a run that is stepped for a guess
 
 
 @dataclass(frozen=True)
@@ -44,8 +47,8 @@ class ReportedRun:
 
     @property
     def declared(self) -> Scheme:
-        """The scheme that is declared."""
-        return SCHEMES[self.integrator.scheme or ""]
+        """The scheme that is declared, or the guess."""
+        return scheme_named(self.integrator.scheme or "")
 
     @property
     def bounds(self) -> dict[str, Array]:
@@ -69,14 +72,18 @@ class ReportedRun:
         return len(self.time) == len(self.own.position) and self.agrees(self.state, self.own)
 
     @property
-    def distance_at_first(self) -> float:
-        """How far the run is from the reference's in its first samples, in parts of the bound."""
+    def distance_at_first(self) -> tuple[int, float]:
+        """How many quantities are off in the first samples, and how far, in parts of the bound.
+
+        A run of one scheme in which one quantity is misreported is nearer to it than to others.
+        """
         bounds, first = self.bounds, slice(1, LEAST_SAMPLES)
         shares = [
             self.truth.yardstick.distance(c, self.state[first], self.own[first]) / bounds[c][first]
             for c in CHANNELS
         ]
-        return float(np.nan_to_num(np.median(np.max(shares, axis=0)), nan=np.inf))
+        off = sum(not bool(np.all(one <= SLACK)) for one in shares)
+        return off, float(np.nan_to_num(np.median(np.max(shares, axis=0)), nan=np.inf))
 
     def stepped(
         self,
@@ -131,7 +138,7 @@ def reported_run_guesses(
     if answer is None or not answer.ok or integrator.scheme in SCHEMES:
         return []
     time, state = answer.result["time"], State(**answer.result["state"])
-    ranked = list[tuple[float, ReportedRun]]()
+    ranked = list[tuple[tuple[int, float], ReportedRun]]()
     for (key, timestep), own in truth.companions.items():
         if timestep != sweep.timestep:
             continue
@@ -141,7 +148,37 @@ def reported_run_guesses(
             return [one]
         ranked.append((one.distance_at_first, one))
     ranked.sort(key=lambda pair: pair[0])
+    if ranked and len(time) == len(sweep.times):
+        ranked += _explicit(ranked[0][1], ranked[0][0])
+    ranked.sort(key=lambda pair: pair[0])
     return [_until_it_shows(one) for _, one in ranked[:MOST_GUESSES]]
+
+
+def _explicit(
+    nearest: ReportedRun, distance: tuple[int, float]
+) -> list[tuple[tuple[int, float], ReportedRun]]:
+    """The run next to explicit schemes that are nearer than the reference's nearest.
+
+    Each is stepped through the first samples, and the one that is nearest there through the run.
+    """
+    truth, sweep = nearest.truth, nearest.sweep
+    own = replace(nearest.integrator, coordinates="com-world")
+    first = sweep.sample_steps[min(LEAST_SAMPLES, len(sweep.times)) - 1]
+    short = replace(sweep, steps=int(first))
+    count = len(short.times)
+    beginning = replace(nearest, sweep=short, time=nearest.time[:count])
+    beginning = replace(beginning, state=nearest.state[:count], growth=nearest.growth[:count])
+    best, least = "", distance
+    for name in EXPLICIT:
+        guess = replace(beginning, integrator=replace(own, scheme=name))
+        here = replace(guess, own=guess.stepped()).distance_at_first
+        if here < least:
+            best, least = name, here
+    if not best or sweep.steps > MOST_STEPS:
+        return []
+    growth = truth.growth[truth.rows(sweep)]
+    guess = replace(nearest, integrator=replace(own, scheme=best), growth=growth)
+    return [(least, replace(guess, own=guess.stepped()))]
 
 
 def _until_it_shows(reported: ReportedRun) -> ReportedRun:

@@ -8,7 +8,7 @@ import numpy as np
 
 from omegadot.diagnosis.models.fitted_misreadings import ADDED, fitted_misreadings
 from omegadot.diagnosis.models.misreadings import NOT_UNIT, OF_ANY_STATE, misreadings
-from omegadot.diagnosis.reported.precision import digits_reported
+from omegadot.diagnosis.reported.precision import decimals_reported, digits_reported
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.reported.sample_causes import ALONE, half_step
 from omegadot.diagnosis.wording.kinds import kind_of
@@ -151,5 +151,5 @@ def _rescaled(reported: ReportedRun) -> str:
 
 
 # What is seen of the numbers, whatever made them.
-SEEN = (not_finite, digits_reported)
+SEEN = (not_finite, digits_reported, decimals_reported)
 CAUSES_REPORTED = (_late, half_step, _rescaled)

@@ -132,6 +132,9 @@ def intervals(reported: ReportedRun) -> str:
     time, first, last = reported.time, int(wrong[0]), int(wrong[-1])
     if len(wrong) == 1 and first == 0:
         return f"only the first steps are wrong: from t = {time[1]:.4g} s on, the run is sound"
+    if len(wrong) == 1 and first + 1 < len(sound):
+        between = f"between t = {time[first]:.4g} s and {time[first + 1]:.4g} s"
+        return f"the run jumps once, {between}: before and after it is sound"
     if len(wrong) <= 2 and last - first <= 1 and last + 1 < len(sound):
         pairs = (values[last] == values[last - 1] for values in vars(reported.state).values())
         twice = last > 0 and all(bool(np.all(pair)) for pair in pairs)

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.search import Candidate
 from omegadot.diagnosis.stepping.restep import on_rows
+from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, common_factor
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
+from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 SAMPLES = 12
 RADIANS, MOST_STEPS = 0.1, 80  # of a step here; over the whole beginning
+Followed = Literal["wrong", "right", "between"]
+BETWEEN = 0.2  # by how much the distances to both may add up to another than their own
 NEAR, FAR = 0.3, 0.7  # of the distance of the two solutions
 SEEN = 1e-4  # relative: what the steps here leave
 
@@ -31,8 +36,10 @@ class Beginning:
     exact: State
 
 
-def follows(system: System, beginning: Beginning, candidate: Candidate, eps: float) -> bool | None:
-    """Whether a run follows a wrong equation, or the right one (False); None where it is open.
+def follows(
+    system: System, beginning: Beginning, candidate: Candidate, eps: float
+) -> Followed | None:
+    """Which equation a run follows, or whether it lies between the two; None where it is open.
 
     A scheme's own error is small against the distance of the two where the answer is given.
     """
@@ -48,7 +55,7 @@ def follows(system: System, beginning: Beginning, candidate: Candidate, eps: flo
     if wrong is None:
         return None
     reported, exact = (x[1 : kept + 1] for x in (beginning.reported, beginning.exact))
-    found = dict[float, bool | None]()
+    found = dict[float, Followed | None]()
     names = ("angular_velocity", "linear_velocity")
     for name in names[: 1 if system.load.pivot is not None else 2]:
         near, far, came = (getattr(x, name) for x in (exact, wrong, reported))
@@ -59,9 +66,32 @@ def follows(system: System, beginning: Beginning, candidate: Candidate, eps: flo
         to_wrong, to_right = (
             float(np.median(norm(came - x)[used] / apart[used])) for x in (far, near)
         )
-        answer = True if to_wrong < NEAR else False if to_right < NEAR and to_wrong > FAR else None
+        answer: Followed | None = None
+        if to_wrong < NEAR:
+            answer = "wrong"
+        elif to_right < NEAR and to_wrong > FAR:
+            answer = "right"
+        elif abs(to_wrong + to_right - 1.0) < BETWEEN:
+            # a scheme's own error is as large a part of the distance at every sample
+            parts = (norm(came - far) / apart)[used]
+            answer = "between" if parts[0] < NEAR and parts[-1] > FAR else None
         found[float(np.max(apart)) / size] = answer
     return found[max(found)] if found else None
+
+
+def keeps_pace(beginning: Beginning, steps: VanishingSteps) -> bool:
+    """Whether the samples after the first go on as much too fast, or too slowly, as first steps do.
+
+    By how far the attitude turns from sample to sample, next to the exact motion.
+    """
+    k = common_factor(steps.rates)
+    with np.errstate(all="ignore"):
+        came, due = (
+            norm(rotation_between(x.orientation[1:-1], x.orientation[2:]))
+            for x in (beginning.reported, beginning.exact)
+        )
+        pace = float(np.median(came / due)) if len(came) else np.nan
+    return k is None or not np.isfinite(pace) or abs(pace - 1.0) > NEAR * abs(k - 1.0)
 
 
 def _solved(

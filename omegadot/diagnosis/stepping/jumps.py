@@ -12,11 +12,19 @@ from omegadot.diagnosis.models.misreadings import Misreading, misreadings
 from omegadot.diagnosis.stepping.follows import Beginning
 from omegadot.diagnosis.stepping.vanishing_steps import LEFT, VanishingSteps, stays
 from omegadot.diagnosis.wording.conditions import only_where
-from omegadot.diagnosis.wording.digits import limits
+from omegadot.diagnosis.wording.digits import factor, limits
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import attitude_angle, quaternion_product
 from omegadot.reference_impl.system import Array
 
+SLIGHT = 1e5  # times rounding, of which the extrapolation makes more
+CLOSE = 1e-2  # relative: a change that is in proportion
+QUANTITIES = (
+    ("angular_velocity", "omega", "rad/s"),
+    ("linear_velocity", "the linear velocity", "m/s"),
+    ("orientation", "the quaternion", ""),
+    ("position", "the position", "m"),
+)
 NEARER = 0.5  # of what a misread run is off by: a coarse scheme leaves something too
 
 
@@ -43,12 +51,18 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
     relative = replace(after, orientation=quaternion_product(before.orientation, after.orientation))
     if np.all(stays(steps, relative)):
         return "the attitude of a run is relative to its start, or starts from the identity"
+    unsigned = before.orientation * np.sign(before.orientation * [1.0, 0, 0, 0] + [0, 1, 1, 1])
+    if np.any(before.orientation[:, 0] < 0.0) and np.all(
+        stays(replace(steps, states=replace(before, orientation=unsigned)), after)
+    ):
+        return "the quaternion's scalar part is reported without its sign"
     w, new = before.angular_velocity, after.angular_velocity
     v, moved = before.linear_velocity, after.linear_velocity
     between = steps.moved
     for what, unit, was, now, step in (
         ("omega", "rad/s", w, new, between.angular_velocity),
         ("the linear velocity", "m/s", v, moved, between.linear_velocity),
+        ("the position", "m", before.position, after.position, between.position),
     ):
         allowed = LEFT * norm(was) + norm(step)
         jumped = norm(now - was) > allowed
@@ -58,6 +72,25 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
                 return text
     where = only_where([(steps.system, before, stays(steps, after))])
     return f"a step changes the state, however short it is, only where {where}" if where else ""
+
+
+def slight_jump_cause(steps: VanishingSteps) -> str:
+    """What every step adds to a state however short it is, if that is little; "" without any."""
+    before, after = steps.states, steps.limit
+    rate = norm(before.angular_velocity)
+    for name, what, unit in QUANTITIES:
+        was, now = getattr(before, name), getattr(after, name)
+        off, size = now - was, norm(was)
+        allowed = SLIGHT * steps.eps * (size + rate + norm(before.linear_velocity))
+        seen = norm(off) > allowed
+        if np.count_nonzero(seen) < len(seen) // 2 or not np.all(np.isfinite(off)):
+            continue
+        k = float(np.sum(off * was) / np.sum(was * was))
+        if np.all(norm(off - k * was) <= CLOSE * abs(k) * size + allowed):
+            return f"{what} is multiplied by {factor(1.0 + k)} in every step, however short it is"
+        middle = float(np.median(norm(off)))
+        return f"every step changes {what} by some {middle:.0e} {unit}, however short it is"
+    return ""
 
 
 def _along(one: Misreading, beginning: Beginning | None) -> str:
@@ -101,6 +134,14 @@ def _limit(
         if np.min(more) < least:
             return ""
         return f"{sleeps}{what} is set to zero below {limits(least, float(np.min(more)), unit)}"
+    wrong = np.any(np.abs(now - was) > allowed[:, None], axis=0)
+    if np.count_nonzero(wrong) == 1:
+        k = int(np.argmax(wrong))
+        ends, near = now[jumped, k], 10.0 * float(np.max(allowed))
+        if np.ptp(ends) <= near and len(ends) > 1:
+            end = float(np.median(ends)) if abs(np.median(ends)) > near else 0.0
+            side = "above" if np.all(was[jumped, k] < end) else "below"
+            return f"{what} along {'xyz'[k]} is held {side} {end:.6g} {unit}"
     limit = float(np.median(held[jumped]))
     scaled = was * np.minimum(1.0, limit / np.where(size > 0.0, size, 1.0))[:, None]
     if np.all(norm(now - scaled) <= 10 * allowed):

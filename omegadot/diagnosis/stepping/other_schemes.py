@@ -10,6 +10,7 @@ from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.slips import damping_ends, slipped
 from omegadot.diagnosis.stepping.step_ends import (
     End,
+    kept_ends,
     left_multiplied,
     second_order_turn,
     straight_quaternion,
@@ -54,9 +55,10 @@ def other_schemes(reported: ReportedRun) -> list[str]:
 
 def other_ends(reported: ReportedRun) -> list[str]:
     """Ends of every step that make the run out of the declared scheme's."""
+    ends = ENDS | kept_ends(reported.case.system)
     return [
         text
-        for text, end in ENDS.items()
+        for text, end in ends.items()
         if reported.agrees(reported.state, reported.stepped(with_end(reported.declared, end)))
     ]
 

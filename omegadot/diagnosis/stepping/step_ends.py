@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.rotations import (
     conjugate,
     normalize,
@@ -16,7 +17,8 @@ from omegadot.reference_impl.rotations import (
     turn_in_body,
 )
 from omegadot.reference_impl.schemes import Motion, Scheme
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.symmetric import apply
+from omegadot.reference_impl.system import Array, State, System
 
 End = Callable[[State, State, float | Array], State]
 
@@ -115,6 +117,29 @@ def _shortened(vectors: Array, length: float) -> Array:
 def held_below(rate: float) -> End:
     """Omega is scaled down to a rate in rad/s."""
     return _of_omega(lambda w: _shortened(w, rate))
+
+
+def kept_ends(system: System) -> dict[str, End]:
+    """Omega is rescaled after each step, so that something of it keeps its value."""
+    inertia = moving_inertia(system)
+    sizes: dict[str, Callable[[Array], Array]] = {
+        "its size": norm,
+        "the kinetic energy of rotation": lambda w: np.sqrt(np.sum(w * apply(inertia, w), -1)),
+        "the size of the angular momentum": lambda w: norm(apply(inertia, w)),
+    }
+
+    def by(size: Callable[[Array], Array]) -> End:
+        def end(before: State, after: State, dt: float | Array) -> State:
+            w = after.angular_velocity
+            scaled = w * (size(before.angular_velocity) / size(w))[..., None]
+            return replace(after, angular_velocity=scaled)
+
+        return end
+
+    return {
+        f"omega is rescaled after each step, so that {what} stays the same": by(size)
+        for what, size in sizes.items()
+    }
 
 
 def speed_below(speed: float) -> End:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
-from omegadot.gates.steps.limits import Limit, Tolerated
+from omegadot.gates.steps.limits import Limit, Tolerated, extrapolated
 from omegadot.gates.steps.limits import limits as rates_at_no_step
 from omegadot.gates.steps.probe import Probe
 from omegadot.reference_impl.rotations import (
@@ -20,18 +20,24 @@ from omegadot.reference_impl.system import Acceleration, Array, State, System
 EXACT = Tolerated()
 AMPLIFIED = 8.0  # what the extrapolation from five halved steps makes of a rounding
 STILL = 1e-9  # a factor that is none but for rounding
+RANGE = 5  # steps
 LEFT = 1e-5  # relative: what is left of a state extrapolated to no step from two short ones
 
 
 @dataclass(frozen=True)
 class VanishingSteps:
-    """The rates at no step, by channel, and where a step of no length leads."""
+    """The rates at no step, by channel, and where a step of no length leads.
+
+    start and moved: from the two shortest steps.  limit: from the shortest five, which knows it to
+    rounding where the steps are smooth.
+    """
 
     system: System
     states: State
     rates: dict[str, Limit]
     start: State
     moved: State
+    limit: State
     eps: float = EPS
 
     @property
@@ -90,7 +96,9 @@ def vanishing_steps(
         rates = rates_at_no_step(system, probe, stepped, eps, tolerated)
     ends = [2.0 * f[:, -1] - f[:, -2] for f in vars(stepped).values()]
     moved = [f[:, -1] - f[:, -2] for f in vars(stepped).values()]
-    return VanishingSteps(system, probe.states, rates, State(*ends), State(*moved), eps)
+    limit = [extrapolated(f[:, -RANGE:]) for f in vars(stepped).values()]
+    states = (State(*ends), State(*moved), State(*limit))
+    return VanishingSteps(system, probe.states, rates, *states, eps)
 
 
 def better(limit: Limit) -> tuple[Array, Array]:

@@ -29,8 +29,8 @@ def stepping_causes(reported: ReportedRun, equations: bool) -> Iterator[str]:
     yield from filter(None, (asleep(reported), still(reported)))
     if reported.is_declared:
         yield from other_schemes(reported)
-        yield from other_ends(reported)
-        yield from filter(None, (turn_held(reported),))
+    yield from other_ends(reported)
+    yield from filter(None, (turn_held(reported),))
     yield from slips(reported)
     with_number = (longer, damped, clipped, held, speed)
     yield from filter(None, (cause(reported) for cause in with_number))

@@ -42,6 +42,7 @@ def features_of_states(system: System, states: State) -> dict[str, tuple[Array, 
         found[f"omega_{axis}"] = (w[:, k], "rad/s")
         found[f"|omega_{axis}|"] = (np.abs(w[:, k]), "rad/s")
         found[f"the velocity along {axis}"] = (v[:, k], "m/s")
+        found[f"the position along {axis}"] = (x[:, k], "m")
     return found
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from omegadot.reference_impl.system import Array
@@ -43,3 +45,8 @@ def factor(value: float) -> str:
 def limits(low: float, high: float, unit: str) -> str:
     """What lies between two numbers: both, in digits that differ."""
     return f"{number(low, high)} and {number(high, low)} {unit}".strip()
+
+
+def listed(names: Sequence[str]) -> str:
+    """``a, b and c``."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))

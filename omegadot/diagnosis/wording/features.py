@@ -10,6 +10,7 @@ import numpy as np
 
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import State, System
 
 # How unlikely chance must be to sort the scenarios so: one in so many ways to sort them.
@@ -57,6 +58,11 @@ def features_of(system: System, initial: State) -> Features:
     sizes = {
         "the mass": (mass, "kg"),
         "the body's radius of gyration": (float(np.sqrt(np.trace(tensor) / mass)), "m"),
+        "the trace of the inertia about the centre of mass": (float(np.trace(tensor)), "kg m^2"),
+        "the trace of the inertia about what stays": (
+            float(np.trace(moving_inertia(system))),
+            "kg m^2",
+        ),
         "the least moment of inertia": (float(moments[0]), "kg m^2"),
         "the ratio of the largest moment of inertia to the least": (
             float(moments[-1] / moments[0]),

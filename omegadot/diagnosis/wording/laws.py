@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import permutations, product
 
 import numpy as np
 
-from omegadot.diagnosis.wording.digits import factor, number, vector
+from omegadot.diagnosis.wording.digits import factor, limits, number, vector
 from omegadot.diagnosis.wording.features import Features
-from omegadot.reference_impl.system import Array, System
+from omegadot.diagnosis.wording.kinds import NUMBER
+from omegadot.reference_impl.system import Array
 
 SAME = 1e-6  # relative; what fits a run of vanishing steps is no better known
-CLEAN = 1e-5  # of a power law, in the logarithm
+CLEAN = 1e-5  # relative: a factor that is one
+LOOSE = 1e-2  # of a power law, in the logarithm, before it is tried
+MOST_DECIMALS = 9
 LEAST_POINTS, LEAST_SPAN = 3, 1.0  # on which it rests; of its logarithms
 
 
@@ -47,12 +50,22 @@ def law_of(pairs: Sequence[tuple[Array, Array]], what: str, unit: str) -> str:
         scaled = np.where(due > 0.0, requested * np.minimum(1.0, longest / due), 0.0)
     if not few and _close(scaled, acting, size):
         return f"the size of {what} is limited to {number(longest)} {unit}"
+    for digits in range(MOST_DECIMALS):
+        rounded = np.round(requested, digits)
+        if _close(rounded, acting, size) and np.max(np.abs(held)) >= 0.5 * 10.0**-digits:
+            return f"{what} is rounded to {digits} decimals"
     zero = np.abs(requested[changed])
     if not np.any(held) and not np.any((np.abs(requested) <= np.max(zero)) & (acting != 0.0)):
         least = np.abs(requested[acting != 0.0])
         if len(least):
             between = f"{number(float(np.max(zero)))} and {number(float(np.min(least)))}"
             return f"{each} is taken for zero below a limit between {between} {unit}"
+    gone = (lengths == 0.0) & changed.any(axis=-1, keepdims=True)
+    if not few and np.any(lengths) and not np.any(changed & ~gone):
+        low, high = float(np.max(due[gone], initial=0.0)), float(np.min(due[lengths > 0.0]))
+        if 0.0 < low < high:
+            between = limits(low, high, unit)
+            return f"{what} is taken for zero where its size is below a limit between {between}"
     more = acting - requested
     if _close(more, more[0], size):
         shown = number(float(more[0, 0])) if few else vector(more[0])
@@ -83,27 +96,38 @@ def _order(requested: Array, acting: Array, size: Array) -> str:
     return ", ".join(f"{'-' if sign < 0 else ''}{'xyz'[axis]}" for axis, sign in pairs)
 
 
-def power_law(what: str) -> Callable[[Sequence[tuple[Features, System, Array]]], str]:
-    """A factor that goes as a power of one size of the scenarios, as text; "" without any."""
+def power_laws(
+    text: str, scenarios: Sequence[Features], numbers: Array
+) -> Iterator[tuple[str, Array]]:
+    """A cause with one number, (n,) on so many scenarios, as a power of one of their sizes.
 
-    def law(known: Sequence[tuple[Features, System, Array]]) -> str:
-        if len(known) < LEAST_POINTS:
-            return ""
-        k = np.array([float(p[0]) for _, _, p in known])
-        if np.any(k * k[0] <= 0.0):
-            return ""
-        for name, (_, unit) in known[0][0].sizes.items():
-            x = np.array([features.sizes[name][0] for features, _, _ in known])
-            if np.any(x <= 0.0) or np.ptp(np.log(x)) < LEAST_SPAN:
-                continue
-            slope, start = np.polyfit(np.log(x), np.log(np.abs(k)), 1)
-            left = np.log(np.abs(k)) - slope * np.log(x) - start
-            if np.max(np.abs(left)) > CLEAN or abs(slope) < CLEAN:
-                continue
-            if what in name and abs(slope + 1.0) < CLEAN:
-                size = float(np.sign(k[0]) * np.exp(start))
-                return f"{name} is {number(size)} {unit}, whatever was requested"
-            return f"{what} is scaled by a factor that goes as {name}^{number(round(slope, 4))}"
-        return ""
+    Yields texts with the numbers that they come to, which have to be tried.
+    """
+    if len(numbers) < LEAST_POINTS or np.any(numbers * numbers[0] <= 0.0):
+        return
+    for name, (_, unit) in scenarios[0].sizes.items():
+        x = np.array([one.sizes[name][0] for one in scenarios])
+        if np.any(x <= 0.0) or np.ptp(np.log(x)) < LEAST_SPAN:
+            continue
+        slope, start = np.polyfit(np.log(x), np.log(np.abs(numbers)), 1)
+        left = np.log(np.abs(numbers)) - slope * np.log(x) - start
+        near = round(2.0 * float(slope)) / 2.0
+        if np.median(np.abs(left)) > LOOSE or abs(near) < 0.5:
+            continue
+        size = float(np.sign(numbers[0]) * np.exp(np.median(np.log(np.abs(numbers) / x**near))))
+        if abs(abs(size) - 1.0) < CLEAN:
+            size = float(np.sign(size))
+        yield _worded(text, name, unit, near, size), size * x**near
 
-    return law
+
+def _worded(text: str, name: str, unit: str, power: float, size: float) -> str:
+    what, scaled, _ = text.partition(" is scaled by ")
+    times = "" if abs(size - 1.0) < CLEAN else f"{number(float(f'{size:.6g}'))} times "
+    if scaled and name.endswith(what) and power == -1.0:
+        return f"{name} is {number(size)} {unit}, whatever was requested"
+    if scaled and not times and abs(power) == 1.0:
+        return f"{what} is {'multiplied' if power > 0 else 'divided'} by {name}"
+    shown = f"{times}{name}" if power == 1.0 else f"{times}{name}^{number(power)}"
+    if scaled:
+        return f"{what} is scaled by a factor that goes as {shown}"
+    return f"{NUMBER.sub('c', text, count=1)}, where c is {shown}"

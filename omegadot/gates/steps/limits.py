@@ -40,6 +40,11 @@ def _extrapolants(quotients: Array) -> tuple[Array, Array, Array]:
     return last[-1], last[-2], last[-3]
 
 
+def extrapolated(values: Array) -> Array:
+    """The limit at no step of (..., 5, c) at halved steps."""
+    return np.asarray(_extrapolants(values)[0])
+
+
 _WEIGHTS = np.abs(_extrapolants(np.eye(5))[0])
 _AMPLIFIED = float(np.sum(_WEIGHTS))  # what the extrapolation makes of roundings of the rates
 

@@ -122,7 +122,7 @@ def GravityAxesPermuted(load: Load) -> Load:
     return replace(load, gravity=np.roll(load.gravity, 1))
 
 
-@extra_torque("torque", named="it is divided by the mass")
+@extra_torque("torque", named=("it is divided by the mass", "all loads is scaled by"))
 def TorqueOverMass(system: System, state: State) -> Array:
     """The torques of the loads are divided by the mass, as forces are."""
     return (1.0 / system.body.mass - 1.0) * torque(system, state)

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from omegadot.diagnosis.equations.equation_form import Form, accelerations, form_of, stacked
-from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.wording.digits import factor
-from omegadot.diagnosis.wording.features import Features
 from omegadot.reference_impl.system import Array, System
 
 MOST_TRIES = 8
 DELTA = 1e-6
 NOTHING = 1e-7  # a part that cannot be kept apart from none in the limit of vanishing steps
+OF_THE_BODY = ("inertia", "lever", "pivot", "mass")  # a larger one makes no term larger
 AXES = "xyz"
-
-
-Known = tuple[Features, System, Array]
 
 
 @dataclass(frozen=True)
@@ -28,9 +25,8 @@ class Family:
 
     starts: where the search begins, each (k,); none where the family does not apply.  form: the
     equation with these numbers.  text: the cause as text.  right: the numbers of the right
-    equation, (k,), against which those found are held over several scenarios.  law: how the
-    numbers of several scenarios go together, as text; "" where they do not.  guess: one more start,
-    from the evidence.
+    equation, (k,), against which those found are held over several scenarios.  guess: one more
+    start, from the evidence.
     """
 
     name: str
@@ -40,8 +36,15 @@ class Family:
     text: Callable[[System, Array], str]
     right: Callable[[System], Array]
     unit: str = ""
-    law: Callable[[Sequence[Known]], str] | None = None
     guess: Callable[[Evidence], Array | None] | None = None
+
+    def slack(self, system: System, p: Array) -> float:
+        """In bounds, what is allowed: a term that is larger than the right one rounds more."""
+        if self.part in OF_THE_BODY:
+            return SLACK
+        right = float(np.max(np.abs(self.right(system))))
+        size = float(np.max(np.abs(p)))
+        return SLACK * max(1.0, size / right) if right > 0.0 else SLACK
 
 
 def fit(evidence: Evidence, family: Family, base: Form | None = None) -> Array | None:
@@ -70,7 +73,7 @@ def _from(evidence: Evidence, family: Family, right: Form, p: Array) -> Array | 
     for _ in range(MOST_TRIES):
         try:
             here = accelerations(form(p), evidence.states)
-            if evidence.fits(here):
+            if evidence.fits(here, family.slack(evidence.system, p)):
                 return p
             moved = [form(p + d * one) for d, one in zip(scale, np.eye(len(p)), strict=True)]
             there = accelerations(stacked(moved), evidence.states)
@@ -99,7 +102,6 @@ def scalar(
     form: Callable[[Form, System, float], Form],
     text: Callable[[System, float], str],
     unit: str = "",
-    law: Callable[[Sequence[Known]], str] | None = None,
 ) -> Family:
     """A family of one number, whose right one is the same for every system."""
     return Family(
@@ -110,7 +112,6 @@ def scalar(
         lambda s, p: text(s, float(p[0])),
         lambda s: np.array([right]),
         unit,
-        law,
     )
 
 
@@ -127,14 +128,8 @@ def always(_: System) -> bool:
 def scaled(what: str) -> Callable[[System, float], str]:
     """Of a factor: how it is worded."""
 
-    def text(system: System, k: float) -> str:
-        mass = float(system.body.mass)
-        if abs(k) < NOTHING:
-            return f"{what} is missing"
-        known = {"it is divided by the mass": 1.0 / mass, "it is multiplied by the mass": mass}
-        # where mass is one nothing shows it
-        why = [t for t, v in known.items() if abs(mass - 1.0) > 1e-6 and abs(k / v - 1.0) < 1e-9]
-        return f"{what} is scaled by {factor(k)}" + (f": {why[0]}" if why else "")
+    def text(_: System, k: float) -> str:
+        return f"{what} is missing" if abs(k) < NOTHING else f"{what} is scaled by {factor(k)}"
 
     return text
 

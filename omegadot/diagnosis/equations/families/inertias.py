@@ -105,11 +105,15 @@ def scale_of_inertia(evidence: Evidence) -> Array | None:
 def _inertia_family(name: str, where: str, parts: tuple[str, ...]) -> Family:
     def form(right: Form, system: System, p: Array) -> Form:
         tensor = _tensor(p)
+        if not np.linalg.eigvalsh(tensor)[0] > 0.0:
+            raise ValueError("no inertia of a body")
         made = {"solve": np.linalg.inv(tensor), "spin": tensor}
         return replace(right, **{one: made[one] for one in parts})
 
     def text(system: System, p: Array) -> str:
         requested, tensor = np.asarray(moving_inertia(system), dtype=float), _tensor(p)
+        if parts == ("spin",):  # of which a part like the unit matrix makes no torque
+            tensor = tensor + np.trace(requested - tensor) / 3.0 * np.eye(3)
         off = float(np.linalg.norm(tensor - requested, 2) / np.linalg.norm(requested, 2))
         rows = "; ".join(vector(row, own) for row, own in zip(tensor, requested, strict=True))
         about = "" if system.load.pivot is None else " about the pivot"

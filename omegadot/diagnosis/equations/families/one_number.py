@@ -10,6 +10,7 @@ import numpy as np
 from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.families.family import (
     AXES,
+    NOTHING,
     Family,
     always,
     driven,
@@ -18,8 +19,7 @@ from omegadot.diagnosis.equations.families.family import (
     with_body,
 )
 from omegadot.diagnosis.equations.families.inertias import scale_of_inertia
-from omegadot.diagnosis.wording.digits import number
-from omegadot.diagnosis.wording.laws import power_law
+from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, System
 
@@ -77,6 +77,21 @@ def _lever_scaled(form: Form, system: System, k: float) -> Form:
     return form_of(with_body(system, center_of_mass=center))
 
 
+def _solve_text(_: System, k: float) -> str:
+    if abs(k) < NOTHING:
+        return "omega-dot is zero"
+    other = f"the inertia that it is solved for with is scaled by {number(1.0 / k)}"
+    return f"omega-dot is scaled by {factor(k)}, as where {other}"
+
+
+def _damping_text(system: System, p: Array) -> str:
+    acting, requested = float(p[0]), float(system.load.damping)
+    if not requested:
+        return f"a damping of {acting:.3g} N m s/rad acts that was not requested"
+    shown, due = number(acting, requested), number(requested, acting)
+    return f"the damping that acts is {shown} N m s/rad, where {due} was requested"
+
+
 ONE_NUMBER: tuple[Family, ...] = (
     scalar(
         "spin",
@@ -85,7 +100,14 @@ ONE_NUMBER: tuple[Family, ...] = (
         always,
         lambda f, s, k: replace(f, spin=k * f.spin),
         scaled("the gyroscopic term"),
-        law=power_law("the gyroscopic term"),
+    ),
+    scalar(
+        "solve",
+        "inertia",
+        1.0,
+        always,
+        lambda f, s, k: replace(f, solve=k * f.solve),
+        _solve_text,
     ),
     _moment(0),
     _moment(1),
@@ -132,7 +154,6 @@ ONE_NUMBER: tuple[Family, ...] = (
         lambda s: bool(np.any(s.load.gravity)),
         lambda f, s, k: replace(f, weight=k * f.weight, gravity=k * f.gravity),
         scaled("gravity"),
-        law=power_law("gravity"),
     ),
     scalar(
         "torque",
@@ -141,21 +162,29 @@ ONE_NUMBER: tuple[Family, ...] = (
         driven,
         lambda f, s, k: _mass_scaled(f, k),
         scaled("the applied torque"),
-        law=power_law("the applied torque"),
     ),
     _torque_of("body"),
     _torque_of("world"),
     Family(
         "damping",
         "damping",
-        lambda s: [np.array([float(s.load.damping)])] if float(s.load.damping) else [],
+        lambda s: [np.array([float(s.load.damping)])],
         lambda f, s, p: replace(f, damping=float(p[0]) * np.eye(3)),
-        lambda s, p: (
-            f"the damping that acts is {number(float(p[0]), float(s.load.damping))} N m s/rad, "
-            f"where {number(float(s.load.damping), float(p[0]))} was requested"
-        ),
+        _damping_text,
         lambda s: np.array([float(s.load.damping)]),
         "N m s/rad",
+    ),
+    Family(
+        "damping rate",
+        "damping",
+        lambda s: [np.array([float(s.load.damping)])] if float(s.load.damping) else [],
+        lambda f, s, p: replace(f, damping=float(p[0]) * np.linalg.inv(f.solve)),
+        lambda s, p: (
+            f"the damping acts as a rate, not as a torque: omega-dot has {number(-float(p[0]))} "
+            "omega in it, whatever the inertia"
+        ),
+        lambda s: np.zeros(1),
+        "1/s",
     ),
     scalar(
         "loads",
@@ -164,14 +193,6 @@ ONE_NUMBER: tuple[Family, ...] = (
         lambda s: (driven(s) + bool(np.any(s.load.damping)) + (s.load.pivot is not None)) > 1,
         _all_loads,
         scaled("the torque of all loads"),
-    ),
-    scalar(
-        "extra damping",
-        "damping",
-        0.0,
-        lambda s: not float(s.load.damping),
-        lambda f, s, d: replace(f, damping=f.damping + d * np.eye(3)),
-        lambda s, d: f"a damping of {d:.3g} N m s/rad acts that was not requested",
     ),
     scalar(
         "extra rate",

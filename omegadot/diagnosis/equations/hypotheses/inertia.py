@@ -67,7 +67,7 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
         )
         yield of_form(
             f"in the gyroscopic term, {text}",
-            f"inertia:{text}",
+            "spin",
             given(text, lambda t, f, s: {"spin": _about(s) + _tensor(s, t)}),
         )
     yield of_form(
@@ -85,7 +85,7 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
         yield of_form(
             "the inertia about the body's origin is taken, not that about the centre of mass",
             "inertia",
-            lambda f, s: _both(own_inertia(s) + _of_origin(s)),
+            lambda f, s: _both(own_inertia(s) + _of_origin(s)) if s.load.pivot is None else {},
         )
     if np.any(about):
         own_alone = "the inertia about the centre of mass is taken, not that about the pivot"

@@ -74,7 +74,7 @@ def _powers_text(_: System, p: Array) -> str:
     ]
     if not shown:
         return "the damping is missing"
-    return f"the damping torque is -d {' + '.join(shown)} along omega, not -d omega"
+    return f"the damping torque is -d ({' + '.join(shown)}) along omega, not -d omega"
 
 
 def _from_identity(states: State) -> Array:

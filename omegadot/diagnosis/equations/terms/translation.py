@@ -26,12 +26,6 @@ REPORTED: tuple[Terms, ...] = (
         reported=True,
     ),
     Terms(
-        "omega-dot scaled in steps",
-        lambda s, x, a: a.angular[None],
-        lambda s, p: f"omega changes by {factor(1.0 + float(p[0]))} times omega-dot",
-        stepped=True,
-    ),
-    Terms(
         "omega-dot rows",
         lambda s, x, a: rows(a.angular),
         by_rows("the omega-dot that is reported"),

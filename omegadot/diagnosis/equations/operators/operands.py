@@ -1,0 +1,162 @@
+"""Vectors of an equation that may be changed: its terms, what goes in, and what comes out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
+from omegadot.reference_impl.motion import (
+    center_of_mass_acceleration,
+    forward_dynamics,
+)
+from omegadot.reference_impl.rotations import normalize, rotate_inverse
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+
+@dataclass(frozen=True)
+class Operand:
+    """One vector, (n, 3) or (n, 4), of the right equation.
+
+    of: its values at states.  put: the accelerations with others in its place.  came: the values in
+    the engine, where they follow from what was found.  constant: the same at every state of a
+    scenario.  reported: it does not move the body.
+    """
+
+    name: str
+    unit: str
+    of: Callable[[Evidence], Array]
+    put: Callable[[Evidence, Array], Acceleration]
+    came: Callable[[Evidence], Array] | None = None
+    constant: bool = False
+    reported: bool = False
+
+
+def pushed(e: Evidence, torque: Array) -> Acceleration:
+    """The right accelerations with one more torque, (n, 3) N m in body axes."""
+    return turned(e, e.true.angular + apply(inverse(moving_inertia(e.system)), torque))
+
+
+def turned(e: Evidence, angular: Array) -> Acceleration:
+    """The accelerations with this omega-dot, which a pivoted body's centre of mass follows."""
+    if e.system.load.pivot is None:
+        return Acceleration(angular, e.true.linear)
+    return Acceleration(angular, center_of_mass_acceleration(e.system, e.states, angular))
+
+
+def gyroscopic(system: System, states: State) -> Array:
+    """``-omega x I omega``, (n, 3) N m."""
+    w = states.angular_velocity
+    return np.asarray(-cross(w, apply(moving_inertia(system), w)))
+
+
+def _of_torque(name: str, of: Callable[[System, State], Array], constant: bool = False) -> Operand:
+    def values(e: Evidence) -> Array:
+        return np.asarray(of(e.system, e.states) + 0.0 * e.states.angular_velocity)
+
+    def came(e: Evidence) -> Array:
+        more = apply(moving_inertia(e.system), e.found.angular - e.true.angular)
+        return np.asarray(values(e) + more)
+
+    return Operand(name, "N m", values, lambda e, v: pushed(e, v - values(e)), came, constant)
+
+
+def _loads(system: System, states: State) -> Array:
+    parts = (applied_torque, damping_torque, gravity_torque)
+    return sum((part(system, states) for part in parts), 0.0 * states.angular_velocity)
+
+
+def _world(system: System, states: State) -> Array:
+    return np.asarray(rotate_inverse(states.orientation, system.load.torque_world))
+
+
+def _omega(what: str, terms: tuple[Callable[[System, State], Array], ...]) -> Operand:
+    """Omega on its way into some terms alone."""
+
+    def put(e: Evidence, w: Array) -> Acceleration:
+        other = replace(e.states, angular_velocity=w)
+        more = [term(e.system, other) - term(e.system, e.states) for term in terms]
+        return pushed(e, np.asarray(sum(more)))
+
+    return Operand(f"omega in {what}", "rad/s", lambda e: e.states.angular_velocity, put)
+
+
+def _attitude(what: str, term: Callable[[System, State], Array]) -> Operand:
+    """The quaternion on its way into one term alone."""
+
+    def put(e: Evidence, q: Array) -> Acceleration:
+        other = replace(e.states, orientation=normalize(q))
+        return pushed(e, term(e.system, other) - term(e.system, e.states))
+
+    return Operand(f"the attitude in {what}", "", lambda e: e.states.orientation, put)
+
+
+def _whole_omega(e: Evidence, w: Array) -> Acceleration:
+    return forward_dynamics(e.system, replace(e.states, angular_velocity=w))
+
+
+def _whole_attitude(e: Evidence, q: Array) -> Acceleration:
+    return forward_dynamics(e.system, replace(e.states, orientation=normalize(q)))
+
+
+OPERANDS = (
+    _of_torque("the gyroscopic term", gyroscopic),
+    _of_torque("the torque in body axes", lambda s, x: s.load.torque_body, constant=True),
+    _of_torque("the torque in world axes, taken to body axes,", _world),
+    _of_torque("the damping torque", damping_torque),
+    _of_torque("the torque of gravity", gravity_torque),
+    _of_torque("the torque of all loads", _loads),
+    _of_torque("the whole torque", lambda s, x: _loads(s, x) + gyroscopic(s, x)),
+    _omega("the gyroscopic term", (gyroscopic,)),
+    _omega("the damping", (damping_torque,)),
+    _attitude("the torque of gravity", gravity_torque),
+    _attitude("the torque in world axes", _world),
+    Operand("the attitude on its way in", "", lambda e: e.states.orientation, _whole_attitude),
+    Operand("omega on its way in", "rad/s", lambda e: e.states.angular_velocity, _whole_omega),
+    Operand(
+        "omega-dot",
+        "rad/s^2",
+        lambda e: e.true.angular,
+        turned,
+        lambda e: e.found.angular,
+    ),
+    Operand(
+        "the omega-dot that is reported",
+        "rad/s^2",
+        lambda e: e.true.angular,
+        lambda e, v: replace(e.true, angular=v),
+        lambda e: e.found.angular,
+        reported=True,
+    ),
+    Operand(
+        "the linear acceleration",
+        "m/s^2",
+        lambda e: e.true.linear,
+        lambda e, v: replace(e.true, linear=v),
+        lambda e: e.found.linear,
+    ),
+)
+
+
+def acting(evidence: Evidence) -> Iterator[Operand]:
+    """Those that are not nothing here, and no two that are the same."""
+    seen = list[Array]()
+    for one in OPERANDS:
+        values = one.of(evidence)
+        torque = one.unit == "N m"
+        if not np.any(values) or (torque and any(np.array_equal(values, x) for x in seen)):
+            continue
+        if one.unit == "" and np.array_equal(
+            one.put(evidence, 0.0 * values + [0.5, 0.5, -0.5, 0.5]).angular, evidence.true.angular
+        ):
+            continue  # the term does not act
+        if one.name == "omega in the damping" and not np.any(evidence.system.load.damping):
+            continue
+        seen += [values] if torque else []
+        yield one

@@ -1,0 +1,126 @@
+"""Where no cause fits an integrator's runs: what is off, and how it goes with step and time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.diagnosis.wording.digits import listed
+from omegadot.gates.bounds.scales import EPS, norm
+from omegadot.gates.truth import Truth
+from omegadot.harness.drive import CaseResult
+from omegadot.harness.judge import JudgedRun
+from omegadot.reference_impl.rotations import rotation_between
+from omegadot.reference_impl.system import Array, State
+
+CLEAR, CLEAR_OF_SINGLE = 1e4, 64.0  # times rounding
+CLEAN = 0.05  # of an exponent
+LEAST = 4  # samples that show how an error grows
+EARLY = 0.05  # of the vector itself, up to which its error is that of single steps added up
+CHANNELS = {
+    "omega": {"omega", "energy", "angular_momentum"},
+    "attitude": {"attitude"},
+    "linear velocity": {"linear_momentum"},
+    "position": {"position"},
+}
+AXES = {"omega": "the body", "attitude": "the body", "position": "the world"}
+
+
+def known_of_runs(truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]) -> str:
+    """``omega is off in z of the body alone, by an error that goes as step^1 and as time^1``.
+
+    Of the first channel that is off clear of rounding: attitude follows omega, and place both.
+    """
+    failed = {row.channel for run in runs for row in run.rows if row.verdict == "fail"}
+    errors = [found for run in runs if (found := _errors(truth, result, run)) is not None]
+    for channel in (c for c, names in CHANNELS.items() if failed & names):
+        shown = [(run, e[channel]) for run, e in errors if np.any(e[channel].clear)]
+        if shown:
+            return _worded(channel, shown)
+    return ""
+
+
+class _Error:
+    """vectors: (n, 3), of each sample.  size: of what it is an error of.  time: (n,) s."""
+
+    def __init__(self, vectors: Array, size: float, time: Array, eps: float) -> None:
+        self.vectors, self.size, self.time = vectors, size, time
+        self.lengths, clear = norm(vectors), CLEAR if eps <= EPS else CLEAR_OF_SINGLE
+        self.clear: NDArray[np.bool_] = np.isfinite(self.lengths) & (
+            self.lengths > clear * eps * size * np.sqrt(1.0 + np.arange(len(time)))
+        )
+
+
+def _errors(
+    truth: Truth, result: CaseResult, run: JudgedRun
+) -> tuple[JudgedRun, dict[str, _Error]] | None:
+    answer = result.runs.get((run.integrator.name, run.sweep.knob))
+    if answer is None or not answer.ok or len(answer.result["time"]) != len(run.sweep.times):
+        return None
+    came, due, eps = State(**answer.result["state"]), truth.at(run.sweep), truth.yardstick.eps
+    with np.errstate(all="ignore"):
+        vectors = {
+            "omega": came.angular_velocity - due.angular_velocity,
+            "attitude": rotation_between(due.orientation, came.orientation),
+            "linear velocity": came.linear_velocity - due.linear_velocity,
+            "position": came.position - due.position,
+        }
+    sizes = {
+        "omega": _largest(due.angular_velocity),
+        "attitude": 1.0,
+        "linear velocity": _largest(due.linear_velocity),
+        "position": _largest(due.position),
+    }
+    times = run.sweep.times
+    return run, {k: _Error(v, sizes[k], times, eps) for k, v in vectors.items()}
+
+
+def _largest(vectors: Array) -> float:
+    return float(np.max(norm(vectors)))
+
+
+def _worded(channel: str, shown: Sequence[tuple[JudgedRun, _Error]]) -> str:
+    text = f"{channel if channel in ('omega', 'attitude') else f'the {channel}'} is off"
+    _, first = shown[0]
+    early = first.clear & (first.lengths <= EARLY * first.size)
+    used = early if early.any() else first.clear
+    off = np.abs(first.vectors[used])
+    axes = [a for k, a in enumerate("xyz") if np.any(off[:, k] > 1e-6 * np.max(off))]
+    if len(axes) < 3:
+        text += f" in {' and '.join(axes)} of {AXES.get(channel, 'the world')} alone"
+    powers = {"step": _of_step(shown), "time": _of_time(first)}
+    goes = [f"as {k}^{p:g}" for k, p in powers.items() if p]
+    text += f", by an error that goes {listed(goes)}" if goes else ""
+    return text + (", whatever the step" if powers["step"] == 0.0 else "")
+
+
+def _near(powers: Array) -> float | None:
+    """The half or whole number that all are near to."""
+    near = round(2.0 * float(np.median(powers))) / 2.0
+    return near if len(powers) and np.max(np.abs(powers - near)) < CLEAN else None
+
+
+def _of_step(shown: Sequence[tuple[JudgedRun, _Error]]) -> float | None:
+    """The exponent of the step in the error at the first time that all runs have."""
+    by_step = sorted(shown, key=lambda pair: -pair[0].sweep.timestep)
+    if len(by_step) < 2:
+        return None
+    for t in by_step[0][1].time[1:]:
+        places = [int(np.argmin(np.abs(e.time - t))) for _, e in by_step]
+        pairs = list(zip(by_step, places, strict=True))
+        if all(abs(e.time[k] - t) <= 1e-9 * t and e.clear[k] for (_, e), k in pairs):
+            steps = np.array([run.sweep.timestep for (run, _), _ in pairs])
+            sizes = np.array([e.lengths[k] for (_, e), k in pairs])
+            return _near(np.diff(np.log(sizes)) / np.diff(np.log(steps)))
+    return None
+
+
+def _of_time(error: _Error) -> float | None:
+    """The exponent of the time, while the error is small."""
+    used = np.flatnonzero(error.clear & (error.lengths <= EARLY * error.size) & (error.time > 0))
+    if len(used) < LEAST:
+        return None
+    used = used[: 2 * LEAST]
+    return _near(np.diff(np.log(error.lengths[used])) / np.diff(np.log(error.time[used])))
