@@ -1,5 +1,8 @@
 """Where errors show an order, and whether each step's error follows it."""
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -150,6 +153,34 @@ def test_an_error_that_falls_into_rounding_has_vanished() -> None:
     assert order_of([coarse, fine]) is not VANISHED  # the bound has risen above it
     late = np.where(SAMPLES == 0.5, 2 * BOUND, 0.0)  # one sample keeps an error alive
     assert order_of(over_time({0.04: 1e-3 * line, 0.02: late})) is not VANISHED
+
+
+def signed(of_step: Callable[[float], Array]) -> list[Errors]:
+    """Errors of energy along time, with their signs, at each of six steps."""
+    limit = np.full(65, BOUND)
+    found = {0.08 / 2**n: of_step(0.08 / 2**n) for n in range(6)}
+    return [Errors(h, SAMPLES, abs(e), limit, 0 * e, False, e) for h, e in found.items()]
+
+
+def test_two_terms_that_cancel_at_some_samples_have_the_order_of_the_first() -> None:
+    """Caught: the size alone, of which each sample cancels at another step."""
+    small, large = 1e-2 * SAMPLES, 6.0 * SAMPLES**4
+    for order in (1, 2):
+        seen = order_of(signed(lambda h, k=order: small * h**k - large * h ** (k + 1)))  # type: ignore[misc]
+        assert seen is not None
+        assert (seen.value, seen.resolved) == (float(order), True)
+    unsigned = [replace(e, signed=None) for e in signed(lambda h: small * h - large * h**2)]
+    shown = order_of(unsigned)
+    assert shown is not None
+    assert not shown.resolved
+
+
+@pytest.mark.parametrize("stays", [2e-4, -2e-4])
+def test_an_error_that_stays_is_no_first_of_two_terms(stays: float) -> None:
+    """Caught: a fault that is there from one time on, under an error that vanishes."""
+    late = np.where(SAMPLES > 0.7, stays, 0.0)
+    seen = order_of(signed(lambda h: 1e-2 * SAMPLES * h - 6.0 * SAMPLES**4 * h**2 + late))
+    assert seen is None or seen.value < 1.0 - ORDER_TOLERANCE or not seen.resolved
 
 
 def excess(sizes: dict[float, Array], declared: int, bound: Array | None = None) -> list[float]:

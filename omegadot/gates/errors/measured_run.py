@@ -20,6 +20,7 @@ from omegadot.gates.errors.orders import (
 )
 from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN, Evidence, Finding, judge
 from omegadot.gates.truth import Companion, Truth, scheme_key
+from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
 
@@ -34,6 +35,7 @@ STATE = (*ROTATION, "position", "linear_momentum")
 class MeasuredRun:
     """One engine's run, measured. All arrays are (n,) at the sample times, by channel.
 
+    gained: whether the energy is larger (1) than the exact one or smaller (-1), where it is known.
     single: whether the engine works in single precision.
     """
 
@@ -42,6 +44,7 @@ class MeasuredRun:
     round_off: dict[str, Array]
     against_scheme: dict[str, Array] = field(default_factory=dict)
     floor: dict[str, Array] = field(default_factory=dict)
+    gained: Array | None = field(default=None, kw_only=True)
     single: bool = field(default=False, kw_only=True)
 
     @property
@@ -59,6 +62,10 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
     """
     yardstick, rows, exact = truth.yardstick, truth.rows(sweep), truth.at(sweep)
 
+    with np.errstate(over="ignore", invalid="ignore"):  # an engine may be where squares overflow
+        mine, right = (total_energy(yardstick.system, one) for one in (state, exact))
+        gained = np.sign(mine - right)
+
     def apart(other: State) -> dict[str, Array]:
         return {c: _sizes(yardstick.distance(c, state, other)) for c in CHANNELS}
 
@@ -71,6 +78,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
         round_off={channel: _sizes(bound) for channel, bound in bounds.items()},
         against_scheme=apart(own.state) if own else {},
         floor={channel: values[rows] for channel, values in truth.floor.items()},
+        gained=gained,
         single=yardstick.eps > EPS,
     )
 
@@ -86,7 +94,9 @@ def errors_of(run: MeasuredRun, channel: str, *, left: bool = False) -> Errors |
     size = run.against_scheme[channel] if left else run.error[channel]
     bound = np.maximum(run.round_off[channel], run.floor.get(channel, 0.0))
     largest, saturates = run.saturating_error, channel in SATURATING
-    return Errors(run.sweep.timestep, run.sweep.times, size, bound, largest, saturates)
+    gained = run.gained if channel == "energy" and not left else None
+    signed = None if gained is None else size * gained
+    return Errors(run.sweep.timestep, run.sweep.times, size, bound, largest, saturates, signed)
 
 
 def evidence_of(

@@ -53,7 +53,8 @@ class Errors:
     """One channel of one run: the step, and (n,) each: times, errors, and bounds of rounding.
 
     overall: (n,), the largest error of omega, attitude and velocity, which saturate where they are
-    as large as the motion.  saturates: whether this is one of them.
+    as large as the motion.  saturates: whether this is one of them.  signed: (n,), the errors with
+    their signs, of a channel that is one number.
     """
 
     timestep: float
@@ -62,6 +63,7 @@ class Errors:
     bound: Array
     overall: Array
     saturates: bool
+    signed: Array | None = None
 
     def largest(self, horizon: float) -> tuple[float, float, bool]:
         """Error and bound over a part of the samples, and whether errors saturate there."""
@@ -125,12 +127,36 @@ def order_of(sweep: Sequence[Errors]) -> ObservedOrder | None:
         if found is not None and found.resolved and usable:
             return found
         shown = shown or (found and replace(found, resolved=False))
-        if clear and not saturated:
-            return shown  # nothing hides the order: the errors follow no power of the step
+        if clear and not saturated:  # nothing hides the order: the errors follow no power of it
+            return _of_two_terms(sweep, horizon) or shown
     if shown is None or len(sweep) < FEWEST_STEPS:
         return shown
     saturated = any(errors.largest(1.0)[2] for errors in sweep)
     return replace(shown, hidden=SATURATE if saturated else NEAR_ROUNDING)
+
+
+def _of_two_terms(sweep: Sequence[Errors], horizon: float) -> ObservedOrder | None:
+    """The order of signed errors that are a sum of two powers, where these cancel at some samples.
+
+    A cubic in the step goes through the errors of the four finest at every sample. Its constant is
+    the error at no step, which a scheme of an order above zero has not. The order is the power of
+    its first coefficient that makes a tenth of the finest error or more: with less, the slope of a
+    halving would be lower by the tolerance at most. None where that is the constant or the last
+    coefficient, after which others may follow.
+    """
+    finest = sorted(sweep, key=lambda one: one.timestep)[:4]
+    if len(finest) < 4 or any(one.signed is None for one in finest):
+        return None
+    samples = min(int(np.ceil(horizon * len(one.size))) for one in finest)
+    times = [one.times[:samples] / finest[0].times[-1] for one in finest]
+    if not np.allclose(times, times[0], rtol=0.0, atol=1e-9):  # the samples are not the same
+        return None
+    errors = np.array([one.signed[:samples] for one in finest if one.signed is not None])
+    ratios = np.array([one.timestep / finest[0].timestep for one in finest])
+    coefficients = np.linalg.solve(np.vander(ratios, increasing=True), errors)
+    shares = np.max(np.abs(coefficients), axis=1) / np.max(np.abs(errors[0]))
+    first = int(np.argmax(shares >= 1.0 - 0.5**ORDER_TOLERANCE))
+    return ObservedOrder(float(first), True) if 0 < first < 3 else None
 
 
 def _vanishes(sweep: Sequence[Errors]) -> bool:
