@@ -120,6 +120,6 @@ def test_an_engine_that_does_not_step_its_scheme_is_not_excused():
     )
     found = {g["engine"]: g for g in glances(summarise(record), metrics, Sources())}
     assert found["dart 1.0"]["error_source"] == (
-        "not the scheme alone",
+        "failed gate: scheme",
         "equals the declared scheme in 1 of 2 runs",
     )

@@ -173,6 +173,16 @@ def test_the_headline_of_a_failing_run(record):
     assert message == "1 of 2 engines fails a gate: dart, on sphere."
 
 
+def test_an_accuracy_is_that_of_engines_that_pass(record):
+    """Caught: a range whose one end is what a failing engine did."""
+    before = next(m for m in remarks(summarise(record)) if "attitude error" in m)
+    assert "the finest step the attitude error" in before
+    failed = change(record, first_of(record, "dart"), gates={"equation": "fail"})
+    after = [m for m in remarks(summarise(failed)) if "attitude error" in m]
+    assert all(m.startswith("Of the engines that pass, at the finest step") for m in after)
+    assert not any("dart" in m for m in after)
+
+
 def test_a_failing_yardstick_is_not_hidden(record):
     failed = change(record, first_of(record, "reference"), gates={"equation": "fail"})
     assert "reference" in headline(summarise(failed))

@@ -86,10 +86,8 @@ def _error_source(own: pl.DataFrame) -> Detailed:
     if judged.is_empty():
         return "–", "no scheme declared"
     equal, total = int((judged.get_column("verdict") == "pass").sum()), len(judged)
-    if equal < total:
-        runs = f"{equal} of {times(total, 'run')}"
-        return "not the scheme alone", f"equals the declared scheme in {runs}"
-    runs = "1 run" if total == 1 else f"all {total} runs"
+    runs = f"{equal} of {times(total, 'run')}" if equal < total else f"all {total} runs"
+    runs = "1 run" if equal == total == 1 else runs
     failed = set(own.filter(pl.col("verdict") == "fail").get_column("gate"))
     gates = [gate for gate in GATES if gate in failed]
     source = f"failed gate: {', '.join(gates)}" if gates else "truncation error of the scheme"

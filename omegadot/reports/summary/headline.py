@@ -7,7 +7,7 @@ from typing import Any
 
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.summary import YARDSTICKS, Cell, Summary
-from omegadot.reports.text.numbers import first, knob, listed, quantity, times
+from omegadot.reports.text.numbers import knob, listed, quantity, times
 
 _MORE = "The errors over time differ more. "
 
@@ -58,7 +58,9 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
         places = sorted({s for (s, c), cell in summary.cells.items() if cell.status == "fail"})
         verb = "fails" if len(failing) == 1 else "fail"
         count = f"{len(failing)} of {times(len(engines), 'engine')}"
-        return f"{count} {verb} a gate: {listed(failing)}, on {first(places, 3)}."
+        where = listed(places) if len(places) <= 3 else f"{len(places)} of "
+        where += times(len(summary.scenarios), "scenario") if len(places) > 3 else ""
+        return f"{count} {verb} a gate: {listed(failing)}, on {where}."
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
     # A declared exception is a known failure: such an engine is not reported as agreeing.
@@ -86,16 +88,20 @@ def _residual(cells: list[Cell]) -> Figure | None:
 
 
 def _spread(engines: dict[str, list[Cell]]) -> str:
-    ranges = [cell.attitude for cells in engines.values() for cell in cells if cell.attitude]
+    failing = {name for name, cells in engines.items() if any(c.status == "fail" for c in cells)}
+    sound = [cells for name, cells in engines.items() if name not in failing]
+    measured = sound or list(engines.values())
+    ranges = [cell.attitude for cells in measured for cell in cells if cell.attitude]
     if not ranges:
         return ""
     largest = max((r.worst for r in ranges), key=size)
     best = min((r.best for r in ranges if r.best.scenario == largest.scenario), key=size)
     if best.value == largest.value:
         return ""
-    more = "" if any(c.status == "fail" for own in engines.values() for c in own) else _MORE
+    more = "" if failing else _MORE
+    whose = "Of the engines that pass, at" if failing and sound else "At"
     return (
-        f"{more}At the finest step the attitude error on "
+        f"{more}{whose} the finest step the attitude error on "
         f"{largest.scenario} ranges from {_run(best)} to {_run(largest)}."
     )
 
