@@ -64,6 +64,7 @@ class CaseCauses:
             name: IntegratorCauses(across, case, truth, result, own)
             for name, own in by_name.items()
         }
+        self._runs_fail = any(fails(run) for run in runs)
         self._shared_rows = [row for row in shared if row.verdict == "fail"]
         scene = scene_of(case, evaluation_states, result)
         for name, integrator in self._integrators.items():
@@ -113,6 +114,7 @@ class CaseCauses:
                     return lever_causes(*model) or found
                 steps = [one.steps for one in self._integrators.values()]
                 right = bool(steps) and all(one is not None and one.sound for one in steps)
+                right = right and not self._runs_fail
                 return [f"{one}{ALONE * right}" for one in found]
         if ("equation", "residual_reloaded") in failed:
             found = equation_causes(across, self._case.name, RELOADED)
