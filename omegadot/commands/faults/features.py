@@ -24,7 +24,7 @@ SMALL_INERTIA = 1e-3  # kg m^2
 LONG_STEP = 0.015  # s
 DROWSY = 5e-5  # J/kg, PhysX's default, below which a body may be put to sleep
 RATES, SPEEDS = (7, 25, 47, 100), (100, 300)  # rad/s, m/s
-TURNS = (0.05, 0.1, 0.12, 0.79, 1.57)  # rad, of one step
+TURNS = (0.05, 0.1, 0.12, 0.79, 1.0, 1.57)  # rad, of one step
 MICROSECOND, NANOSECOND = 1e-6, 1e-9
 NEAR = 0.01  # of two neighbouring moments, relative
 
