@@ -26,7 +26,6 @@ from omegadot.reference_impl.system import Acceleration, Array, State
 
 LARGE_TURN = 0.05  # rad, of one step
 LARGE_FOR_EULER = 0.1  # rad, of one step
-BEYOND_A_ROOT = 1.0  # rad, of one step; a variational scheme may have no solution there
 
 otherwise = partial(fault_by, Restepped, "scheme", "stepping", "scheme")
 
@@ -39,14 +38,6 @@ def ExponentialOfSecondOrder(before: State, after: State, dt: float | Array) -> 
     short = normalize(np.concatenate([1.0 - 0.125 * angle**2, 0.5 * turn], axis=-1))
     turned = quaternion_product(before.orientation, short)
     return replace(after, orientation=np.where(angle > LARGE_TURN, turned, after.orientation))
-
-
-@step_end("scheme trajectory", "steady turn-above-1.00", named=("omega", "axis", "component"))
-def OmegaShiftedBeyondARadian(before: State, after: State, dt: float | Array) -> State:
-    """A step that turns by more than a radian moves the components of omega on by one place."""
-    large = norm(before.angular_velocity)[..., None] * dt > BEYOND_A_ROOT
-    shifted = np.roll(after.angular_velocity, 1, axis=-1)
-    return replace(after, angular_velocity=np.where(large, shifted, after.angular_velocity))
 
 
 @otherwise("asymmetric step-above-15-ms", named=("gyroscopic", "step"))
