@@ -16,8 +16,11 @@ from omegadot.gates.case import Sweep
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.harness.judge import is_finite
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import State, System
 from omegadot.workers.harness_end.process import Answer
 
@@ -37,7 +40,8 @@ def unjudged_row(note: str) -> Row:
 def is_lost(integrator: Integrator, system: System, sweep: Sweep, state: State, eps: float) -> bool:
     """Whether steps of more than a radian turn a steady omega to somewhere else, of the same size.
 
-    A variational scheme's momentum keeps its size whatever root of its equation is taken.
+    A variational scheme turns the momentum back by what it turns the attitude, whatever root of its
+    equation is taken, or none: the momentum keeps its size, and in world axes its direction.
     """
     omega = state.angular_velocity
     rate = float(norm(omega[0]))
@@ -45,8 +49,11 @@ def is_lost(integrator: Integrator, system: System, sweep: Sweep, state: State, 
     known = integrator.scheme in SCHEMES or rate * sweep.timestep <= SOLVABLE
     if known or np.any(norm(forward_dynamics(system, state[:1]).angular) > slight * rate**2):
         return False
-    keeps_size = bool(np.all(np.abs(norm(omega) - rate) <= slight * rate))
-    return keeps_size and bool(np.any(norm(omega - omega[0]) > LOST * rate))
+    if not np.all(np.abs(norm(omega) - rate) <= slight * rate):
+        return False
+    momentum = rotate(state.orientation, apply(moving_inertia(system), omega))
+    kept = np.all(norm(momentum - momentum[0]) <= slight * norm(momentum[0]))
+    return bool(kept) and bool(np.any(norm(omega - omega[0]) > LOST * rate))
 
 
 def reason_without_a_solution(

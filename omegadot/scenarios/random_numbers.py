@@ -21,6 +21,8 @@ SIZES = {"small": (-3.0, -1.0), "large": (-0.3, 2.7)}  # m
 RATES = {"slow": (-4.0, -1.4), "middle": (-0.7, 0.7), "fast": (1.5, 3.0)}  # rad/s
 SPHERES = 0.1  # of the diagonal ones
 AT_REST = 0.25  # of the slow ones: they start at rest, and are driven at a rate of the middle
+# The next slowest of seven or eight, at least one, turn by so few rad a step that engines drop it.
+CREEPING, CREEP = (AT_REST, 3 / 7), 1e-8
 SPEEDS = (3.0, 4.0)  # m/s, of a flying body
 PLACES = (4.0, 6.5)  # m, from the world's origin, of a flying body
 FASTEST = 300.0  # size times rate, beyond which its turning would drown in rounding
@@ -120,6 +122,8 @@ def run_of(draw: Draw, rate: float) -> tuple[dict[str, Any], float]:
     angle, every, steps, sizes = RUNS[draw.traits["steps"], draw.traits["end"]]
     if draw.steady:
         angle, every, steps, sizes = STEADY_RUNS["sphere" if is_sphere(draw) else "axis"]
+    elif creeps(draw):
+        angle = CREEP
     coarsest = rounded(angle / rate, 9)  # no whole number of microseconds, nor of nanoseconds
     run = {
         # not a whole number of steps, and less than one of the finest more than one
@@ -159,6 +163,12 @@ def loads_of(
 def rests(draw: Draw) -> bool:
     """Whether it starts at rest."""
     return draw.traits["rate"] == "slow" and draw.share["rate"] < AT_REST
+
+
+def creeps(draw: Draw) -> bool:
+    """Whether it hardly turns from one step to the next."""
+    share = draw.share["rate"]
+    return draw.traits["rate"] == "slow" and CREEPING[0] <= share < CREEPING[1]
 
 
 def spin_of(random: Generator, draw: Draw, inertia: Array) -> Array:

@@ -34,7 +34,7 @@ def random_scenario(seed: int, index: int) -> Scenario:
     Masses span ten decades (0.1 g to 1000 t), sizes eight (1 mm to 100 km), rates seven (1e-4 to
     1000 rad/s, or at rest), speeds go up to 10 km/s and places to 3000 km. A run lasts 4 to 26
     rad at the body's own rate, in steps of 0.5 rad or of 0.1, up to 1028 of them; of 0.9 or 1.8 rad
-    where it spins steadily.
+    where it spins steadily. One or two of a block creep: their steps are of 1e-8 rad.
     """
     draw, random = drawn(seed, index), np.random.default_rng([seed, index])
     bulk = draw.traits["bulk"]

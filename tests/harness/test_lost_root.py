@@ -1,6 +1,7 @@
 """Steps so long that a variational scheme's equation has no root: reported, and not judged.
 
-What these tests catch: such a scheme accused; a cap on omega or on the turn that passes for one.
+What these tests catch: such a scheme accused; a cap on omega or on the turn that passes for one; an
+omega that is turned while the attitude is not.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from omegadot.adapters.protocol import Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.detect import Judgement, Nameless, judge
 from omegadot.commands.faults.prepared import Pool, Prepared
-from omegadot.reference_impl.rotations import turn_in_body
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.rotations import quaternion_product, turn_in_body
+from omegadot.reference_impl.system import Array, State
 from omegadot.scenarios.random_traits import BLOCK, drawn
 
 
@@ -45,10 +46,24 @@ class LongSteps(ReferenceAdapter):
         return replace(found, state=self.wrong(found.state, timestep, found.time))
 
     def wrong(self, state: State, timestep: float, time: Any) -> State:
-        """Omega goes from axis to axis: its size is what a variational scheme keeps."""
-        omega = state.angular_velocity.copy()
-        omega[1:] = np.roll(omega[1:], 1, axis=-1)
-        return replace(state, angular_velocity=omega)
+        """Omega goes from axis to axis and the attitude back: a variational scheme's momentum."""
+        turned = quaternion_product(state.orientation, np.array([0.5, -0.5, -0.5, -0.5]))
+        turned[0] = state.orientation[0]
+        return replace(state, orientation=turned, angular_velocity=shifted(state))
+
+
+def shifted(state: State) -> Array:
+    """Omega with its components moved on by one, but at the start: a third of a turn."""
+    omega = state.angular_velocity.copy()
+    omega[1:] = np.roll(omega[1:], 1, axis=-1)
+    return omega
+
+
+class OmegaTurned(LongSteps):
+    """Omega goes from axis to axis, and the attitude takes no notice."""
+
+    def wrong(self, state: State, timestep: float, time: Any) -> State:
+        return replace(state, angular_velocity=shifted(state))
 
 
 class OmegaHeld(LongSteps):
@@ -80,7 +95,7 @@ def test_another_root_is_not_judged(pool: Pool, sphere: Prepared) -> None:
     assert "diverged" in {run.outcome for run in found.runs}
 
 
-@pytest.mark.parametrize("engine", [OmegaHeld, TurnHeld])
+@pytest.mark.parametrize("engine", [OmegaHeld, OmegaTurned, TurnHeld])
 def test_caps_are_no_roots(engine: type[LongSteps], pool: Pool, sphere: Prepared) -> None:
     assert judged(pool, sphere, engine()).failed
 

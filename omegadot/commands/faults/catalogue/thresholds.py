@@ -14,11 +14,17 @@ from omegadot.commands.faults.catalogue.load import extra_torque, other_load, pu
 from omegadot.commands.faults.catalogue.model import UnseenBody
 from omegadot.commands.faults.catalogue.stepping import step_end
 from omegadot.commands.faults.fault import OtherSystem, Spoiled, fault_by
-from omegadot.commands.faults.features import DROPPED, MOST_GRAVITY, SLIGHT_DAMPING, TON
+from omegadot.commands.faults.features import (
+    DROPPED,
+    LEAST_TURN,
+    MOST_GRAVITY,
+    SLIGHT_DAMPING,
+    TON,
+)
 from omegadot.commands.faults.restepped import Accelerated
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.loads import applied_torque, gravity_torque
-from omegadot.reference_impl.rotations import rotate_inverse
+from omegadot.reference_impl.rotations import rotate_inverse, rotation_between
 from omegadot.reference_impl.system import Acceleration, Array, Body, Load, State, System
 
 MOST_RATIO = 20.0  # of the largest moment to the smallest
@@ -112,6 +118,14 @@ def SlowComponentsDropped(before: State, after: State, dt: float | Array) -> Sta
     """Components of omega below 0.01 rad/s are taken for zero."""
     w = after.angular_velocity
     return replace(after, angular_velocity=np.where(np.abs(w) < DROPPED, 0.0, w))
+
+
+@step_end("scheme trajectory", "creeping", named=("turn", "attitude"))
+def TinyTurnsDropped(before: State, after: State, dt: float | Array) -> State:
+    """A step that would turn the attitude by less than 1e-6 rad leaves it."""
+    turn = norm(rotation_between(before.orientation, after.orientation))[..., None]
+    q = np.where(turn < LEAST_TURN, before.orientation, after.orientation)
+    return replace(after, orientation=q)
 
 
 @fault_by(Spoiled, "logged", "logging", "trajectory", "free", named=("velocity", "position"))
