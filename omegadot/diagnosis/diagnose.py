@@ -120,7 +120,9 @@ class CaseCauses:
             found = equation_causes(across, self._case.name, RELOADED)
             return [f"{AFTER_ANOTHER}: {one}" for one in found] or [AFTER_ANOTHER]
         if ("equation", siblings.METRIC) in failed:
-            return [AFTER_ANOTHER]
+            # Where a first system is wrong elsewhere, the sibling may be so by itself.
+            first = (scene.evidence.get(FORWARD) for scene in across.scenes.values())
+            return [] if any(one is not None and one.clear for one in first) else [AFTER_ANOTHER]
         if torques and answers.inverse.ok:
             torque = answers.inverse.result["torque"]
             eps = eps_of(answers.precision)
