@@ -124,7 +124,7 @@ def _whole(table: Table, found: Columns, mapped: bool, timed: bool) -> Columns:
             f"{MEANING[attitudes[1]]}; leave one of them out, like --column {attitudes[0]}=."
         )
     if not any(role in found for group in "wqerp" for role in GROUPS[group]):
-        advice = "" if mapped else ", or --detect to have it guessed"
+        advice = "" if mapped else ", or have them found by omegadot score --detect"
         raise TraceError(
             f"{table.file}: no column is an angular velocity, an attitude or a position; map them, "
             f"like --column wx=NAME{advice} (the columns are "

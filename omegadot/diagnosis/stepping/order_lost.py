@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from omegadot.diagnosis.equations.operators.operands import gyroscopic
-from omegadot.diagnosis.wording.digits import listed
+from omegadot.diagnosis.wording.digits import factor, listed
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.steps.probe import Probe
 from omegadot.reference_impl.inertia import moving_inertia
@@ -83,7 +83,7 @@ def _moves(channel: str, part: float) -> str:
     for k, when in ((0.0, "start"), (2.0, "end")):
         if abs(part - k) < EVEN:
             return f"{what} moves by {rate} of the step's {when}"
-    return f"the second-order term of {what} is {part:.3g} times that of the equation"
+    return f"the second-order term of {what} is {factor(part)} times that of the equation"
 
 
 def _held_terms(system: System, probe: Probe, stepped: State) -> list[str]:

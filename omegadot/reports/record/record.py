@@ -167,7 +167,10 @@ def _write_parquet(frame: pl.DataFrame, fields: Mapping[str, Field], path: Path)
     table = frame.to_arrow(compat_level=pl.CompatLevel.oldest()).cast(schema.arrow_schema(fields))
     # Texts and steps repeat and pack well; measured numbers do not, and trying costs time.
     repeating = [n for n, f in fields.items() if f.dtype is pl.String or n in _REPEATING]
-    pq.write_table(table, path, compression="zstd", compression_level=1, use_dictionary=repeating)
+    with path.open("wb") as file:  # opened here, as its name may be no UTF-8
+        pq.write_table(
+            table, file, compression="zstd", compression_level=1, use_dictionary=repeating
+        )
 
 
 def read_record(folder: Path) -> Record:

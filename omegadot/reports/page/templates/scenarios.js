@@ -55,7 +55,7 @@ function turn(place, focus) {
 }
 
 function follow() {
-  const node = panels.find((panel) => panel.id === decodeURIComponent(location.hash.slice(1)));
+  const node = panels.find((panel) => `#${panel.id}` === location.hash);
   if (!node) return false;
   show(node);
   node.scrollIntoView();
