@@ -157,7 +157,7 @@ def test_a_rate_stands_for_missing_times(score, tmp_path):
     result = score(trace, "--rate", "1", "--from", "3", "--to", "9")
     assert passes(result)
     assert result.json["samples"] == 7
-    assert "not a positive number" in score(trace, "--rate", "0").err
+    assert "give a number above 0" in score(trace, "--rate", "0").err
     detected = score(trace, "--rate", "1", "--detect")
     assert "--rate 1.0" in detected.json["fitting"][0]["options"]
 

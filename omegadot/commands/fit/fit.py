@@ -70,6 +70,8 @@ def fit(
         check_number("--mass", mass, 0.0)
     if name is not None:
         scenario("sphere", name=name)  # refuses what is no name, before the work
+    if out is not None and not Path(out).name.strip("."):
+        raise UsageError(f"--out {out}: is no file's name; give one such as fitted.toml.")
     drawn = None if out is None else picture.beside(Path(out))
     if out is not None and drawn is not None:
         check_target(Path(out), MARK)

@@ -71,7 +71,7 @@ def check_folder(folder: Path) -> None:
 def _followed(folder: Path) -> Path:
     """The folder that it stands for. Raises RecordError for a link that leads to itself."""
     followed = Path(os.path.realpath(folder))
-    if followed.is_symlink():
+    if os.path.islink(followed):  # False of a name that is too long, which is met as it is written
         raise RecordError(f"{folder}: is a symbolic link to itself; name a new folder.")
     return followed
 
