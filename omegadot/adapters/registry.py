@@ -22,6 +22,7 @@ BUILT_IN: dict[str, str] = {
     "mujoco": "omegadot.adapters.mujoco.adapter:MujocoAdapter",
     "pinocchio": "omegadot.adapters.pinocchio.adapter:PinocchioAdapter",
     "dart": "omegadot.adapters.dart.adapter:DartAdapter",
+    "drake": "omegadot.adapters.drake.adapter:DrakeAdapter",
 }
 
 

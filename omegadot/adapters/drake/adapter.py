@@ -1,0 +1,122 @@
+"""Drake behind the protocol: a `MultibodyPlant`, and every integrator of its `Simulator`."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.metadata import version
+from typing import Any, Literal
+
+import numpy as np
+
+from omegadot.adapters.drake.integrators import declared_integrators, plan_of
+from omegadot.adapters.drake.joint import DrakeJoint
+from omegadot.adapters.drake.model import SWITCHED_OFF, DrakeModel, Stepping
+from omegadot.adapters.drake.stepping import CHUNK, DrakeStepper
+from omegadot.adapters.one_joint import OneJointAdapter
+from omegadot.adapters.protocol import (
+    ONE_BODY,
+    Description,
+    Format,
+    Setup,
+    Trajectory,
+    UnsupportedError,
+)
+from omegadot.reference_impl.stepping import kept_steps
+from omegadot.reference_impl.system import Acceleration, State, System
+
+CONVENTIONS = (
+    "quaternions are (w, x, y, z), world-from-body, and are not made unit again after a step",
+    "velocities are (angular, linear), both in world axes, of the body's frame; a step is taken in "
+    "omega in world axes",
+    "a free body has a QuaternionFloatingJoint at the body's origin",
+    "a pivoted body has a BallRpyJoint at the pivot: roll, pitch and yaw, R = Rz Ry Rx; Drake has "
+    "no ball joint without their singularity, and refuses to step where |cos(pitch)| < 1e-3",
+    "damping is that of the joint: implicit in a discrete plant's step",
+    "a torque in body axes is that of a Propeller without thrust, a torque in world axes is given "
+    "to applied_generalized_force",
+)
+LINKS = (
+    "https://drake.mit.edu/",
+    "https://drake.mit.edu/doxygen_cxx/classdrake_1_1multibody_1_1_multibody_plant.html",
+    "https://drake.mit.edu/doxygen_cxx/group__integrators.html",
+    "https://github.com/RobotLocomotion/drake",
+)
+
+
+class DrakeAdapter(OneJointAdapter):
+    """Drake 1.38 and later. Raises ImportError when Drake is not installed."""
+
+    name = "drake"
+
+    def __init__(self, setup: Setup = "physics") -> None:
+        self._engine: Any = import_module("pydrake.all")
+        self._setup = setup
+        self._pivoted = False
+
+    @property
+    def description(self) -> Description:
+        """Drake as it is installed; once a system is loaded, its integrators as they act on it."""
+        return Description(
+            name=self.name,
+            version=version("drake"),
+            integrators=declared_integrators(pivoted=self._pivoted),
+            conventions=CONVENTIONS,
+            switched_off=SWITCHED_OFF if self._setup == "physics" else (),
+            features=ONE_BODY,
+            licence="BSD-3-Clause",
+            links=LINKS,
+            importers=("urdf", "mjcf"),
+        )
+
+    def _built(self, system: System, via: Format | Literal[""]) -> DrakeJoint:
+        self._system, self._via = system, via
+        self._pivoted = system.load.pivot is not None
+        self._models: dict[Stepping, DrakeModel] = {}
+        return DrakeJoint(self._engine, self._model(Stepping()))
+
+    def _model(self, stepping: Stepping) -> DrakeModel:
+        """The model for this stepping; the last one of each kind is kept."""
+        if stepping not in self._models:
+            self._models = {Stepping(): self._models[Stepping()]} if self._models else {}
+            self._models[stepping] = DrakeModel(self._engine, self._system, self._via, stepping)
+        return self._models[stepping]
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        """The plant's generalised acceleration at n states."""
+        joint, count = self._loaded(), len(states.angular_velocity)
+        answers = np.array([joint.forward(states[n]) for n in range(count)])
+        return Acceleration(answers[:, 0], answers[:, 1])
+
+    def run(
+        self,
+        initial: State,
+        integrator: str,
+        timestep: float,
+        steps: int,
+        every: int,
+        accuracy: float | None = None,
+    ) -> Trajectory:
+        """`Simulator.AdvanceTo`, logged by a `VectorLogSink`.
+
+        Raises UnsupportedError for an integrator that Drake has not, and for a motion that takes a
+        ball joint to its singularity.
+        """
+        joint, kept = self._loaded(), kept_steps(steps, every)
+        plan = plan_of(integrator)
+        if plan is None:
+            raise UnsupportedError(f"drake has no integrator {integrator!r}.")
+        times, start = np.array(kept) * timestep, joint.coordinates(initial)
+        if steps == 0 or not np.all(np.isfinite(start)):  # Drake ends the process at such a state
+            rows = np.full((len(kept), len(start)), np.nan)
+            rows[0] = start
+            return Trajectory(times, joint.states(rows), 0.0)
+        stepper = DrakeStepper(self._engine, self._model(plan.stepping(timestep)), start)
+        ends, rows_to = np.arange(steps + 1) * timestep, np.arange(steps + 1) + 1
+        if plan.scheme:
+            own = stepper.integrate(plan.scheme, timestep if plan.fixed else ends[-1])
+            own.set_fixed_step_mode(plan.fixed)
+            if accuracy is not None or plan.solves:
+                own.set_target_accuracy(accuracy if accuracy is not None else plan.solves)
+        looks = np.unique(np.append(np.arange(CHUNK, steps, CHUNK), steps))
+        rows, seconds = stepper.run(ends[looks], rows_to[looks])
+        return Trajectory(times, joint.states(rows[kept]), seconds)

@@ -1,0 +1,142 @@
+"""The Drake diagram of one body: its plant, its joint, its loads, and a log of its states.
+
+A free body is on a `QuaternionFloatingJoint` at its origin, a pivoted one on a `BallRpyJoint` at
+the pivot. Drake has no ball joint without Euler angles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any, Literal
+
+import numpy as np
+
+from omegadot.adapters.body_files import NAME, mjcf_of, origin_at_pivot, urdf_of
+from omegadot.adapters.protocol import Format, UnsupportedError
+from omegadot.reference_impl.system import Body, System
+
+SWITCHED_OFF = (
+    "collision: bodies have no shapes, and no SceneGraph is there",
+    "throwing where an error-controlled integrator needs steps below its least one",
+)
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """What a diagram is built for.
+
+    timestep: s, of a discrete plant; 0 for a continuous one.  approximation: the discrete plant's
+    contact approximation, "" for Drake's own choice.  period: s, between two rows of the log; 0
+    for a row a step.
+    """
+
+    timestep: float = 0.0
+    approximation: str = ""
+    period: float = 0.0
+
+
+class DrakeModel:
+    """plant, joint and node (the body) are Drake's objects, in a diagram of their own.
+
+    Raises UnsupportedError where Drake refuses a file of the body, or its inertia.
+    """
+
+    def __init__(
+        self,
+        drake: ModuleType,
+        system: System,
+        via: Format | Literal[""] = "",
+        stepping: Stepping | None = None,
+    ) -> None:
+        stepping = stepping or Stepping()
+        self._drake: Any = drake
+        self.system, self.free = system, system.load.pivot is None
+        self._origin = origin_at_pivot(system)
+        builder = drake.DiagramBuilder()
+        self.plant: Any = builder.AddSystem(drake.MultibodyPlant(stepping.timestep))
+        self.plant.set_name("plant")
+        if stepping.approximation:
+            known = drake.DiscreteContactApproximation.__members__
+            self.plant.set_discrete_contact_approximation(known[stepping.approximation])
+        self.node = self._read(via) if via else self._made()
+        self.joint: Any = self._joint()
+        gravity = np.array(system.load.gravity, float)
+        self.plant.mutable_gravity_field().set_gravity_vector(gravity)
+        self.plant.Finalize()
+        self._push(builder)
+        port = self.plant.get_state_output_port()
+        self.log: Any = drake.LogVectorOutput(port, builder, stepping.period)
+        self.diagram: Any = builder.Build()
+
+    def _made(self) -> Any:
+        """The body by Drake's API. Its inertia is per unit of mass, about the body's origin."""
+        drake, body = self._drake, self.system.body
+        inertia = np.array(body.inertia, float)
+        moments, products = np.diagonal(inertia), inertia[[0, 0, 1], [1, 2, 2]]
+        center = np.array(body.center_of_mass, float) - self._origin
+        about_center = drake.RotationalInertia(*moments, *products)
+        made = drake.SpatialInertia.MakeFromCentralInertia(float(body.mass), center, about_center)
+        return self.plant.AddRigidBody(NAME, made)
+
+    def _read(self, via: str) -> Any:
+        """The body by Drake's parser. The link of a URDF has no joint, its frame is at the pivot."""
+        if via == "mjcf":
+            text, kind, self._origin = mjcf_of(self.system), "xml", np.zeros(3)
+        else:
+            text, kind = urdf_of(self.system, self._origin), via
+        try:
+            self._drake.Parser(self.plant).AddModelsFromString(text, kind)
+        except RuntimeError as error:
+            reason = " ".join(str(error).split())
+            raise UnsupportedError(f"Drake refuses the {via} of this body: {reason}") from error
+        return self.plant.GetBodyByName(NAME)
+
+    def _joint(self) -> Any:
+        """The joint that the parser has made, of a ball joint in an MJCF, or one of our own."""
+        if made := self.plant.GetJointIndices(self.node.model_instance()):
+            return self.plant.get_joint(made[0])
+        kind = self._drake.QuaternionFloatingJoint if self.free else self._drake.BallRpyJoint
+        ends = (self.plant.world_frame(), self.node.body_frame())
+        return self.plant.AddJoint(kind("joint", *ends))
+
+    def _push(self, builder: Any) -> None:
+        """A propeller without thrust that gives a torque along its z-axis, fixed in the body."""
+        drake, torque = self._drake, np.array(self.system.load.torque_body, float)
+        size = float(np.linalg.norm(torque))
+        self._drives = size > 0.0
+        if not self._drives:
+            return
+        turned = drake.RotationMatrix.MakeFromOneVector(torque / size, 2)
+        pose, index = drake.RigidTransform(turned, np.zeros(3)), self.node.index()
+        propeller = drake.Propeller(index, pose, thrust_ratio=0.0, moment_ratio=1.0)
+        self._propeller = builder.AddSystem(propeller)
+        poses, plant = self.plant.get_body_poses_output_port(), self.plant
+        builder.Connect(poses, propeller.get_body_poses_input_port())
+        builder.Connect(
+            propeller.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port()
+        )
+        self._size = size
+
+    def context(self) -> tuple[Any, Any]:
+        """A new context of the diagram with the loads set, and the plant's part of it."""
+        load, root = self.system.load, self.diagram.CreateDefaultContext()
+        own = self.plant.GetMyContextFromRoot(root)
+        damping = np.zeros(self.plant.num_velocities())
+        damping[:3] = load.damping  # velocities are (angular, linear), angular ones in world axes
+        self.joint.SetDampingVector(own, damping)
+        couple = np.zeros(len(damping))
+        couple[:3] = load.torque_world
+        if couple.any():
+            self.plant.get_applied_generalized_force_input_port().FixValue(own, couple)
+        if self._drives:
+            blades = self._propeller.GetMyContextFromRoot(root)
+            self._propeller.get_command_input_port().FixValue(blades, [self._size])
+        return root, own
+
+    def body(self, own: Any) -> Body:
+        """Mass, centre of mass and inertia about it, as the body has them in a plant's context."""
+        held = self.node.CalcSpatialInertiaInBodyFrame(own)
+        mass, center = held.get_mass(), held.get_com()
+        about_center = held.Shift(center).CalcRotationalInertia().CopyToFullMatrix3()
+        return Body(np.array(mass), center + self._origin, about_center)
