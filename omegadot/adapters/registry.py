@@ -22,8 +22,11 @@ BUILT_IN: dict[str, str] = {
     "mujoco": "omegadot.adapters.mujoco.adapter:MujocoAdapter",
     "pinocchio": "omegadot.adapters.pinocchio.adapter:PinocchioAdapter",
     "dart": "omegadot.adapters.dart.adapter:DartAdapter",
-    "drake": "omegadot.adapters.drake.adapter:DrakeAdapter",
 }
+OPTIONAL: dict[str, str] = {"drake": "omegadot.adapters.drake.adapter:DrakeAdapter"}
+"""Engines that an extra of the same name installs: ``pip install 'omegadot[drake]'``."""
+OURS = {**BUILT_IN, **OPTIONAL}
+_MODULES = {"drake": "pydrake"}  # of an optional engine's package, by which it is known to be there
 
 
 class AdapterError(ValueError):
@@ -31,9 +34,14 @@ class AdapterError(ValueError):
 
 
 def registered() -> dict[str, str]:
-    """Every engine name with its ``module:Class`` target; entry points add to the built-ins."""
+    """Every engine name with its ``module:Class`` target; entry points add to our own."""
     found = {point.name: point.value for point in entry_points(group=ENTRY_POINT_GROUP)}
-    return {**found, **BUILT_IN}
+    return {**found, **OURS}
+
+
+def is_absent(name: str) -> bool:
+    """Whether this is an optional engine whose package is not installed."""
+    return name in OPTIONAL and importlib.util.find_spec(_MODULES[name]) is None
 
 
 def _import_target(module_name: str) -> ModuleType:
@@ -89,5 +97,10 @@ def build_adapter(target: str, setup: Setup = "physics", via: str = "") -> Adapt
     factory: Callable[..., Adapter] | None = getattr(module, class_name, None)
     if not callable(factory):
         raise AdapterError(f"{target}: {module_name} has no class {class_name}; check its name.")
-    adapter = factory(setup=setup)
+    try:
+        adapter = factory(setup=setup)
+    except ModuleNotFoundError as error:
+        extra = next((name for name, own in OPTIONAL.items() if own == target), "")
+        advice = f"; install it with pip install 'omegadot[{extra}]'" if extra else ""
+        raise ImportError(f"{error}{advice}") from error
     return through_file(adapter, via) if via else adapter

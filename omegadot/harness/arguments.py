@@ -10,7 +10,7 @@ from os import PathLike
 from typing import Any, Literal, TypeVar, get_args
 
 from omegadot.adapters.protocol import Description, Integrator
-from omegadot.adapters.registry import registered
+from omegadot.adapters.registry import is_absent, registered
 from omegadot.gates.case import ACCURACIES, Case, sweep_of
 from omegadot.harness.engine_target import EngineLike, is_target, target_of
 from omegadot.harness.plan import EngineChoice
@@ -49,7 +49,8 @@ def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:
 def engine_choices(
     wanted: Sequence[EngineLike], extra: Sequence[EngineLike] = (), option: str = "--engine"
 ) -> list[EngineChoice]:
-    """The engines given, by ``NAME[:INTEGRATOR]`` or by class; every one registered without any.
+    """The engines given, by ``NAME[:INTEGRATOR]`` or by class; without any every one registered,
+    but optional ones that are not installed.
 
     extra: engines of one's own, by class.  option: by which they were given, for errors.  The same
     name may come several times with different integrators. Raises UsageError.
@@ -59,7 +60,8 @@ def engine_choices(
     added = adapters_named([*extra, *(engine for engine in wanted if engine not in names)])
     known |= added
     if not wanted:
-        return [EngineChoice(name, target) for name, target in known.items()]
+        there = {name: target for name, target in known.items() if not is_absent(name)}
+        return [EngineChoice(name, target) for name, target in there.items()]
     picked: dict[str, list[str]] = {}
     for given in names:
         name, _, integrator = given.partition(":")

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Container
 from pathlib import Path
 
-from omegadot.adapters.registry import BUILT_IN
+from omegadot.adapters.registry import OURS
 from omegadot.harness.usage import UsageError
 
 EngineLike = str | type[object]
@@ -52,7 +52,7 @@ def _target_of_class(engine: object) -> str:
             f"{engine!r}: not an engine; give a name, FILE.py:Class, module:Class or a class."
         )
     module, name = engine.__module__, engine.__qualname__
-    if f"{module}:{name}" in BUILT_IN.values():
+    if f"{module}:{name}" in OURS.values():
         return f"{module}:{name}"
     file = getattr(sys.modules.get(module), "__file__", None)
     if module == "__main__" or "." in name or file is None:

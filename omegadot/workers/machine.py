@@ -16,7 +16,8 @@ import numpy as np
 import psutil
 
 RECORDED = (
-    "numpy", "scipy", "pydantic", "polars", "pyarrow", "plotly", "jinja2", "mujoco", "pin", "dartpy"
+    "numpy", "scipy", "pydantic", "polars", "pyarrow", "plotly", "jinja2",
+    "mujoco", "pin", "dartpy", "drake"
 )  # fmt: skip
 
 # Of control groups, version 2 and 1. A container sees its own group as the root.

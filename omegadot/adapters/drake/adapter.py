@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 from importlib.metadata import version
+from types import SimpleNamespace
 from typing import Any, Literal
 
 import numpy as np
@@ -41,6 +42,11 @@ LINKS = (
     "https://drake.mit.edu/doxygen_cxx/group__integrators.html",
     "https://github.com/RobotLocomotion/drake",
 )
+# Those of pydrake that are used; pydrake.all takes three times as long to import.
+PARTS = (
+    *("common.eigen_geometry", "math", "multibody.parsing", "multibody.plant", "multibody.tree"),
+    *("systems.analysis", "systems.framework", "systems.primitives"),
+)
 
 
 class DrakeAdapter(OneJointAdapter):
@@ -49,7 +55,10 @@ class DrakeAdapter(OneJointAdapter):
     name = "drake"
 
     def __init__(self, setup: Setup = "physics") -> None:
-        self._engine: Any = import_module("pydrake.all")
+        parts = {part: vars(import_module(f"pydrake.{part}")) for part in PARTS}
+        self._engine: Any = SimpleNamespace(
+            **{k: v for own in parts.values() for k, v in own.items()}
+        )
         self._setup = setup
         self._pivoted = False
 

@@ -104,9 +104,7 @@ class DrakeJoint:
 def quaternions_of(angles: Array) -> Array:
     """Unit quaternions (n, 4) of roll, pitch and yaw (n, 3)."""
     c, s = np.cos(0.5 * angles), np.sin(0.5 * angles)
-    whole = None
-    for axis in (2, 1, 0):
-        turn = np.zeros((len(angles), 4))
+    roll, pitch, yaw = np.zeros((3, len(angles), 4))
+    for axis, turn in enumerate((roll, pitch, yaw)):
         turn[:, 0], turn[:, 1 + axis] = c[:, axis], s[:, axis]
-        whole = turn if whole is None else quaternion_product(whole, turn)
-    return normalize(whole)
+    return normalize(quaternion_product(yaw, quaternion_product(pitch, roll)))

@@ -80,7 +80,7 @@ class DrakeModel:
         return self.plant.AddRigidBody(NAME, made)
 
     def _read(self, via: str) -> Any:
-        """The body by Drake's parser. The link of a URDF has no joint, its frame is at the pivot."""
+        """The body by Drake's parser. The link of a URDF has no joint; its frame is the joint's."""
         if via == "mjcf":
             text, kind, self._origin = mjcf_of(self.system), "xml", np.zeros(3)
         else:

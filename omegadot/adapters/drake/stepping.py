@@ -12,7 +12,9 @@ from omegadot.adapters.protocol import UnsupportedError
 from omegadot.reference_impl.system import Array
 
 CHUNK = 256  # steps from one look at the log to the next
-SINGULAR = "has reached a singularity"  # of the message in which Drake refuses a pitch of 90 degrees
+SINGULAR = (
+    "has reached a singularity"  # of the message in which Drake refuses a pitch of 90 degrees
+)
 ROOT_OF_LARGEST = 2.0**512  # the least number whose square is not finite
 
 
@@ -73,4 +75,3 @@ def refuse(error: RuntimeError, rows: Array) -> None:
         ) from error
     if rows.size == 0 or is_finite(rows[:, -1]):
         raise error
-

@@ -13,7 +13,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from omegadot.adapters.registry import BUILT_IN
+from omegadot.adapters.registry import OURS
 from omegadot.commands.check.baseline_file import Baseline
 from omegadot.commands.check.compare import baseline_checks
 from omegadot.commands.check.result import Check, Result, Subject, checks_of
@@ -96,7 +96,7 @@ def exceptions_of(
     """
     names, own = {choice.name for choice in choices}, list[Path]()
     for choice in choices:
-        built_in = BUILT_IN.get(choice.name) == choice.target
+        built_in = OURS.get(choice.name) == choice.target
         path = OWN_FOLDER / f"{choice.name}.toml" if built_in else _next_to(choice.target)
         if path is not None and path.is_file():
             own.append(path)

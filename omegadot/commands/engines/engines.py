@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from omegadot.adapters.protocol import Description
+from omegadot.adapters.registry import OPTIONAL, is_absent
 from omegadot.harness.arguments import engine_choices, several
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
@@ -35,9 +36,11 @@ class EngineEntry:
 def engines(adapters: EngineLike | Sequence[EngineLike] = ()) -> tuple[EngineEntry, ...]:
     """Every engine that is registered, each started in a process of its own.
 
+    Optional ones that are not installed are among them, with what installs them.
     adapters: engines of your own in addition, by class. Raises UsageError.
     """
     choices = engine_choices([], several(adapters))
+    choices += [EngineChoice(name, OPTIONAL[name]) for name in OPTIONAL if is_absent(name)]
     with ThreadPoolExecutor() as threads:
         return tuple(threads.map(_entry, choices))
 

@@ -20,7 +20,7 @@ from functools import partial
 from typing import Any, BinaryIO, cast
 
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
-from omegadot.adapters.registry import BUILT_IN, AdapterError, build_adapter
+from omegadot.adapters.registry import OURS, AdapterError, build_adapter
 from omegadot.workers.engine_end.checked import description_of
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
@@ -137,7 +137,7 @@ def main() -> None:
     The module of an engine of one's own may stand in the current folder, which comes last.
     """
     _end_with_parent()
-    if sys.argv[1] not in BUILT_IN.values():
+    if sys.argv[1] not in OURS.values():
         sys.path.append(os.getcwd())
     setup = cast(Setup, sys.argv[2] if len(sys.argv) > 2 else "physics")
     memory = os.environ.get(MEMORY_VARIABLE)
