@@ -70,7 +70,7 @@ def mjcf_of(system: System) -> str:
         inertia = _moments(*principal_frame(tensor))
     joint = "<freejoint/>" if free else f'<joint type="ball" pos="{_text(pivot)}"/>'
     center = f'pos="{_text(body.center_of_mass)}" mass="{_text(body.mass)}"'
-    return f"""<mujoco>
+    return f"""<mujoco model="robot">
 <worldbody><body name="{NAME}" pos="{_text(-pivot)}">
   {joint}
   <inertial {center} {inertia}/>

@@ -123,9 +123,11 @@ class DrakeAdapter(OneJointAdapter):
         ends, rows_to = np.arange(steps + 1) * timestep, np.arange(steps + 1) + 1
         if plan.scheme:
             own = stepper.integrate(plan.scheme, timestep if plan.fixed else ends[-1])
+            own.set_throw_on_minimum_step_size_violation(self._setup != "physics")
             own.set_fixed_step_mode(plan.fixed)
-            if accuracy is not None or plan.solves:
-                own.set_target_accuracy(accuracy if accuracy is not None else plan.solves)
+            wanted = plan.solves if self._setup == "physics" else 0.0
+            if accuracy or wanted:
+                own.set_target_accuracy(accuracy or wanted)
         looks = np.unique(np.append(np.arange(CHUNK, steps, CHUNK), steps))
         rows, seconds = stepper.run(ends[looks], rows_to[looks])
         return Trajectory(times, joint.states(rows[kept]), seconds)

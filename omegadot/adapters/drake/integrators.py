@@ -9,6 +9,26 @@ from omegadot.adapters.protocol import Integrator
 
 CHANNELS = ("omega", "attitude", "energy", "angular_momentum", "linear_momentum", "position")
 FIXED = "-fixed"
+# All step y = (q, v) as one vector, v with omega in world axes, q a quaternion that is not made
+# unit again, or roll, pitch and yaw: `tests/adapters/test_drake.py` holds their formulas.
+SAP = (
+    "MultibodyPlant(time_step): v1 = v + h (M + h D)^-1 F, q1 = q + h N v1; the contact "
+    "approximations lagged, similar and sap are the same without contact"
+)
+TAMSI = "the same with the approximation tamsi, which takes damping at the step's start"
+SOLVED = "where Newton's iterations do not converge, a fixed step is halved nevertheless"
+EMBEDDED = {
+    "bogacki_shampine3": (3, "Bogacki and Shampine's 3(2)"),
+    "runge_kutta3": (3, "Kutta's method of order 3"),
+    "runge_kutta5": (5, "Dormand and Prince's 5(4)"),
+}
+# Order, note, and the accuracy to which a fixed step solves its equation.
+IMPLICIT = {
+    "implicit_euler": (1, "implicit Euler, of two half steps", 1e-12),
+    "velocity_implicit_euler": (1, "implicit Euler, of two half steps, iterated in v", 1e-8),
+    "radau1": (1, "Radau IIA with one stage: implicit Euler", 1e-12),
+    "radau3": (3, "Radau IIA with two stages", 1e-12),
+}
 
 
 @dataclass(frozen=True)
@@ -37,21 +57,21 @@ class Plan:
 
 def _plans() -> dict[str, Plan]:
     found = {
-        "discrete": Plan("", 1, "kLagged"),
-        "discrete-tamsi": Plan("", 1, "kTamsi"),
-        "explicit_euler": Plan("explicit_euler", 1),
-        "semi_explicit_euler": Plan("semi_explicit_euler", 1),
-        "runge_kutta2": Plan("runge_kutta2", 2),
+        "discrete": Plan("", 1, "kLagged", note=SAP),
+        "discrete-tamsi": Plan("", 1, "kTamsi", note=TAMSI),
+        "explicit_euler": Plan("explicit_euler", 1, note="y + h f(y)"),
+        "semi_explicit_euler": Plan("semi_explicit_euler", 1, note="v1 = v + h a, q1 = q + h N v1"),
+        "runge_kutta2": Plan(
+            "runge_kutta2", 2, note="Heun's method, the explicit trapezoidal rule"
+        ),
     }
-    for name, order in {"bogacki_shampine3": 3, "runge_kutta3": 3, "runge_kutta5": 5}.items():
-        found[name] = Plan(name, order, fixed=False)
-        found[name + FIXED] = Plan(name, order)
-    implicit = {"implicit_euler": 1, "velocity_implicit_euler": 1, "radau1": 1, "radau3": 3}
-    for name, order in implicit.items():
-        finest = 1e-5 if order == 1 else 1e-9
-        found[name] = Plan(name, order, fixed=False, finest_accuracy=finest)
-        solves = 1e-8 if name == "velocity_implicit_euler" else 1e-12
-        found[name + FIXED] = Plan(name, order, solves=solves)
+    for name, (order, note) in EMBEDDED.items():
+        found[name] = Plan(name, order, fixed=False, note=note)
+        found[name + FIXED] = Plan(name, order, note=note)
+    for name, (order, note, solves) in IMPLICIT.items():
+        finest = 1e-5 if order == 1 else 1e-9  # a finer one takes minutes a run
+        found[name] = Plan(name, order, fixed=False, finest_accuracy=finest, note=note)
+        found[name + FIXED] = Plan(name, order, solves=solves, note=f"{note}; {SOLVED}")
     return found
 
 
