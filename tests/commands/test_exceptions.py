@@ -6,6 +6,7 @@ import polars as pl
 import pytest
 from command_line import WRONG, Result, omegadot, quick_scenario
 
+from omegadot.adapters.registry import OURS
 from omegadot.commands.check.exceptions import (
     OWN_FOLDER,
     DeclaredException,
@@ -15,7 +16,6 @@ from omegadot.commands.check.exceptions import (
 )
 from omegadot.commands.check.result import PASSED, Check, skipped
 from omegadot.commands.check.result import Result as CheckResult
-from omegadot.harness.arguments import engine_choices
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError
 
@@ -113,10 +113,11 @@ def test_they_stand_next_to_a_module(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def test_the_projects_own_files_are_read() -> None:
     files = sorted(OWN_FOLDER.glob("*.toml"))
-    assert {file.stem for file in files} == {"mujoco", "pinocchio", "dart"}
+    assert {file.stem for file in files} == {*OURS} - {"exact", "reference"}
     read = [exception for file in files for exception in read_exceptions(file)]
     assert all(exception.link.startswith("https://") for exception in read)
-    assert exceptions_of(engine_choices([]), []) == read
+    ours = [EngineChoice(name, OURS[name]) for name in sorted(OURS)]
+    assert exceptions_of(ours, []) == read
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import numpy as np
 from omegadot.adapters.drake.integrators import declared_integrators, plan_of
 from omegadot.adapters.drake.joint import DrakeJoint
 from omegadot.adapters.drake.model import SWITCHED_OFF, DrakeModel, Stepping
-from omegadot.adapters.drake.stepping import CHUNK, DrakeStepper
+from omegadot.adapters.drake.stepping import CHUNK, DrakeStepper, is_finite, refuse_unresolved
 from omegadot.adapters.one_joint import OneJointAdapter
 from omegadot.adapters.protocol import (
     ONE_BODY,
@@ -108,14 +108,14 @@ class DrakeAdapter(OneJointAdapter):
         """`Simulator.AdvanceTo`, logged by a `VectorLogSink`.
 
         Raises UnsupportedError for an integrator that Drake has not, and for a motion that takes a
-        ball joint to its singularity.
+        ball joint to its singularity, or nearer to it than a fixed step turns.
         """
         joint, kept = self._loaded(), kept_steps(steps, every)
         plan = plan_of(integrator)
         if plan is None:
             raise UnsupportedError(f"drake has no integrator {integrator!r}.")
         times, start = np.array(kept) * timestep, joint.coordinates(initial)
-        if steps == 0 or not np.all(np.isfinite(start)):  # Drake ends the process at such a state
+        if steps == 0 or not is_finite(start):  # Drake ends the process at NaN
             rows = np.full((len(kept), len(start)), np.nan)
             rows[0] = start
             return Trajectory(times, joint.states(rows), 0.0)
@@ -123,11 +123,13 @@ class DrakeAdapter(OneJointAdapter):
         ends, rows_to = np.arange(steps + 1) * timestep, np.arange(steps + 1) + 1
         if plan.scheme:
             own = stepper.integrate(plan.scheme, timestep if plan.fixed else ends[-1])
-            own.set_throw_on_minimum_step_size_violation(self._setup != "physics")
             own.set_fixed_step_mode(plan.fixed)
             wanted = plan.solves if self._setup == "physics" else 0.0
             if accuracy or wanted:
                 own.set_target_accuracy(accuracy or wanted)
         looks = np.unique(np.append(np.arange(CHUNK, steps, CHUNK), steps))
         rows, seconds = stepper.run(ends[looks], rows_to[looks])
-        return Trajectory(times, joint.states(rows[kept]), seconds)
+        if self._pivoted and plan.fixed:
+            refuse_unresolved(rows, timestep)
+        with np.errstate(over="ignore", invalid="ignore"):  # a diverged run is shown as it is
+            return Trajectory(times, joint.states(rows[kept]), seconds)

@@ -18,7 +18,6 @@ from omegadot.reference_impl.system import Body, System
 
 SWITCHED_OFF = (
     "collision: bodies have no shapes, and no SceneGraph is there",
-    "an exception where an error-controlled integrator needs steps below its least one",
     "the accuracy of 1e-3 or so to which fixed implicit steps are solved: 1e-12, or 1e-8 of "
     "velocity_implicit_euler",
 )

@@ -73,3 +73,24 @@ def refuse(error: RuntimeError, rows: Array) -> None:
         ) from error
     if rows.size == 0 or is_finite(rows[:, -1]):
         raise error
+
+
+def refuse_unresolved(rows: Array, timestep: float) -> None:
+    """Raise UnsupportedError where a step turns further than a ball joint's singularity is away.
+
+    rows: (n, 6), roll, pitch, yaw and omega after each step. ``roll' = (..) / cos(pitch)`` has a
+    pole in time, at ``cos(pitch) / |omega|`` from here at the least. A longer step is beyond what
+    any power series of the motion holds for, so that no order shows, and multiplies the rounding
+    of the angles by ``h |omega| / cos(pitch)^2``.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        turns = timestep * np.linalg.norm(rows[:, 3:], axis=1)
+        away = np.abs(np.cos(rows[:, 1]))
+    beyond = turns > away
+    if np.any(beyond):
+        first = int(np.argmax(beyond))
+        raise UnsupportedError(
+            f"Drake's ball joint has roll, pitch and yaw, and in steps of {turns[first]:.2g} rad "
+            f"this motion comes {away[first]:.2g} rad near a pitch of 90 degrees, where these are "
+            "singular; take smaller steps"
+        )
