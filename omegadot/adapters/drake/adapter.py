@@ -12,7 +12,7 @@ import numpy as np
 from omegadot.adapters.drake.integrators import declared_integrators, plan_of
 from omegadot.adapters.drake.joint import DrakeJoint
 from omegadot.adapters.drake.model import SWITCHED_OFF, DrakeModel, Stepping
-from omegadot.adapters.drake.stepping import CHUNK, DrakeStepper, is_finite, refuse_unresolved
+from omegadot.adapters.drake.stepping import DrakeStepper, is_finite, refuse_unresolved
 from omegadot.adapters.one_joint import OneJointAdapter
 from omegadot.adapters.protocol import (
     ONE_BODY,
@@ -45,7 +45,7 @@ LINKS = (
 # Those of pydrake that are used; pydrake.all takes three times as long to import.
 PARTS = (
     *("common.eigen_geometry", "math", "multibody.parsing", "multibody.plant", "multibody.tree"),
-    *("systems.analysis", "systems.framework", "systems.primitives"),
+    *("systems.analysis", "systems.framework"),
 )
 
 
@@ -105,7 +105,7 @@ class DrakeAdapter(OneJointAdapter):
         every: int,
         accuracy: float | None = None,
     ) -> Trajectory:
-        """`Simulator.AdvanceTo`, logged by a `VectorLogSink`.
+        """`Simulator.AdvanceTo` from sample to sample.
 
         Raises UnsupportedError for an integrator that Drake has not, and for a motion that takes a
         ball joint to its singularity, or nearer to it than a fixed step turns.
@@ -120,16 +120,16 @@ class DrakeAdapter(OneJointAdapter):
             rows[0] = start
             return Trajectory(times, joint.states(rows), 0.0)
         stepper = DrakeStepper(self._engine, self._model(plan.stepping(timestep)), start)
-        ends, rows_to = np.arange(steps + 1) * timestep, np.arange(steps + 1) + 1
         if plan.scheme:
-            own = stepper.integrate(plan.scheme, timestep if plan.fixed else ends[-1])
+            own = stepper.integrate(plan.scheme, timestep if plan.fixed else times[-1])
             own.set_fixed_step_mode(plan.fixed)
             wanted = plan.solves if self._setup == "physics" else 0.0
             if accuracy or wanted:
                 own.set_target_accuracy(accuracy or wanted)
-        looks = np.unique(np.append(np.arange(CHUNK, steps, CHUNK), steps))
-        rows, seconds = stepper.run(ends[looks], rows_to[looks])
+        each = self._pivoted or not plan.fixed  # stop at every step, or where steps have to end
+        rows, seconds = stepper.run(np.arange(1, steps + 1) * timestep if each else times[1:])
         if self._pivoted and plan.fixed:
             refuse_unresolved(rows, timestep)
+        rows = rows[kept] if each else rows
         with np.errstate(over="ignore", invalid="ignore"):  # a diverged run is shown as it is
-            return Trajectory(times, joint.states(rows[kept]), seconds)
+            return Trajectory(times, joint.states(rows), seconds)

@@ -49,10 +49,8 @@ class Plan:
     note: str = ""
 
     def stepping(self, timestep: float) -> Stepping:
-        """What the diagram is built for."""
-        if not self.scheme:
-            return Stepping(timestep=timestep, approximation=self.approximation)
-        return Stepping(period=timestep)
+        """What the plant is built for."""
+        return Stepping() if self.scheme else Stepping(timestep, self.approximation)
 
 
 def _plans() -> dict[str, Plan]:

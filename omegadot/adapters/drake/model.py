@@ -1,4 +1,4 @@
-"""The Drake diagram of one body: its plant, its joint, its loads, and a log of its states.
+"""The Drake plant of one body: its joint and its loads.
 
 A free body is on a `QuaternionFloatingJoint` at its origin, a pivoted one on a `BallRpyJoint` at
 the pivot. Drake has no ball joint without Euler angles.
@@ -25,20 +25,21 @@ SWITCHED_OFF = (
 
 @dataclass(frozen=True)
 class Stepping:
-    """What a diagram is built for.
+    """What a plant is built for.
 
     timestep: s, of a discrete plant; 0 for a continuous one.  approximation: the discrete plant's
-    contact approximation, "" for Drake's own choice.  period: s, between two rows of the log; 0
-    for a row a step.
+    contact approximation, "" for Drake's own choice.
     """
 
     timestep: float = 0.0
     approximation: str = ""
-    period: float = 0.0
 
 
 class DrakeModel:
-    """plant, joint and node (the body) are Drake's objects, in a diagram of their own.
+    """plant, joint and node (the body) are Drake's objects.
+
+    root: what a simulator steps: the plant alone, which costs less than a diagram does, or the
+    diagram of it and of the propeller that drives it.
 
     Raises UnsupportedError where Drake refuses a file of the body, or its inertia.
     """
@@ -54,9 +55,7 @@ class DrakeModel:
         self._drake: Any = drake
         self.system, self.free = system, system.load.pivot is None
         self._origin = origin_at_pivot(system)
-        builder = drake.DiagramBuilder()
-        self.plant: Any = builder.AddSystem(drake.MultibodyPlant(stepping.timestep))
-        self.plant.set_name("plant")
+        self.plant: Any = drake.MultibodyPlant(stepping.timestep)
         if stepping.approximation:
             known = drake.DiscreteContactApproximation.__members__
             self.plant.set_discrete_contact_approximation(known[stepping.approximation])
@@ -65,10 +64,8 @@ class DrakeModel:
         gravity = np.array(system.load.gravity, float)
         self.plant.mutable_gravity_field().set_gravity_vector(gravity)
         self.plant.Finalize()
-        self._push(builder)
-        port = self.plant.get_state_output_port()
-        self.log: Any = drake.LogVectorOutput(port, builder, stepping.period)
-        self.diagram: Any = builder.Build()
+        self._size = float(np.linalg.norm(system.load.torque_body))
+        self.root: Any = self._driven() if self._size else self.plant
 
     def _made(self) -> Any:
         """The body by Drake's API. Its inertia is per unit of mass, about the body's origin."""
@@ -101,27 +98,22 @@ class DrakeModel:
         ends = (self.plant.world_frame(), self.node.body_frame())
         return self.plant.AddJoint(kind("joint", *ends))
 
-    def _push(self, builder: Any) -> None:
-        """A propeller without thrust that gives a torque along its z-axis, fixed in the body."""
-        drake, torque = self._drake, np.array(self.system.load.torque_body, float)
-        size = float(np.linalg.norm(torque))
-        self._drives = size > 0.0
-        if not self._drives:
-            return
-        turned = drake.RotationMatrix.MakeFromOneVector(torque / size, 2)
+    def _driven(self) -> Any:
+        """With a propeller without thrust: its torque is along its z-axis, fixed in the body."""
+        drake, builder = self._drake, self._drake.DiagramBuilder()
+        along = np.array(self.system.load.torque_body, float) / self._size
+        turned = drake.RotationMatrix.MakeFromOneVector(along, 2)
         pose, index = drake.RigidTransform(turned, np.zeros(3)), self.node.index()
-        propeller = drake.Propeller(index, pose, thrust_ratio=0.0, moment_ratio=1.0)
-        self._propeller = builder.AddSystem(propeller)
-        poses, plant = self.plant.get_body_poses_output_port(), self.plant
-        builder.Connect(poses, propeller.get_body_poses_input_port())
-        builder.Connect(
-            propeller.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port()
-        )
-        self._size = size
+        blades = drake.Propeller(index, pose, thrust_ratio=0.0, moment_ratio=1.0)
+        plant, self._blades = builder.AddSystem(self.plant), builder.AddSystem(blades)
+        poses, forces = plant.get_body_poses_output_port(), blades.get_spatial_forces_output_port()
+        builder.Connect(poses, blades.get_body_poses_input_port())
+        builder.Connect(forces, plant.get_applied_spatial_force_input_port())
+        return builder.Build()
 
     def context(self) -> tuple[Any, Any]:
-        """A new context of the diagram with the loads set, and the plant's part of it."""
-        load, root = self.system.load, self.diagram.CreateDefaultContext()
+        """A new context of the root with the loads set, and the plant's part of it."""
+        load, root = self.system.load, self.root.CreateDefaultContext()
         own = self.plant.GetMyContextFromRoot(root)
         damping = np.zeros(self.plant.num_velocities())
         damping[:3] = load.damping  # velocities are (angular, linear), angular ones in world axes
@@ -130,9 +122,9 @@ class DrakeModel:
         couple[:3] = load.torque_world
         if couple.any():
             self.plant.get_applied_generalized_force_input_port().FixValue(own, couple)
-        if self._drives:
-            blades = self._propeller.GetMyContextFromRoot(root)
-            self._propeller.get_command_input_port().FixValue(blades, [self._size])
+        if self._size:
+            blades = self._blades.GetMyContextFromRoot(root)
+            self._blades.get_command_input_port().FixValue(blades, [self._size])
         return root, own
 
     def body(self, own: Any) -> Body:
