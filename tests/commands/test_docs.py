@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from pytest_line import pytest_command
 
+from omegadot.adapters.registry import OPTIONAL, is_absent
 from omegadot.scenarios import scenario_of
 
 ROOT = Path(__file__).parents[2]
@@ -19,6 +20,7 @@ BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INSTALLING = (
     "python3 -m venv .venv && .venv/bin/pip install -e . && .venv/bin/omegadot run",
     ".venv/bin/pip install -e '.[test]' && .venv/bin/pytest",
+    ".venv/bin/pip install -e '.[drake]'",
 )
 
 
@@ -65,7 +67,7 @@ def in_this_environment(command: str) -> list[list[str]]:
 
 def test_the_two_commands_stand_at_the_top_and_in_ci() -> None:
     readme = [block.strip() for name, block in blocks("bash") if name == "README.md"]
-    assert tuple(readme[:2]) == INSTALLING
+    assert tuple(readme[:2]) == INSTALLING[:2]
     script = (ROOT / ".ci" / "run").read_text()
     assert "-e ." in script
     assert ".venv/bin/omegadot run" in script
@@ -97,6 +99,9 @@ def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("command", commands())
 def test_commands_run(command: str, workplace: Path) -> None:
+    for name in filter(is_absent, OPTIONAL):
+        if re.search(rf"\b{name}\b", command):
+            pytest.skip(f"{name} is not installed")
     for arguments in in_this_environment(command):
         done = subprocess.run(arguments, cwd=workplace, capture_output=True, text=True, check=False)
         assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"

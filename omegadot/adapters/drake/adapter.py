@@ -115,7 +115,7 @@ class DrakeAdapter(OneJointAdapter):
         if plan is None:
             raise UnsupportedError(f"drake has no integrator {integrator!r}.")
         times, start = np.array(kept) * timestep, joint.coordinates(initial)
-        if steps == 0 or not is_finite(start):  # Drake ends the process at NaN
+        if steps == 0 or not is_finite(start):  # Drake raises SystemExit at NaN
             rows = np.full((len(kept), len(start)), np.nan)
             rows[0] = start
             return Trajectory(times, joint.states(rows), 0.0)
