@@ -135,6 +135,6 @@ def test_every_place_that_contributing_names_is_there() -> None:
     places = re.findall(r"`((?:\w+/)+[\w.]*)`", questions)
     assert len(places) > 10
     for place in places:
-        engines = ["mujoco", "pinocchio", "dart", "drake"] if "ENGINE" in place else [""]
+        engines = ["mujoco", "pinocchio", "dart"] if "ENGINE" in place else [""]
         for engine in engines:
             assert (ROOT / place.replace("ENGINE", engine)).exists(), place
