@@ -67,7 +67,7 @@ def _plans() -> dict[str, Plan]:
         found[name] = Plan(name, order, fixed=False, note=note)
         found[name + FIXED] = Plan(name, order, note=note)
     for name, (order, note, solves) in IMPLICIT.items():
-        finest = 1e-5 if order == 1 else 1e-9  # a finer one takes minutes a run
+        finest = 1e-3 if order == 1 else 1e-7  # a finer one may take minutes a run
         found[name] = Plan(name, order, fixed=False, finest_accuracy=finest, note=note)
         found[name + FIXED] = Plan(name, order, solves=solves, note=f"{note}; {SOLVED}")
     return found
