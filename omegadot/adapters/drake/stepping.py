@@ -87,11 +87,8 @@ def refuse_unresolved(rows: Array, timestep: float) -> None:
     with np.errstate(over="ignore", invalid="ignore"):
         turns = timestep * np.linalg.norm(rows[:, 3:], axis=1)
         away = np.abs(np.cos(rows[:, 1]))
-    beyond = turns > away
-    if np.any(beyond):
-        first = int(np.argmax(beyond))
+    if np.any(turns > away):
         raise UnsupportedError(
-            f"Drake's ball joint has roll, pitch and yaw, and in steps of {turns[first]:.2g} rad "
-            f"this motion comes {away[first]:.2g} rad near a pitch of 90 degrees, where these are "
-            "singular; take smaller steps"
+            "Drake's ball joint has roll, pitch and yaw, and a step turns further than the motion is "
+            "away from a pitch of 90 degrees, where these are singular; take smaller steps"
         )
