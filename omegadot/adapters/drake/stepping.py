@@ -89,6 +89,6 @@ def refuse_unresolved(rows: Array, timestep: float) -> None:
         away = np.abs(np.cos(rows[:, 1]))
     if np.any(turns > away):
         raise UnsupportedError(
-            "Drake's ball joint has roll, pitch and yaw, and a step turns further than the motion is "
-            "away from a pitch of 90 degrees, where these are singular; take smaller steps"
+            "Drake's ball joint has roll, pitch and yaw, and a step turns further than the motion "
+            "is away from a pitch of 90 degrees, where these are singular; take smaller steps"
         )
