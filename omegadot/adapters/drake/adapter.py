@@ -50,7 +50,7 @@ PARTS = (
 
 
 class DrakeAdapter(OneJointAdapter):
-    """Drake 1.38 and later. Raises ImportError when Drake is not installed."""
+    """Drake 1.51. Raises ImportError when Drake is not installed."""
 
     name = "drake"
 
