@@ -11,7 +11,7 @@ import polars as pl
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import GATES
-from omegadot.reports.text.numbers import engine_name, magnitude, quantity, short, times
+from omegadot.reports.text.numbers import engine_name, quantity, short, times, times_its_bound
 
 UNKNOWN = "none is known"
 
@@ -50,10 +50,8 @@ def _worst(rows: list[dict[str, Any]]) -> str:
 
 
 def _excess(row: Mapping[str, Any]) -> float:
-    """How many times its bound a measure is; orders, which are too low, come last."""
-    if row["metric"] == "observed_order":
-        return 0.0
-    return magnitude(row["value"]) / row["bound"] if row["bound"] else magnitude(row["value"])
+    """Orders, which are too low, come last."""
+    return 0.0 if row["metric"] == "observed_order" else times_its_bound(row["value"], row["bound"])
 
 
 def _extent(tasks: list[Mapping[str, Any]]) -> str:
