@@ -45,7 +45,12 @@ Texts = list[str] | None
 Output = Annotated[Format, typer.Option("--format", help="Output format.")]
 PageOutput = Annotated[PageFormat, typer.Option("--format", help="Output format.")]
 Adapters = Annotated[
-    Texts, option("FILE.py:CLASS", "An engine of your own; repeatable.", "--adapter")
+    Texts,
+    option(
+        "FILE.py:CLASS",
+        "An engine of your own, or a program that serves one with its arguments; repeatable.",
+        "--adapter",
+    ),
 ]
 Ways = Annotated[
     Texts,

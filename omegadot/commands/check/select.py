@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from omegadot.adapters.registry import registered
 from omegadot.commands.check.exceptions import DeclaredException, exceptions_of
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import (
@@ -18,6 +17,7 @@ from omegadot.harness.arguments import (
     scenarios_of,
 )
 from omegadot.harness.engine_target import EngineLike
+from omegadot.harness.own_engines import known_engines
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, check_count
 from omegadot.scenarios import Scenario, ScenarioLike, scenario
@@ -70,7 +70,7 @@ def select(arguments: Arguments) -> Selection:
     if arguments.update and arguments.baseline is None:
         raise UsageError("--update-baseline: give the folder of the baselines with --baseline DIR.")
     adapters = adapters_named(arguments.adapters)
-    known = {**registered(), **adapters}
+    known = {**known_engines(), **adapters}
     unknown = tuple(name for name in arguments.required if name not in known)
     wanted = list(arguments.engines)
     for name in (*adapters, *arguments.required):

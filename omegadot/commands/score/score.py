@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from omegadot.adapters.registry import registered
 from omegadot.commands.progress import Reporting, reporting
 from omegadot.commands.run.result import RunInterrupted, RunResult, result_of
 from omegadot.commands.score.convention import SETTINGS
@@ -24,6 +23,7 @@ from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.harness.arguments import case_of, engine_choices, scenarios_of, several
 from omegadot.harness.engine_target import EngineLike
+from omegadot.harness.own_engines import known_engines
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError
 from omegadot.reports.record.record import check_folder
@@ -148,6 +148,6 @@ def _choices(name: str, engines: Sequence[EngineLike]) -> list[EngineChoice]:
         raise UsageError("--name is empty; give the trace a name.")
     if not name.isprintable():
         raise UsageError(f"--name {name!r}: give the trace a name of printable characters.")
-    if name in (*registered(), *(choice.name for choice in choices)):
+    if name in (*known_engines(), *(choice.name for choice in choices)):
         raise UsageError(f"--name {name}: an engine has this name; give the trace another.")
     return choices

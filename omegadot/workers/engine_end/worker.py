@@ -22,11 +22,11 @@ from typing import Any, BinaryIO, cast
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import BUILT_IN, AdapterError, build_adapter
 from omegadot.workers.engine_end.checked import description_of
+from omegadot.workers.engine_end.command import PR_SET_PDEATHSIG, CommandAdapter
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
 
-_PR_SET_PDEATHSIG = 1  # linux/prctl.h
 _SECONDS_TO_LOOK = 0.5
 # Given back when memory runs out, so that there is some to report it.
 _reserve = [bytearray(1 << 22)]
@@ -71,7 +71,7 @@ def answered(call: Callable[[], Any]) -> tuple[bytes, bool]:
 def _built(target: str, setup: Setup, via: str) -> tuple[Adapter | None, bytes]:
     """The adapter, with the frame that holds its description; None where it cannot be built."""
     try:
-        adapter = build_adapter(target, setup, via)
+        adapter = build_adapter(target, setup, via, CommandAdapter)
     except (AdapterError, ImportError) as error:
         missing = {"outcome": "not-installed", "reason": one_line(_text_of(error))}
         return None, encode_frame(missing)
@@ -120,7 +120,7 @@ def _end_with_parent() -> None:
     other threads run.
     """
     if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     elif os.name == "posix":
         threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
 
