@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from omegadot.commands.fit import picture
-from omegadot.commands.fit.estimates import Estimates, estimates_of
+from omegadot.commands.fit.determined import determined
+from omegadot.commands.fit.estimates import Estimates
 from omegadot.commands.fit.models import Terms, compare_models
 from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.samples import samples_of
-from omegadot.commands.fit.scale import known_of, scale_of, torque_of
+from omegadot.commands.fit.scale import known_of, torque_of
 from omegadot.commands.fit.scenario_file import MARK, scenario_of_fit, text_of
 from omegadot.commands.fit.sentences import sentences
-from omegadot.commands.fit.spread import spread_of
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.settings import GivenColumns, Reading, reading_of, settings_of
 from omegadot.harness.usage import UsageError, check_number
@@ -81,10 +81,9 @@ def fit(
     samples = samples_of(reading)
     digits = (samples.digits[0] / samples.size, samples.digits[1])
     compared = compare_models(samples.data(load), digits, terms)
-    spread = spread_of(compared.data, compared.best, compared.noise)
-    scale = scale_of(spread, known, samples.inertia_unit(load, compared.data.torque))
-    own = estimates_of(spread, scale, samples.size)
-    found_out = sentences(samples, compared, spread, own, scale, terms)
+    known_by = determined(samples, compared, known, load)
+    own, scale = known_by.own, known_by.scale
+    found_out = sentences(known_by, own, terms)
     found = scenario_of_fit(samples, own, load, mass or 1.0, name)
     result = FitResult(
         samples,

@@ -2,12 +2,14 @@
 
 An F-test compares the gain of a term with what noise alone gains. Its numerator is divided by the
 inflation of correlated residuals, so that a model that lacks something is not made to fit by a
-bias.
+bias. That a term is left out is a choice of words, not knowledge that it is zero: every model that
+the data allow counts in the standard errors.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.stats import f as fisher
@@ -20,6 +22,7 @@ from omegadot.commands.fit.start import sized, starts
 # The probability that noise alone gains so much. A term that is wrongly left out distorts the rest,
 # one that is wrongly taken widens the errors: bias and damping enter easily, shape does not.
 SIGNIFICANT = {"shape": 1e-3, "bias": 0.01, "damping": 0.01}
+ALLOWED = 1e-3  # the same, below which a model is refuted
 WIDEST = 1e4  # of weights, which derivatives by differences resolve
 ROUNDS = 3  # of the weights of omega and attitude: they settle in two
 FINE = 1e-5  # rms of residuals below which the motion is followed to the last digits
@@ -33,12 +36,14 @@ NONE = (0.0, 0.0)
 class Compared:
     """The fits of a trace.
 
-    data: with the weight of the attitude that was used.  fits: by what is free.  noise: of the
-    chosen one.  chances: the probability that noise alone gains as much as each term did.
+    data: with the weight of the attitude that was used.  fits: by what is free.  rich: the model
+    with every term.  chosen: the one that is reported.  noise: of that.  chances: the probability
+    that noise alone gains as much as each term did.
     """
 
     data: Data
     fits: dict[Free, Fitted]
+    rich: Free
     chosen: Free
     noise: Noise
     chances: dict[str, float]
@@ -47,6 +52,18 @@ class Compared:
     def best(self) -> Fitted:
         """The fit of the chosen model."""
         return self.fits[self.chosen]
+
+    @cached_property
+    def allowed(self) -> list[Fitted]:
+        """The fits that the data do not refute against the richest; the chosen one is the first."""
+        rich = self.fits[self.rich]
+        others = [
+            fit
+            for free, fit in self.fits.items()
+            if free not in (self.rich, self.chosen)
+            and _chance(self.data, fit, rich, self.noise) > ALLOWED / _sought(self.data, free)
+        ]
+        return [self.best, *([] if self.chosen == self.rich else [rich]), *others]
 
     def rms(self, free: Free) -> float:
         """What a model leaves of a component of omega, in the units of the fit."""
@@ -82,7 +99,14 @@ def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
         best = min(near, key=lambda fit: fit.cost)
         hopeless = best.cost > HOPELESS * fits[rich].cost
         fits[free] = finish(data, best, TRIALS if hopeless else MOST_TRIALS)
+    lowest = min(fits.values(), key=lambda fit: fit.cost)
+    if lowest.free != rich:  # the richest holds every other, and can do no worse
+        fits[rich] = min(fits[rich], finish(data, replace(lowest, free=rich)), key=_cost)
     return _chosen(data, fits, rich, terms, digits)
+
+
+def _cost(fit: Fitted) -> float:
+    return fit.cost
 
 
 def _weighted(data: Data, fit: Fitted, digits: Digits) -> tuple[Data, Fitted]:
@@ -107,31 +131,32 @@ def _smaller(rich: Free, terms: Terms, shapeless: bool) -> list[Free]:
 def _chosen(
     data: Data, fits: dict[Free, Fitted], rich: Free, terms: Terms, digits: Digits
 ) -> Compared:
-    """Drop the shape, then term after term, as long as noise alone gains as much."""
+    """Drop term after term, as long as noise alone gains as much.
+
+    The bias is the first, and with one a shape stays: a sphere with a bias shows almost any short
+    piece of a motion.
+    """
     chances: dict[str, float] = {}
-    chosen, noise = rich, noise_of(data, fits[rich], digits)
-    if _keeps_direction(data):
-        chances["shape"] = _chance(data, fits[replace(rich, shape=False)], fits[rich], noise)
-        if chances["shape"] > SIGNIFICANT["shape"] / len(
-            data.times
-        ):  # its frequency was sought as well
-            chosen = replace(rich, shape=False)
-    left = list(terms.open)
-    while left:
-        tried = {
-            name: _chance(data, fits[replace(chosen, **{name: False})], fits[chosen], noise)
-            for name in left
-        }
-        if "damping" in tried and not fits[chosen].one.damping > 0.0:
-            tried["damping"] = 1.0  # no friction drives a body
-        name = max(tried, key=lambda key: tried[key])
-        chances |= tried
-        if tried[name] <= SIGNIFICANT[name]:
-            break
-        chosen = replace(chosen, **{name: False})
-        noise = noise_of(data, fits[chosen], digits)
-        left.remove(name)
-    return Compared(data, fits, chosen, noise, chances)
+    chosen = rich
+    if "damping" in terms.open and not fits[rich].one.damping > 0.0:
+        chosen, chances["damping"] = replace(rich, damping=False), 1.0  # no friction drives a body
+    noise = noise_of(data, fits[chosen], digits)
+    for name in ("bias", "shape", "damping"):
+        small = replace(chosen, **{name: False})
+        if small == chosen or small not in fits or (name == "shape" and chosen.bias):
+            continue
+        chances[name] = _chance(data, fits[small], fits[chosen], noise)
+        if name == "damping" and not fits[chosen].one.damping > 0.0:
+            chances[name] = 1.0
+        if chances[name] > SIGNIFICANT[name] / _sought(data, small):
+            chosen = small
+            noise = noise_of(data, fits[chosen], digits)
+    return Compared(data, fits, rich, chosen, noise, chances)
+
+
+def _sought(data: Data, free: Free) -> int:
+    """In how many places noise was searched for what the model lacks: a shape has a frequency."""
+    return 1 if free.shape else len(data.times)
 
 
 def _chance(data: Data, small: Fitted, large: Fitted, noise: Noise) -> float:
