@@ -87,7 +87,10 @@ class Determined:
         for factor in (2.0**k for k in range(1, DOUBLED + 1)):
             if factor > 2.0 and factor * turned > LONGEST:
                 return
-            data, thinned = _extended(compared.data, compared, factor)
+            try:
+                data, thinned = _extended(compared.data, compared, factor)
+            except ArithmeticError:  # a fit that is so vague spins up beyond what can be followed
+                return
             noise = replace(compared.noise, omega=compared.noise.omega / np.sqrt(thinned))
             spread = spread_of(data, compared.best, noise, compared.rich)
             seconds = factor * float(self.samples.times[-1] - self.samples.times[0])

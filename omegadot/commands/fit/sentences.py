@@ -24,7 +24,7 @@ def sentences(known: Determined, own: Estimates, terms: Terms) -> list[str]:
         *_open(known, own),
         *_scale(compared, known.scale, own),
         *_bias(known, own),
-        *_damping(compared, own, terms),
+        *_damping(compared, known.scale, own, terms),
         *_quality(compared),
     ]
 
@@ -57,7 +57,7 @@ def _open(known: Determined, own: Estimates) -> list[str]:
         return []
     verb = "separate" if len(left) > 1 else "determine"
     found = f"This window does not {verb} {_listed(left)}"
-    fewest, best = left, (0.0, 0.0)
+    fewest, best, longest = left, (0.0, 0.0), 0.0
     for seconds, turned, still in known.longer():
         best = (seconds, turned) if len(still) < len(fewest) else best
         fewest = still if len(still) < len(fewest) else fewest
@@ -70,7 +70,9 @@ def _open(known: Determined, own: Estimates) -> list[str]:
     if len(fewest) < len(left):
         gained = [name for name in left if name not in fewest]
         found += f"; some {shown} would determine {_listed(gained)}"
-    return [f"{found}; {longest:.2g} s of it would not determine {_listed(fewest)}."]
+    if longest:
+        found += f"; {longest:.2g} s of it would not determine {_listed(fewest)}"
+    return [f"{found}."]
 
 
 def _listed(names: list[str]) -> str:
@@ -138,7 +140,7 @@ def _bias(known: Determined, own: Estimates) -> list[str]:
     ]
 
 
-def _damping(compared: Compared, own: Estimates, terms: Terms) -> list[str]:
+def _damping(compared: Compared, scale: Scale, own: Estimates, terms: Terms) -> list[str]:
     if compared.chosen.damping and own.damping_known:
         if own.damping < 0.0:
             return [
@@ -153,11 +155,14 @@ def _damping(compared: Compared, own: Estimates, terms: Terms) -> list[str]:
     negative = any(fit.one.damping < 0.0 for free, fit in compared.fits.items() if free.damping)
     chance = compared.chances.get("damping", 1.0)
     if chance == 1.0 and negative:
-        return ["No damping is seen: the energy does not fall. It is taken as zero."]
-    return [
-        "Damping is not supported by the data: noise alone gains as much with a probability of "
-        f"{chance:.2g}. It is taken as zero."
-    ]
+        found = "No damping is seen: the energy does not fall."
+    else:
+        found = (
+            "Damping is not supported by the data: noise alone gains as much with a probability of "
+            f"{chance:.2g}."
+        )
+    unit = "N m s/rad" if scale.unit else "1/s"
+    return [f"{found} It is taken as zero; its standard error is {own.damping_error:.2g} {unit}."]
 
 
 def _quality(compared: Compared) -> list[str]:

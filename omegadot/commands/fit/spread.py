@@ -74,9 +74,11 @@ def spread_of(data: Data, fit: Fitted, noise: Noise, free: Free | None = None) -
     # A body at the limit of what can exist is moved beyond it: the equations allow that, as long
     # as no moment vanishes.
     step = min(STEP, 0.1 * float(np.linalg.eigvalsh(fit.one.inertia)[0]))
-    left = data.residuals(
-        moved(fit.one, step * np.vstack([np.eye(count), -np.eye(count)]), fit.free)
-    )
+    lanes = moved(fit.one, step * np.vstack([np.eye(count), -np.eye(count)]), fit.free)
+    try:
+        left = data.residuals(lanes)
+    except ArithmeticError:  # beside it there is no motion: it shows nothing
+        left = np.zeros((2 * count, data.omega.size))
     slopes = (left[:count] - left[count:]) / (2.0 * step)
     slopes /= noise.omega * np.sqrt(noise.inflation) * _of_few(left.shape[1] - count)
     size = float(np.linalg.norm(fit.one.inertia))
