@@ -8,7 +8,7 @@ the data allow counts in the standard errors.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,8 +16,20 @@ from scipy.stats import f as fisher
 
 from omegadot.commands.fit.noise import FINEST, Noise, noise_of
 from omegadot.commands.fit.parameters import Free
-from omegadot.commands.fit.solve import MOST_TRIALS, TRIALS, Data, Fitted, finish, follow, solve
+from omegadot.commands.fit.solve import (
+    CLOSE,
+    MOST_TRIALS,
+    TRIALS,
+    Data,
+    Fitted,
+    cost_of,
+    finish,
+    follow,
+    solve,
+)
+from omegadot.commands.fit.spread import spread_of
 from omegadot.commands.fit.start import sized, starts
+from omegadot.harness.usage import UsageError
 
 # The probability that noise alone gains so much. A term that is wrongly left out distorts the rest,
 # one that is wrongly taken widens the errors: bias and damping enter easily, shape does not.
@@ -26,6 +38,8 @@ ALLOWED = 1e-3  # the same, below which a model is refuted
 WIDEST = 1e4  # of weights, which derivatives by differences resolve
 ROUNDS = 3  # of the weights of omega and attitude: they settle in two
 FINE = 1e-5  # rms of residuals below which the motion is followed to the last digits
+VAGUE = 0.1  # a standard error of a bias, of the size of omega, beyond which it is tried smaller
+BIASES = (1.0, 0.3, 0.1)  # of the size of omega: what such a fit holds a bias within
 HOPELESS = 100.0  # a sum of squares so many times that of the richest is worth few trials
 ALONG = 0.1  # rad: a torque nearer to the axis than this does not turn it
 Digits = tuple[float, float]
@@ -38,7 +52,8 @@ class Compared:
 
     data: with the weight of the attitude that was used.  fits: by what is free.  rich: the model
     with every term.  chosen: the one that is reported.  noise: of that.  chances: the probability
-    that noise alone gains as much as each term did.
+    that noise alone gains as much as each term did.  vague: more fits of the richest, with smaller
+    biases, where the bias is open.
     """
 
     data: Data
@@ -47,6 +62,7 @@ class Compared:
     chosen: Free
     noise: Noise
     chances: dict[str, float]
+    vague: list[Fitted] = field(default_factory=list)
 
     @property
     def best(self) -> Fitted:
@@ -62,6 +78,12 @@ class Compared:
             for free, fit in self.fits.items()
             if free not in (self.rich, self.chosen)
             and _chance(self.data, fit, rich, self.noise) > ALLOWED / _sought(self.data, free)
+        ]
+        small = replace(self.rich, bias=False)  # as many numbers fewer as a bias has
+        others += [
+            fit
+            for fit in self.vague
+            if _chance(self.data, replace(fit, free=small), rich, self.noise) > ALLOWED
         ]
         return [self.best, *([] if self.chosen == self.rich else [rich]), *others]
 
@@ -99,14 +121,41 @@ def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
         best = min(near, key=lambda fit: fit.cost)
         hopeless = best.cost > HOPELESS * fits[rich].cost
         fits[free] = finish(data, best, TRIALS if hopeless else MOST_TRIALS)
+    fits = {free: fit for free, fit in fits.items() if _followed(data, fit)}
+    if not fits:
+        raise UsageError("No motion of a body was found that can be followed; fit another part.")
     lowest = min(fits.values(), key=lambda fit: fit.cost)
     if lowest.free != rich:  # the richest holds every other, and can do no worse
-        fits[rich] = min(fits[rich], finish(data, replace(lowest, free=rich)), key=_cost)
-    return _chosen(data, fits, rich, terms, digits)
+        again = finish(data, replace(lowest, free=rich))
+        fits[rich] = again if _followed(data, again) else replace(lowest, free=rich)
+    found_out = _chosen(data, fits, rich, terms, digits)
+    return replace(found_out, vague=_vague(found_out))
 
 
-def _cost(fit: Fitted) -> float:
-    return fit.cost
+def _followed(data: Data, fit: Fitted) -> bool:
+    """Whether its motion can be followed by itself, as it was among those beside it."""
+    return bool(np.isfinite(cost_of(data, fit.one, fit.free)))
+
+
+def _vague(compared: Compared) -> list[Fitted]:
+    """The fits with a small bias where the data leave a bias open.
+
+    A bias that is hardly held comes out large, and beside a large one the other numbers look sure.
+    """
+    data, rich, noise = compared.data, compared.fits[compared.rich], compared.noise
+    if not compared.rich.bias:
+        return []
+    spread = spread_of(data, rich, noise)
+    block = spread.places("bias")
+    if np.max(np.diag(spread.covariance)[block]) < VAGUE**2:
+        return []
+    found = []
+    for most in BIASES:
+        ridge = noise.omega * np.sqrt(noise.inflation) / most
+        fit = solve(replace(data, ridge=ridge), rich.one, compared.rich, CLOSE, MOST_TRIALS)
+        if _followed(data, fit):
+            found.append(fit)
+    return found
 
 
 def _weighted(data: Data, fit: Fitted, digits: Digits) -> tuple[Data, Fitted]:
@@ -138,8 +187,9 @@ def _chosen(
     """
     chances: dict[str, float] = {}
     chosen = rich
-    if "damping" in terms.open and not fits[rich].one.damping > 0.0:
-        chosen, chances["damping"] = replace(rich, damping=False), 1.0  # no friction drives a body
+    still = replace(rich, damping=False)
+    if "damping" in terms.open and still in fits and not fits[rich].one.damping > 0.0:
+        chosen, chances["damping"] = still, 1.0  # no friction drives a body
     noise = noise_of(data, fits[chosen], digits)
     for name in ("bias", "shape", "damping"):
         small = replace(chosen, **{name: False})

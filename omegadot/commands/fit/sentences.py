@@ -87,10 +87,12 @@ def _shape(own: Estimates) -> list[str]:
         if not sure:
             found.append(f"The moment near {axis} is not determined.")
     open_axes = [axis for axis, sure in zip("xyz", own.axes_known, strict=True) if not sure]
-    if len(open_axes) == 3:
+    if len(open_axes) == 3 and np.all(own.moments_known):
         found.append(
             "The three moments are alike within their errors: no principal axis is determined."
         )
+    elif open_axes and not np.all(own.moments_known):
+        found.append(f"The principal axes near {' and '.join(open_axes)} are not determined.")
     elif open_axes:
         found.append(
             f"The moments near {' and '.join(open_axes)} are alike within their errors: their axes "
