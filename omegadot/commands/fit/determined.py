@@ -50,13 +50,17 @@ class Determined:
     def scale_in(self, spread: Spread) -> Scale:
         """The scale of another fit."""
         unit = self.samples.inertia_unit(self.load, self.compared.data.torque)
+        return scale_of(spread, self.known, unit, self.spin)
+
+    @property
+    def spin(self) -> Array | None:
+        """(3,): the axis about which the body turns, where omega keeps it."""
         omega = self.compared.best.one.omega
-        spin = None if self.compared.chosen.shape else omega / np.linalg.norm(omega)
-        return scale_of(spread, self.known, unit, spin)
+        return None if self.compared.chosen.shape else omega / np.linalg.norm(omega)
 
     def numbers(self, spread: Spread) -> Estimates:
         """Those of one fit."""
-        return estimates_of(spread, self.scale_in(spread), self.samples.size)
+        return estimates_of(spread, self.scale_in(spread), self.samples.size, self.spin)
 
     def moment_about(self, axis: Array) -> tuple[float, float]:
         """The moment about an axis (3,), and its error over all fits."""

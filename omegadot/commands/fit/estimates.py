@@ -90,8 +90,8 @@ class Estimates:
         return self.damping_error < most and (self.size_known or self.damping_error == 0.0)
 
 
-def estimates_of(spread: Spread, scale: Scale, size: float) -> Estimates:
-    """The numbers of a fit. size: rad/s, the unit of omega."""
+def estimates_of(spread: Spread, scale: Scale, size: float, spin: Array | None) -> Estimates:
+    """The numbers of a fit. size: rad/s, the unit of omega.  spin: as of `scale_of`."""
     one, free = spread.one, spread.free
     tensor, tensor_slopes = _tensor(spread, scale)
     moments, axes = principal(one.inertia)
@@ -107,8 +107,10 @@ def estimates_of(spread: Spread, scale: Scale, size: float) -> Estimates:
     both = spread.slopes_of("omega")
     if free.bias:
         both = both + spread.slopes_of("bias")
-    size_slopes = sum(spread.slope_of_entry(axis, axis) for axis in np.eye(3))
-    size_error = float(spread.error(np.asarray(size_slopes))) / float(np.trace(one.inertia))
+    about = np.eye(3) if spin is None else spin[None]
+    size_slopes = np.sum([spread.slope_of_entry(axis, axis) for axis in about], axis=0)
+    whole = float(np.sum([axis @ one.inertia @ axis for axis in about]))
+    size_error = float(spread.error(size_slopes)) / whole
     return Estimates(
         inertia=tensor,
         inertia_errors=spread.error(tensor_slopes),

@@ -40,6 +40,7 @@ ROUNDS = 3  # of the weights of omega and attitude: they settle in two
 FINE = 1e-5  # rms of residuals below which the motion is followed to the last digits
 VAGUE = 0.1  # a standard error of a bias, of the size of omega, beyond which it is tried smaller
 BIASES = (1.0, 0.3, 0.1)  # of the size of omega: what such a fit holds a bias within
+LARGEST = 4.0  # of the size of omega: a larger bias is none, but what nothing holds
 HOPELESS = 100.0  # a sum of squares so many times that of the richest is worth few trials
 ALONG = 0.1  # rad: a torque nearer to the axis than this does not turn it
 Digits = tuple[float, float]
@@ -77,6 +78,7 @@ class Compared:
             fit
             for free, fit in self.fits.items()
             if free not in (self.rich, self.chosen)
+            and np.linalg.norm(fit.one.bias) < LARGEST
             and _chance(self.data, fit, rich, self.noise) > ALLOWED / _sought(self.data, free)
         ]
         small = replace(self.rich, bias=False)  # as many numbers fewer as a bias has
