@@ -31,8 +31,8 @@ Quantity = str | float
 
 
 def choose(
-    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
-    engines: EngineLike | Sequence[EngineLike] = (),
+    scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
+    engines: EngineLike | Sequence[EngineLike] | None = None,
     *,
     body: str | os.PathLike[str] | None = None,
     allow_impossible_inertia: bool = False,
@@ -89,7 +89,7 @@ def choose(
     file = read_requirements(Path(requirements)) if requirements else {}
     wanted = merged(file, requested, str(requirements))
     motion = Motion(
-        several(scenarios),
+        several(scenarios, "scenarios"),
         None if body is None else os.fspath(body),
         angular_velocity,
         orientation,
@@ -98,7 +98,7 @@ def choose(
     )
     request = RunRequest(
         cases_of(motion),
-        _choices(several(engines), several(adapters)),
+        _choices(several(engines, "engines"), several(adapters)),
         timeout=timeout,
         jobs=(os.cpu_count() or 1) if jobs is None else jobs,
     )

@@ -23,14 +23,14 @@ from omegadot.scenarios import ScenarioLike
 
 
 def run(
-    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
-    engines: EngineLike | Sequence[EngineLike] = (),
+    scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
+    engines: EngineLike | Sequence[EngineLike] | None = None,
     *,
-    timesteps: float | Sequence[float] = (),
-    accuracies: float | Sequence[float] = (),
+    timesteps: float | Sequence[float] | None = None,
+    accuracies: float | Sequence[float] | None = None,
     out: str | os.PathLike[str] | None = None,
     setup: Setup = "physics",
-    via: Via | Sequence[Via] = (),
+    via: Via | Sequence[Via] | None = None,
     adapters: EngineLike | Sequence[EngineLike] = (),
     exceptions: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (),
     timeout: float = 60.0,
@@ -53,9 +53,13 @@ def run(
     hold.  seed: of the random states.  command: what the record names as the command.
     Raises UsageError, ScenarioError, RecordError, NoTruthError, and RunInterrupted on Ctrl-C.
     """
-    choices = by_ways(engine_choices(several(engines), several(adapters)), several(via))
-    knobs = several(timesteps), several(accuracies)
-    cases = [case_of(scenario, *knobs) for scenario in scenarios_of(several(scenarios))]
+    choices = by_ways(
+        engine_choices(several(engines, "engines"), several(adapters)), several(via, "via")
+    )
+    knobs = several(timesteps, "timesteps"), several(accuracies, "accuracies")
+    cases = [
+        case_of(scenario, *knobs) for scenario in scenarios_of(several(scenarios, "scenarios"))
+    ]
     files: list[str | os.PathLike[str]] = several(exceptions)
     known = exceptions_of(choices, map(Path, files))
     if out is not None:

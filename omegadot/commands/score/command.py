@@ -138,7 +138,7 @@ def score(
         result = score_trace(
             **given,
             columns=column or [],
-            engines=with_engine or [],
+            engines=with_engine or None,
             command=command_line(),
             progress=on_a_terminal(),
         )

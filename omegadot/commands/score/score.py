@@ -101,7 +101,7 @@ def score(
     momentum: str | None = None,
     flip_time: str | None = None,
     name: str = "trace",
-    engines: EngineLike | Sequence[EngineLike] = (),
+    engines: EngineLike | Sequence[EngineLike] | None = None,
     out: str | os.PathLike[str] | None = None,
     command: Sequence[str] = (),
     progress: Reporting = False,
@@ -120,7 +120,7 @@ def score(
     given = locals()
     settings = {key: given[field] for key, field in SETTINGS.items()}
     required = {key: given[key.replace("-", "_")] for key in KINDS}
-    case, choices = case_given(scenario), _choices(name, several(engines))
+    case, choices = case_given(scenario), _choices(name, several(engines, "engines"))
     if out is not None:
         check_folder(Path(out))
     requirements = requirements_of(required)

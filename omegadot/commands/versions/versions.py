@@ -31,8 +31,8 @@ def versions(
     engine: str,
     releases: str | Sequence[str],
     *,
-    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
-    integrators: str | Sequence[str] = (),
+    scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
+    integrators: str | Sequence[str] | None = None,
     timestep: float | None = None,
     bisect: str | None = None,
     cache: str | os.PathLike[str] | None = None,
@@ -72,7 +72,7 @@ def versions(
     check_number("--timeout", timeout, 0.0)
     if jobs is not None:
         check_count("--jobs", jobs, 1)
-    aims = aims_of(several(scenarios), several(integrators), timestep)
+    aims = aims_of(several(scenarios, "scenarios"), several(integrators, "integrators"), timestep)
     if out is not None:
         make_folder(Path(out))
     try:
