@@ -20,6 +20,7 @@ from omegadot.harness.arguments import (
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, check_count
+from omegadot.reports.record.whole_file import path_of
 from omegadot.scenarios import Scenario, ScenarioLike, scenario
 from omegadot.scenarios.random_systems import LARGEST_SEED, MOST_SYSTEMS, random_names
 from omegadot.scenarios.random_traits import BLOCK
@@ -84,9 +85,9 @@ def select(arguments: Arguments) -> Selection:
         arguments,
         choices,
         cases=[case_of(scenario, ()) for scenario in (*named, *drawn)],
-        exceptions=exceptions_of(choices, map(Path, arguments.exceptions)),
+        exceptions=exceptions_of(choices, map(path_of, arguments.exceptions)),
         unknown=unknown,
-        baseline=None if arguments.baseline is None else Path(arguments.baseline),
+        baseline=None if arguments.baseline is None else path_of(arguments.baseline),
         drawn=frozenset(scenario.name for scenario in drawn),
     )
 

@@ -21,7 +21,7 @@ from omegadot.commands.fit.sentences import sentences
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.settings import GivenColumns, Reading, reading_of, settings_of
 from omegadot.harness.usage import UsageError, check_number
-from omegadot.reports.record.whole_file import check_target, write_whole
+from omegadot.reports.record.whole_file import check_target, path_of, write_whole
 from omegadot.scenarios import scenario
 
 
@@ -70,14 +70,9 @@ def fit(
         check_number("--mass", mass, 0.0)
     if name is not None:
         scenario("sphere", name=name)  # refuses what is no name, before the work
-    if out is not None and not Path(out).name.strip("."):
-        raise UsageError(f"--out {out}: is no file's name; give one such as fitted.toml.")
-    drawn = None if out is None else picture.beside(Path(out))
-    if out is not None and drawn is not None:
-        check_target(Path(out), MARK)
-        check_target(drawn, picture.MARK)
-    mapped = Path(map_file) if map_file else None
-    reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
+    target = None if out is None else _target(path_of(out))
+    mapped = path_of(map_file) if map_file else None
+    reading = reading_of(read_table(path_of(trace)), columns, mapped, settings)
     samples = samples_of(reading)
     digits = (samples.digits[0] / samples.size, samples.digits[1])
     compared = compare_models(samples.data(load), digits, terms)
@@ -94,10 +89,23 @@ def fit(
         found,
         [*_options(columns, mapped, settings, reading), *_bias(own, reading)],
     )
-    if out is not None and drawn is not None:
-        write_whole(Path(out), text_of(found, found_out), MARK)
-        write_whole(drawn, picture.picture(result), picture.MARK)
+    if target is not None:
+        write_whole(target, text_of(found, found_out), MARK)
+        write_whole(picture.beside(target), picture.picture(result), picture.MARK)
     return result
+
+
+def _target(out: Path) -> Path:
+    """The scenario's file. Raises UsageError for another ending, RecordError where it is taken."""
+    if out.suffix != ".toml":  # nothing else is read as a scenario
+        raise UsageError(f"--out {out}: a scenario's file ends in .toml; give {_with_toml(out)}.")
+    check_target(out, MARK)
+    check_target(picture.beside(out), picture.MARK)
+    return out
+
+
+def _with_toml(out: Path) -> str:
+    return f"{out}.toml" if out.name.strip(".") else "one such as fitted.toml"
 
 
 def _options(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
-from pathlib import Path
 
 from omegadot.adapters.protocol import Setup
 from omegadot.commands.check.exceptions import exceptions_of
@@ -18,6 +17,7 @@ from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import Outcome, RunRequest, tasks_of
 from omegadot.harness.runner import Runner
 from omegadot.reports.record.record import check_folder
+from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.run_record import RunRecord
 from omegadot.scenarios import ScenarioLike
 
@@ -61,9 +61,9 @@ def run(
         case_of(scenario, *knobs) for scenario in scenarios_of(several(scenarios, "scenarios"))
     ]
     files: list[str | os.PathLike[str]] = several(exceptions)
-    known = exceptions_of(choices, map(Path, files))
+    known = exceptions_of(choices, map(path_of, files))
     if out is not None:
-        check_folder(Path(out))
+        check_folder(path_of(out))
     cores = (os.cpu_count() or 1) if jobs is None else jobs
     request = RunRequest(cases, choices, setup, seed, timeout, cores, memory)
     started = time.perf_counter()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Literal
 
 from omegadot.adapters.protocol import Setup
@@ -21,7 +20,7 @@ from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import Via, check_way, several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, check_count, check_number, check_setup
-from omegadot.reports.record.whole_file import make_folder
+from omegadot.reports.record.whole_file import make_folder, path_of
 from omegadot.scenarios import ScenarioLike
 
 MOST_UNASKED = 1e9  # bytes
@@ -74,12 +73,12 @@ def versions(
         check_count("--jobs", jobs, 1)
     aims = aims_of(several(scenarios, "scenarios"), several(integrators, "integrators"), timestep)
     if out is not None:
-        make_folder(Path(out))
+        make_folder(path_of(out))
     try:
         fetching = None if offline else installer_named(installer)
     except InstallError as error:
         raise UsageError(f"--installer {installer}: {error}.") from error
-    environments = Environments(Path(cache or default_cache()), product, fetching)
+    environments = Environments(path_of(cache or default_cache()), product, fetching)
     wanted, pythons = requested_releases(several(releases), environments.releases)
     gallery = Gallery(product, aims, environments.place, pythons, setup, timeout, via)
     with reporting(progress) as report:

@@ -10,7 +10,6 @@ import os
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from omegadot.commands.score.settings import GivenColumns, settings_of
 from omegadot.commands.score.table import Table, TraceError, bare, find_column
 from omegadot.gates.case import Case
 from omegadot.reference_impl.system import Array
+from omegadot.reports.record.whole_file import path_of
 from omegadot.scenarios import ScenarioLike
 
 MOST_SAMPLES = 60
@@ -65,9 +65,9 @@ def detect(
     alone are tried, and as the group that they are named for.
     Raises UsageError, TraceError (a UsageError) and ScenarioError.
     """
-    case, table = case_given(scenario), read_table(Path(trace))
+    case, table = case_given(scenario), read_table(path_of(trace))
     own = {"rate": rate, "from": from_time, "to": to_time}
-    assigned, settings = settings_of(columns, Path(map_file) if map_file else None, own)
+    assigned, settings = settings_of(columns, path_of(map_file) if map_file else None, own)
     declared = {key: settings[key] for key in own if key in settings}
     column, names = _looked_at(table, assigned, "rate" in declared)
     clocks = clocks_of(table, column, declared, case.scenario.run.duration)
