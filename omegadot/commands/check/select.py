@@ -99,5 +99,9 @@ def _drawn(arguments: Arguments, named: set[str]) -> list[Scenario]:
         count = 0 if arguments.scenarios else BLOCK
     check_count("--random", count, 0, MOST_SYSTEMS)
     check_count("--seed", arguments.seed, 0, LARGEST_SEED)
+    if arguments.seed and not count:
+        raise UsageError(
+            f"--seed {arguments.seed}: no random system is drawn; give their number with --random."
+        )
     names = random_names(arguments.seed, count)
     return [scenario(name) for name in names if name not in named]

@@ -16,6 +16,7 @@ from omegadot.harness.arguments import Via, by_ways, case_of, engine_choices, sc
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import Outcome, RunRequest, tasks_of
 from omegadot.harness.runner import Runner
+from omegadot.harness.usage import UsageError
 from omegadot.reports.record.record import check_folder
 from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.run_record import RunRecord
@@ -61,6 +62,8 @@ def run(
         case_of(scenario, *knobs) for scenario in scenarios_of(several(scenarios, "scenarios"))
     ]
     files: list[str | os.PathLike[str]] = several(exceptions)
+    if files and setup != "physics":
+        raise UsageError("--exceptions: they are of --setup physics; leave one of the two out.")
     known = exceptions_of(choices, map(path_of, files))
     if out is not None:
         check_folder(path_of(out))

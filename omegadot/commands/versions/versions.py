@@ -71,6 +71,7 @@ def versions(
     check_number("--timeout", timeout, 0.0)
     if jobs is not None:
         check_count("--jobs", jobs, 1)
+    _refuse_ignored(offline, installer, bisect, jobs)
     aims = aims_of(several(scenarios, "scenarios"), several(integrators, "integrators"), timestep)
     if out is not None:
         make_folder(path_of(out))
@@ -79,7 +80,11 @@ def versions(
     except InstallError as error:
         raise UsageError(f"--installer {installer}: {error}.") from error
     environments = Environments(path_of(cache or default_cache()), product, fetching)
-    wanted, pythons = requested_releases(several(releases), environments.releases)
+    wanted, pythons = requested_releases(
+        several(releases),
+        environments.releases,
+        environments.cached() if offline else None,
+    )
     gallery = Gallery(product, aims, environments.place, pythons, setup, timeout, via)
     with reporting(progress) as report:
         named = [version for version in wanted if version not in pythons]
@@ -111,6 +116,18 @@ def versions(
     if out is not None:
         result.save(out)
     return result
+
+
+def _refuse_ignored(offline: bool, installer: str, bisect: str | None, jobs: int | None) -> None:
+    """Raise UsageError for an argument that would be ignored beside another."""
+    if offline and installer != "auto":
+        raise UsageError(
+            f"--installer {installer}: nothing is installed with --offline; leave one of them out."
+        )
+    if bisect is not None and jobs is not None:
+        raise UsageError(
+            f"--jobs {jobs}: --bisect measures one version after another; leave one of them out."
+        )
 
 
 def _ask(space: Space, product: Product, ask: Callable[[str], bool] | None) -> None:

@@ -23,11 +23,14 @@ from omegadot.commands.score.score import case_given
 from omegadot.commands.score.settings import GivenColumns, settings_of
 from omegadot.commands.score.table import Table, TraceError, bare, find_column
 from omegadot.gates.case import Case
+from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.system import Array
 from omegadot.reports.record.whole_file import path_of
 from omegadot.scenarios import ScenarioLike
 
 MOST_SAMPLES = 60
+# Settings of a map that change the numbers of a trace and are not sought.
+_CHANGING = {"omega-bias", "world-rate", "world-origin"}
 BETTER = 10.0
 KINDS = {"q": "quaternion", "e": "Euler angles", "r": "matrix", "w": "omega"}
 # Below this a misfit is rounding, of a median over a chain of them.
@@ -68,6 +71,10 @@ def detect(
     case, table = case_given(scenario), read_table(path_of(trace))
     own = {"rate": rate, "from": from_time, "to": to_time}
     assigned, settings = settings_of(columns, path_of(map_file) if map_file else None, own)
+    for key in _CHANGING & settings.keys():
+        raise UsageError(
+            f"--map {map_file}: {key} is nothing that a search for conventions takes; leave it out."
+        )
     declared = {key: settings[key] for key in own if key in settings}
     column, names = _looked_at(table, assigned, "rate" in declared)
     clocks = clocks_of(table, column, declared, case.scenario.run.duration)
