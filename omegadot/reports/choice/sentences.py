@@ -114,7 +114,7 @@ def missed_text(missed: Row) -> str:
     # As many digits as it takes to see that they differ.
     limit, found = next(
         (texts for texts in _written(pair, missed["unit"]) if texts[0] != texts[1]),
-        tuple(quantity(value, missed["unit"], MOST_DIGITS) for value in pair),
+        tuple(quantity(value, missed["unit"]) for value in pair),
     )
     wanted = "at least" if missed["requirement"] == "real-time-factor" else "at most"
     return f"{name} {found}, required {wanted} {limit} (off by {grouped(missed['factor'])}x)"
