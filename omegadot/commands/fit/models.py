@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from scipy.stats import f as fisher
 
-from omegadot.commands.fit.noise import FINEST, Noise, noise_of
+from omegadot.commands.fit.noise import FINEST, Noise, noise_of, one_lane
 from omegadot.commands.fit.parameters import Free
 from omegadot.commands.fit.solve import (
     CLOSE,
@@ -22,7 +22,6 @@ from omegadot.commands.fit.solve import (
     TRIALS,
     Data,
     Fitted,
-    cost_of,
     finish,
     follow,
     solve,
@@ -126,6 +125,12 @@ def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
     fits = {free: fit for free, fit in fits.items() if _followed(data, fit)}
     if not fits:
         raise UsageError("No motion of a body was found that can be followed; fit another part.")
+    near = [fit for fit in fits.values() if not fit.free.shape]
+    if near and rich in fits:  # of a body that is nearly a sphere the balance shows no shape
+        sphere = min(near, key=lambda fit: fit.cost)
+        again = finish(data, replace(sphere, free=rich))
+        if again.cost < fits[rich].cost and _followed(data, again):
+            fits[rich] = again
     lowest = min(fits.values(), key=lambda fit: fit.cost)
     if lowest.free != rich:  # the richest holds every other, and can do no worse
         again = finish(data, replace(lowest, free=rich))
@@ -136,7 +141,10 @@ def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
 
 def _followed(data: Data, fit: Fitted) -> bool:
     """Whether its motion can be followed by itself, as it was among those beside it."""
-    return bool(np.isfinite(cost_of(data, fit.one, fit.free)))
+    try:
+        return bool(np.all(np.isfinite(data.residuals(one_lane(fit.one)))))
+    except ArithmeticError:
+        return False
 
 
 def _vague(compared: Compared) -> list[Fitted]:
