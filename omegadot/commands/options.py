@@ -83,7 +83,7 @@ def given(arguments: Mapping[str, Any]) -> dict[str, Any]:
     found = {
         name: value.value if isinstance(value, StrEnum) else value
         for name, value in arguments.items()
-        if value is not None and name != "output"
+        if value not in (None, []) and name != "output"
     }
     return {**found, "progress": on_a_terminal()}
 

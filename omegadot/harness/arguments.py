@@ -22,14 +22,21 @@ from omegadot.scenarios.model import MOST_STEPS
 T = TypeVar("T")
 
 
-def several(given: T | Sequence[T]) -> list[T]:
+def several(given: T | Sequence[T] | None, name: str = "") -> list[T]:
     """One argument, or several in any iterable, as a list; a text, a table or a class is one.
 
-    An array is taken for its plain numbers.
+    An array is taken for its plain numbers. None is an empty list, for which a default may stand.
+    name: of an argument that has such a default; a list that is empty, as a filter leaves it, is
+    no request for the default, and raises UsageError.
     """
+    if given is None:
+        return []
     plain: Any = given.tolist() if hasattr(given, "tolist") else given
     one = isinstance(plain, str | PathLike | Mapping | type | Scenario)
-    return [plain] if one or not isinstance(plain, Iterable) else list(plain)
+    found = [plain] if one or not isinstance(plain, Iterable) else list(plain)
+    if name and not found:
+        raise UsageError(f"{name}: is empty; name at least one, or leave it out for the default.")
+    return found
 
 
 def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:

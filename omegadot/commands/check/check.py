@@ -72,11 +72,11 @@ class CheckResult:
 def check(
     engine: EngineLike,
     *,
-    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
+    scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
     random: int | None = None,
     seed: int = 0,
-    integrators: str | Sequence[str] = (),
-    via: Via | Sequence[Via] = (),
+    integrators: str | Sequence[str] | None = None,
+    via: Via | Sequence[Via] | None = None,
     exceptions: str | Path | Sequence[str | Path] = (),
     baseline: str | Path | None = None,
     update_baseline: bool = False,
@@ -96,16 +96,16 @@ def check(
     Raises UsageError, ScenarioError, RecordError and NoTruthError.
     """
     arguments = Arguments(
-        scenarios=several(scenarios),
+        scenarios=several(scenarios, "scenarios"),
         random=random,
         seed=seed,
-        via=several(via),
+        via=several(via, "via"),
         exceptions=several(exceptions),
         baseline=baseline,
         update=update_baseline,
         timeout=timeout,
     )
-    selection = select(arguments_of(engine, several(integrators), arguments))
+    selection = select(arguments_of(engine, several(integrators, "integrators"), arguments))
     with reporting(progress) as report:
         suite = Suite(selection)
         count = Count(report, "checking", len(suite.checks))

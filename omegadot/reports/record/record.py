@@ -23,6 +23,7 @@ from omegadot.reports.record import schema
 from omegadot.reports.record.run_json import dump_json, read_run
 from omegadot.reports.record.run_model import check_run
 from omegadot.reports.record.schema import Field, RecordError
+from omegadot.reports.record.whole_file import as_record_error
 
 RUN, PAGE = "run.json", "report.html"
 METRICS, TRAJECTORIES = "metrics.parquet", "trajectories.parquet"
@@ -47,9 +48,20 @@ def check_folder(folder: Path) -> None:
     It may be absent, empty, or hold an earlier record and nothing else; no other file is ever
     replaced. Call it before a long run, not after it.
     """
-    folder = _followed(folder)
-    if Path.cwd().is_relative_to(folder):
+    try:
+        here, folder = Path.cwd(), _followed(folder)
+    except FileNotFoundError as error:
+        raise RecordError(
+            "the current folder does not exist any more; change to another."
+        ) from error
+    if here.is_relative_to(folder):
         raise RecordError(f"{folder}: is the current directory or holds it; name a new folder.")
+    with as_record_error(folder):
+        _check_place(folder)
+
+
+def _check_place(folder: Path) -> None:
+    """That a record may be written there. Raises RecordError."""
     _try_to_write(folder)
     _recover(folder)
     if not folder.exists():
@@ -175,7 +187,9 @@ def _write_parquet(frame: pl.DataFrame, fields: Mapping[str, Field], path: Path)
 
 def read_record(folder: Path) -> Record:
     """Read a record back. Raises RecordError, one sentence, for whatever is wrong with it."""
-    if not folder.is_dir():
+    with as_record_error(folder):
+        is_folder = folder.is_dir()
+    if not is_folder:
         raise RecordError(f"{folder}: no such folder; give the folder of a run.")
     for name in (RUN, METRICS, TRAJECTORIES):
         if not (folder / name).is_file():

@@ -8,6 +8,7 @@ on. After running out of memory it states so and leaves, for what is left of it 
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import signal
@@ -138,7 +139,8 @@ def main() -> None:
     """
     _end_with_parent()
     if sys.argv[1] not in BUILT_IN.values():
-        sys.path.append(os.getcwd())
+        with contextlib.suppress(FileNotFoundError):  # a folder that was removed holds no module
+            sys.path.append(os.getcwd())
     setup = cast(Setup, sys.argv[2] if len(sys.argv) > 2 else "physics")
     memory = os.environ.get(MEMORY_VARIABLE)
     if memory:
