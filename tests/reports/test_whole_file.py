@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from omegadot.commands.report.report import report
-from omegadot.reports.record.record import FILES, unfinished_name, write_record
+from omegadot.reports.record.interrupted import place_of_interrupted
+from omegadot.reports.record.record import FILES, Record, check_folder, write_record
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.record.whole_file import PAGE_MARK, write_whole
 
@@ -65,10 +66,46 @@ def test_a_report_does_not_destroy_its_record(tmp_path: Path, record) -> None:  
     assert {name: (folder / name).read_bytes() for name in FILES} == before
 
 
-def test_an_interrupted_run_has_a_name_of_its_own(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]
-    folder = tmp_path / "run"
-    assert unfinished_name(folder) == folder
-    for name in ("run", "run-interrupted", "run-interrupted-2"):
-        write_record(record, tmp_path / name, PAGE)
-        assert not unfinished_name(folder).exists()
-        assert unfinished_name(folder).name.startswith("run-interrupted")
+def interrupted(record: Record, finished: int) -> Record:
+    """The same, interrupted after so many tasks."""
+    tasks = [
+        task if k < finished else {**task, "outcome": "interrupted", "gates": {}}
+        for k, task in enumerate(record.run["tasks"])
+    ]
+    return Record(
+        {**record.run, "complete": False, "tasks": tasks}, record.metrics, record.trajectories
+    )
+
+
+def test_one_interrupted_run_is_kept_beside_a_record(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]
+    """Caught: folders that pile up, and a longer interrupted run that a shorter one replaces."""
+    folder, beside = tmp_path / "run", tmp_path / "run-interrupted"
+    short, long = interrupted(record, 1), interrupted(record, 2)
+
+    def place(one: Record) -> Path | None:
+        found, note = place_of_interrupted(one.run, folder)
+        assert (note == "") == (found == folder)
+        return found
+
+    assert place(short) == folder
+    write_record(short, folder, PAGE)
+    assert place(short) == place(long) == folder
+    write_record(long, folder, PAGE)
+    assert (place(short), place(long)) == (beside, folder)
+    write_record(record, folder, PAGE)
+    assert place(long) == beside
+    write_record(long, beside, PAGE)
+    assert (place(short), place(long)) == (None, beside)
+    write_record(record, beside, PAGE)
+    assert place(long) is None
+
+
+def test_a_record_in_a_record_is_refused_before_the_run(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]
+    outer, inner = tmp_path / "run", tmp_path / "run" / "a" / "sub"
+    write_record(record, outer, PAGE)
+    with pytest.raises(RecordError, match=r"lies in the record .*run, which no run could"):
+        check_folder(inner)
+    assert sorted(os.listdir(outer)) == sorted(FILES)
+    write_record(record, tmp_path / "new" / "sub", PAGE)
+    with pytest.raises(RecordError, match="new: holds 'sub', which is another record"):
+        check_folder(tmp_path / "new")
