@@ -25,9 +25,9 @@ NUMBERS = {
 class Shown:
     """One cell as text.
 
-    mark and status: a sign and its name.  part: the gate that fails, and how many of its runs
-    passed, where not all did.  numbers: text by the keys of NUMBERS.  card: the number of its card
-    among `cards`.  rank: for sorting, the worst first.
+    mark and status: a sign and its name.  part: how many of its runs passed, where not all did.
+    numbers: text by the keys of NUMBERS.  card: the number of its card among `cards`.  rank: for
+    sorting, the worst first.  gate: the first that fails, if one does.
     """
 
     mark: str
@@ -36,6 +36,7 @@ class Shown:
     numbers: dict[str, str]
     card: int = 0
     rank: int = 0
+    gate: str = ""
 
 
 def origin_of(column: Column, figure: Figure | None = None) -> dict[str, Any]:
@@ -48,15 +49,14 @@ def shown(cell: Cell, card: int = 0) -> Shown:
     """A cell as the matrix shows it."""
     total, passed = sum(cell.runs.values()), cell.runs.get("pass", 0)
     part = f"{passed} of {total} runs pass" if total and passed != total else ""
-    if cell.failed:
-        part = ", ".join(filter(None, (cell.failed.partition(":")[0], part)))
     numbers = {
         "residual": "" if cell.residual is None else short(cell.residual.value),
         "drift": _span(cell.drift),
         "attitude": _span(cell.attitude),
     }
     rank = STATUSES.index(cell.status)
-    return Shown(MARKS.get(cell.status, "–"), text_of(cell.status), part, numbers, card, rank)
+    gate = cell.failed.partition(" gate:")[0]
+    return Shown(MARKS.get(cell.status, "–"), text_of(cell.status), part, numbers, card, rank, gate)
 
 
 def matrix(summary: Summary) -> list[tuple[str, list[Shown]]]:

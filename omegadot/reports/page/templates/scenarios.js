@@ -59,7 +59,7 @@ function follow() {
   const name = address(), node = panels.find((panel) => panel.id === name), notice = element("missing");
   notice.hidden = !name || Boolean(node ?? element(name));
   if (!notice.hidden) {
-    notice.textContent = `This report has no scenario “${name.replace(/^scenario-/, "")}”. It has those listed here.`;
+    notice.textContent = `This report has no scenario “${name.replace(/^scenario-/, "")}”. Choose one above.`;
     (element("tabs") ?? notice).scrollIntoView();
   }
   if (!node) return false;
