@@ -37,9 +37,7 @@ def path(tmp_path_factory):
 
 @pytest.fixture
 def page(browser, path):
-    browser.messages.clear()
-    browser.open(path)
-    browser.wait(DRAWN)
+    browser.untouched(path, DRAWN, acting=True)
     yield browser
     assert browser.messages == []
 
