@@ -1,15 +1,18 @@
 """What is replaced: a file of the same kind that omegadot wrote, and nothing else."""
 
 import os
+import tempfile
 from pathlib import Path
 
 import pytest
 
 from omegadot.commands.report.report import report
+from omegadot.commands.run.result import result_of
 from omegadot.reports.record.interrupted import place_of_interrupted
-from omegadot.reports.record.record import FILES, Record, check_folder, write_record
+from omegadot.reports.record.record import FILES, Record, check_folder, read_record, write_record
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.record.whole_file import PAGE_MARK, write_whole
+from omegadot.reports.run_record import RunRecord
 
 PAGE = f"<!doctype html>{PAGE_MARK} report</title>"
 
@@ -109,3 +112,19 @@ def test_a_record_in_a_record_is_refused_before_the_run(tmp_path: Path, record) 
     write_record(record, tmp_path / "new" / "sub", PAGE)
     with pytest.raises(RecordError, match="new: holds 'sub', which is another record"):
         check_folder(tmp_path / "new")
+
+
+def test_a_shorter_interrupted_run_is_kept_out_of_the_way(  # type: ignore[no-untyped-def]
+    tmp_path: Path, record, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Caught: a run that finds no place beside longer ones, and is lost."""
+    monkeypatch.setattr(RunRecord, "page", lambda _: PAGE)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    folder = tmp_path / "run"
+    write_record(record, folder, PAGE)
+    write_record(interrupted(record, 2), tmp_path / "run-interrupted", PAGE)
+    result = result_of(RunRecord.of(interrupted(record, 1)), (), folder)
+    assert result.folder is not None
+    assert not read_record(result.folder).run["complete"]
+    assert "interrupted after 2 tasks, this one after 1." in result.note
+    assert result.note.endswith(f"This run's record is in {result.folder}.")
