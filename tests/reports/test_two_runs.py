@@ -145,10 +145,15 @@ def test_a_bound_that_allows_everything_holds_nothing(base) -> None:
     assert not compare_records(base, loose).regressed
 
 
-@pytest.mark.parametrize("now", ["fail", "declared", "info"])
-def test_a_verdict_that_turned_worse_is_a_regression_within_the_band(base, now) -> None:
+@pytest.mark.parametrize(
+    ("now", "words"),
+    [("fail", "fails"), ("declared", "fails as declared"), ("info", "not judged")],
+)
+def test_a_verdict_that_turned_worse_is_a_regression_within_the_band(base, now, words) -> None:
     found = compare_records(base, edited(base, verdict=now))
     assert [(c.was, c.now, c.moved) for c in found.worse] == [("pass", now, False)]
+    assert f"passes → {words}" in as_text(found)
+    assert "_" not in found.worse[0].what
     back = compare_records(edited(base, verdict=now), base)
     assert not back.regressed
     assert len(back.better) == 1
