@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
+from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
-from omegadot.diagnosis.equations.search import Candidate
 from omegadot.diagnosis.stepping.restep import on_rows
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, common_factor
 from omegadot.gates.bounds.scales import norm

@@ -46,6 +46,27 @@ def features_of_states(system: System, states: State) -> dict[str, tuple[Array, 
     return found
 
 
+def kinds_of_states(states: State) -> dict[str, NDArray[np.bool_]]:
+    """What holds of a state exactly, or does not, (n,)."""
+    w, q, v = states.angular_velocity, states.orientation, states.linear_velocity
+    found = {
+        "omega is zero": ~np.any(w, axis=-1),
+        "the body does not move": ~np.any(v, axis=-1),
+        "the attitude is the identity": ~np.any(q[:, 1:], axis=-1),
+    }
+    for k, axis in enumerate("xyz"):
+        others = [j for j in range(3) if j != k]
+        turns = ~np.any(w[:, others], axis=-1)
+        found[f"omega is along {axis} alone"] = turns & (w[:, k] != 0.0)
+        found[f"omega has no {axis} component"] = w[:, k] == 0.0
+        about = ~np.any(q[:, 1:][:, others], axis=-1)
+        found[f"the body is turned about {axis} alone"] = about & (q[:, 1 + k] != 0.0)
+    turning = np.count_nonzero(w, axis=-1)
+    found["omega is along an axis of the body"] = turning == 1
+    found["a component of omega is zero"] = (turning == 1) | (turning == 2)
+    return found
+
+
 def only_where(parts: Sequence[tuple[System, State, NDArray[np.bool_]]]) -> str:
     """The condition, over the states of one scenario or of several; "" where none sorts them.
 
@@ -56,6 +77,11 @@ def only_where(parts: Sequence[tuple[System, State, NDArray[np.bool_]]]) -> str:
         return ""
     if comb(len(sound), int(np.count_nonzero(sound))) < WAYS:
         return ""
+    exact = [kinds_of_states(states) for _, states, _ in parts]
+    for text in exact[0]:
+        holds = np.concatenate([one[text] for one in exact])
+        if np.array_equal(holds, ~sound):
+            return text
     every = [features_of_states(system, states) for system, states, _ in parts]
     for text, (_, unit) in every[0].items():
         values = np.concatenate([one[text][0] for one in every])

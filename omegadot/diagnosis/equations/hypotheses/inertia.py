@@ -18,7 +18,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     own_inertia,
 )
 from omegadot.diagnosis.models.tensors import other_tensors
-from omegadot.reference_impl.inertia import parallel_axis
+from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
 from omegadot.reference_impl.system import Array, System
 
 
@@ -51,7 +51,7 @@ def spin_hypotheses() -> Iterator[Hypothesis]:
 def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
     """Of one system: its tensor, in the solve, in the gyroscopic term or in both."""
     own, names = own_inertia(system), other_tensors(system)
-    about = form_of(system).spin - own
+    about = _about(system)
     for text, tensor in names.items():
         if not np.linalg.eigvalsh(tensor)[0] > 0.0 or np.array_equal(tensor, own):
             continue
@@ -133,7 +133,7 @@ def _named(system: System, text: str) -> dict[str, Any]:
 
 
 def _about(system: System) -> Array:
-    return form_of(system).spin - own_inertia(system)
+    return np.asarray(moving_inertia(system), dtype=float) - own_inertia(system)
 
 
 def _of_origin(system: System) -> Array:
