@@ -36,6 +36,9 @@ from omegadot.harness.judge import JudgedRun
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State
 
+# Scenarios on which the runs of an integrator are looked at in vain, before the rest is left alone:
+# stepping again by all that may be wrong takes long. The order that steps have lost explains them.
+VAIN, VAIN_BESIDE_ORDER = 8, 3
 IN_THE_FIRST = "in the first step of a run alone"
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
@@ -204,7 +207,10 @@ class IntegratorCauses:
         over = self._across.of_runs.setdefault(self._name, {})
         if self._of_runs is None:
             self._of_runs = NOTHING
-            if self._result is not None:
+            vain = sum(not texts for texts, _ in over.values())
+            most = VAIN_BESIDE_ORDER if self._order_lost else VAIN
+            looked = any(texts for texts, _ in over.values()) or vain < most
+            if self._result is not None and looked:
                 # a wrong equation shows in steps that vanish, and from more states
                 wrong = self.steps is None or not np.all(self.steps.evidence.sound)
                 how = (self._case, self._truth, self._result, self._runs)

@@ -110,7 +110,7 @@ class Across:
         text = self._known_elsewhere(scene, source)
         if text:
             return text
-        weak, partial = list(quick.weak), list(quick.partial)
+        weak, partial = quick.weak, list(quick.partial)
         for number, level in enumerate(self._search(scene, source)):
             if number < QUICK:
                 continue

@@ -42,7 +42,7 @@ def other_schemes(reported: ReportedRun) -> list[str]:
             same = name == reported.integrator.scheme
             if way not in scheme.coordinates or (same and way == own):
                 continue  # what is declared: this is not what is wrong
-            if not reported.agrees(reported.state, other.stepped(scheme)):
+            if not other.is_made(lambda run, scheme=scheme: run.stepped(scheme)):
                 continue
             if same:
                 return [f"it steps {PHRASES[way]}, which is not what is declared"]
@@ -59,7 +59,7 @@ def other_ends(reported: ReportedRun) -> list[str]:
     return [
         text
         for text, end in ends.items()
-        if reported.agrees(reported.state, reported.stepped(with_end(reported.declared, end)))
+        if reported.is_made(lambda run, end=end: run.stepped(with_end(run.declared, end)))
     ]
 
 
@@ -72,7 +72,7 @@ def slips_of(reported: ReportedRun, name: str) -> list[str]:
         f"it is stepped by {name}, but {text}"
         for text, scheme in slipped(name).items()
         if reported.integrator.coordinates in scheme.coordinates
-        and reported.agrees(reported.state, reported.stepped(scheme))
+        and reported.is_made(lambda run, scheme=scheme: run.stepped(scheme))
     ]
 
 
@@ -88,7 +88,5 @@ def slips(reported: ReportedRun) -> list[str]:
     return [
         f"the damping is split off each step: it acts {text}"
         for text, end in damping_ends(system).items()
-        if reported.agrees(
-            reported.state, reported.stepped(with_end(reported.declared, end), undamped)
-        )
+        if reported.is_made(lambda run, end=end: run.stepped(with_end(run.declared, end), undamped))
     ]
