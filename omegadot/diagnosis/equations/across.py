@@ -65,6 +65,7 @@ class Across:
         self._weak: dict[str, list[Held]] = {}
         self._quick: dict[tuple[str, str, int], _Level] = {}
         self._nested: dict[str, Across] = {}
+        self._partly: dict[str, list[tuple[Held, str]]] = {}
         self._conditions: dict[tuple[tuple[str, ...], str], str] = {}
         self._texts: dict[tuple[str, str], str] = {}
         self._chosen: dict[tuple[str, str], Candidate] = {}
@@ -85,7 +86,7 @@ class Across:
         self.scenes[scene.name] = scene
         self._accepted, self._texts, self._chosen = [], {}, {}
         self._weak, self._quick, self._nested = {}, {}, {}
-        self._conditions = {}
+        self._conditions, self._partly = {}, {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -108,6 +109,8 @@ class Across:
         quick = self._quick_of(scene, source, QUICK)
         self._search_elsewhere(name, source)
         text = self._known_elsewhere(scene, source)
+        known = (t for one, t in self._partly.get(source, ()) if scene.name in one.names)
+        text = text or next(known, "")
         if text:
             return text
         weak, partial = quick.weak, list(quick.partial)
@@ -123,7 +126,11 @@ class Across:
             weak = weak or found.weak
             partial += found.partial
         text = self._weak_cause(scene, source, weak) or self._where_wrong(scene, source)
-        return text or self._conditional(partial)
+        if not text:
+            text = self._conditional(partial)
+            found = [one for one in partial if text and self._conditional([one]) == text]
+            self._partly.setdefault(source, []).extend((one, text) for one in found[:1])
+        return text
 
     def _held(self, level: Sequence[Candidate], scene: Scene, source: str) -> _Level:
         """What fits one scenario, held against all others."""
@@ -165,7 +172,7 @@ class Across:
         wrong = [s for s in self.scenes.values() if source in s.evidence]
         wrong = [s for s in wrong if s.evidence[source].clear]
         found = [one for s in wrong for one in self._quick_of(s, source, depth).strong]
-        here = [one for one in found if any(s.name == scene.name for s in one.shown)]
+        here = [one for one in found if scene.name in one.names]
         most = max((len(one.shown) for one in here), default=0)
         return list({o.candidate.key: o for o in here[::-1] if len(o.shown) == most}.values())[::-1]
 
@@ -174,7 +181,7 @@ class Across:
         evidence = scene.evidence[source]
         for one in self._weak.setdefault(source, []):
             fitted = _fitting(one.candidate, evidence)
-            if fitted and any(s is scene for s in one.shown):
+            if fitted and scene.name in one.names:
                 self._chosen[scene.name, source] = fitted
                 return self._worded([one], source)
         text = self._worded(weak, source)
@@ -303,7 +310,7 @@ class Across:
             common = in_common(shown, against)
             if common and len(common) <= 2:
                 evidence = next(iter(one.shown[0].evidence.values()))
-                text = one.candidate.text(evidence.system)
+                text = one.law or one.candidate.text(evidence.system)
                 return f"{text}, but only where {' or where '.join(common)}"
         return ""
 

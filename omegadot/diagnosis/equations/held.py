@@ -65,6 +65,11 @@ class Held:
     law: str = ""
 
     @property
+    def names(self) -> set[str]:
+        """The scenarios on which it fits."""
+        return {scene.name for scene in self.shown}
+
+    @property
     def strong(self) -> bool:
         """Whether one rule gives its numbers on every scenario, and it is no chance of one mass."""
         if self.candidate.by_mass and len({float(s.system.body.mass) for s in self.shown}) < 2:

@@ -28,7 +28,7 @@ def features_of_states(system: System, states: State) -> dict[str, tuple[Array, 
         q = normalize(states.orientation)
         turned = 2.0 * np.arccos(np.clip(np.abs(q[:, 0]), 0.0, 1.0))
         energy = rotational_kinetic_energy(system, states)
-    tilt = rotation_matrix(q)[:, 2, 2]
+    turn = rotation_matrix(q)
     found = {
         "|omega|": (norm(w), "rad/s"),
         "the angle from the identity": (turned, "rad"),
@@ -36,9 +36,11 @@ def features_of_states(system: System, states: State) -> dict[str, tuple[Array, 
         "the kinetic energy of rotation": (energy, "J"),
         "the speed": (norm(v), "m/s"),
         "the distance from the world's origin": (norm(x), "m"),
-        "the cosine of the tilt of the body's z axis": (tilt, ""),
     }
     for k, axis in enumerate("xyz"):
+        tilt = turn[:, 2, k]
+        found[f"the cosine of the tilt of the body's {axis} axis"] = (tilt, "")
+        found[f"the size of the cosine of the tilt of the body's {axis} axis"] = (np.abs(tilt), "")
         found[f"omega_{axis}"] = (w[:, k], "rad/s")
         found[f"|omega_{axis}|"] = (np.abs(w[:, k]), "rad/s")
         found[f"the velocity along {axis}"] = (v[:, k], "m/s")

@@ -10,7 +10,7 @@ import numpy as np
 
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.system import State, System
 
 # How unlikely chance must be to sort the scenarios so: one in so many ways to sort them.
@@ -54,6 +54,7 @@ def features_of(system: System, initial: State) -> Features:
         "the scalar part of the first quaternion is negative": bool(initial.orientation[0] < 0.0),
         "the body moves at the start": bool(np.any(initial.linear_velocity)),
     }
+    arm = float(norm(lever(system))) if pivoted else 0.0
     mass, moments = float(body.mass), np.linalg.eigvalsh(tensor)
     sizes = {
         "the mass": (mass, "kg"),
@@ -72,6 +73,9 @@ def features_of(system: System, initial: State) -> Features:
         ),
         "|omega| at the start": (float(norm(initial.angular_velocity)), "rad/s"),
         "the speed at the start": (float(norm(initial.linear_velocity)), "m/s"),
+        "the distance from the pivot to the centre of mass": (arm, "m"),
+        "the weight": (mass * float(norm(gravity)), "N"),
+        "the largest torque of the weight": (mass * float(norm(gravity)) * arm, "N m"),
         "the size of gravity": (float(norm(gravity)), "m/s^2"),
         "the damping": (float(load.damping), "N m s/rad"),
         "the size of the torque": (

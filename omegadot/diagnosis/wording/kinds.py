@@ -15,6 +15,7 @@ FACTS = (
     "does not belong to the run",
     "reported twice",
     "only the first steps are wrong",
+    "the last of the run, are wrong",
     "are wrong only where",
     "the steps depend on how many went before",
     "samples came back",

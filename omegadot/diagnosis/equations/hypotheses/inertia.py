@@ -110,6 +110,16 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
             lambda f, s: _both(own_inertia(s) + diagonal(_about(s))),
         )
         yield of_form(
+            "the parallel-axis theorem has its products with the wrong sign",
+            "inertia",
+            lambda f, s: _both(own_inertia(s) + 2.0 * diagonal(_about(s)) - _about(s)),
+        )
+        yield of_form(
+            "the parallel-axis theorem has the square of each axis's own component on the diagonal",
+            "inertia",
+            lambda f, s: _both(own_inertia(s) + _own_squares(s)),
+        )
+        yield of_form(
             "the parallel-axis theorem is taken with a mass of 1 kg",
             "inertia",
             lambda f, s: _both(own_inertia(s) + _about(s) / float(s.body.mass)),
@@ -144,6 +154,12 @@ def _of_origin(system: System) -> Array:
 def _squared(system: System) -> Array:
     r = form_of(system).offset
     return float(system.body.mass) * float(r @ r) * np.eye(3)
+
+
+def _own_squares(system: System) -> Array:
+    about = _about(system)
+    own = 0.5 * np.trace(about) - np.diag(about)  # m r_k^2
+    return np.asarray(about - diagonal(about) + np.diag(own))
 
 
 def _both(tensor: Array) -> dict[str, Any]:
