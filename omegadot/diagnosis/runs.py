@@ -9,7 +9,7 @@ from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.reported.clock import clock_cause
 from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.precision import precision_reported
-from omegadot.diagnosis.reported.run import ReportedRun, reported_run, reported_run_guesses
+from omegadot.diagnosis.reported.run import SLACK, ReportedRun, reported_run, reported_run_guesses
 from omegadot.diagnosis.reported.run_causes import (
     CAUSES_REPORTED,
     SEEN,
@@ -36,7 +36,8 @@ from omegadot.harness.judge import JudgedRun, is_finite
 
 ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
 LIMIT = "is held"
-CLEAR_OF_SINGLE = 64.0  # times rounding: what is off by less decides little
+# In single precision what fits within SLACK bounds must be off by far more without it.
+CLEAR_OF_SINGLE = SLACK * BEYOND_ROUNDING
 MOST_TRIED = 1000  # steps of a second run, in which a cause is looked for again
 
 
@@ -165,6 +166,9 @@ def _of_run(look: _Look, run: JudgedRun, equations: bool) -> RunCauses:
         return _of_reported(reported, result, equations)
     # By the schemes of the reference that come nearest, where none is declared.
     guesses = look.guesses(run)
+    own = [one for one in guesses if one.is_own]
+    if own and not any(one.is_declared for one in own):
+        return _lower_order(own)
     for guess in guesses:
         found = _of_reported(guess, result, equations)
         if found.texts:
@@ -174,6 +178,25 @@ def _of_run(look: _Look, run: JudgedRun, equations: bool) -> RunCauses:
         return found
     text = restart_cause(truth, result, run)
     return RunCauses((text,)) if text else NOTHING
+
+
+def _lower_order(guesses: Sequence[ReportedRun]) -> RunCauses:
+    """Of a run that is a known scheme's: that it is of a lower order than is declared."""
+    texts = list[str]()
+    for guess in guesses:
+        integrator, system = guess.integrator, guess.case.system
+        orders = [
+            (own, due)
+            for channel, due in integrator.orders.items()
+            if (own := guess.declared.order(channel, system, integrator.coordinates)) is not None
+            and due is not None
+        ]
+        order, due = min(orders, default=(0, 0))
+        if order >= due:
+            return NOTHING  # by one of those that it may be, all is as declared
+        named = guess.declared.name
+        texts.append(f"it is stepped by {named}, which is of order {order}, not {due}")
+    return RunCauses(tuple(texts), is_decisive(guesses[0]))
 
 
 def _of_other_slips(guesses: Sequence[ReportedRun]) -> RunCauses:

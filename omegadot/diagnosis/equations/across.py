@@ -55,16 +55,11 @@ class Across:
 
     def __init__(self) -> None:
         self._all = Scenes()
-        # by integrator and scenario: each cause alone explains the runs; whether they are decisive
-        self.of_runs: dict[str, dict[str, tuple[tuple[str, ...], bool]]] = {}
-        # by integrator and scenario, whether a run fails
-        self.fails: dict[str, dict[str, bool]] = {}
-        # by integrator, what shows where two answers to one request differ
-        self.again: dict[str, str] = {}
         self._accepted: list[list[Candidate]] = []
         self._weak: dict[str, list[Held]] = {}
         self._quick: dict[tuple[str, str, int], _Level] = {}
         self._nested: dict[str, Across] = {}
+        self._explains: dict[tuple[str, str], set[str]] = {}
         self._partly: dict[str, list[tuple[Held, str]]] = {}
         self._conditions: dict[tuple[tuple[str, ...], str], str] = {}
         self._texts: dict[tuple[str, str], str] = {}
@@ -81,12 +76,17 @@ class Across:
         self.cause(name, source)
         return self._chosen.get((name, source))
 
+    def explained(self, name: str, source: str) -> set[str]:
+        """The scenarios that `chosen` explains."""
+        self.cause(name, source)
+        return self._explains.get((name, source), set()) | {name}
+
     def add(self, scene: Scene) -> None:
         """One more scenario; what was found before may not hold any more."""
         self.scenes[scene.name] = scene
         self._accepted, self._texts, self._chosen = [], {}, {}
         self._weak, self._quick, self._nested = {}, {}, {}
-        self._conditions, self._partly = {}, {}
+        self._conditions, self._partly, self._explains = {}, {}, {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -128,8 +128,8 @@ class Across:
         text = self._weak_cause(scene, source, weak) or self._where_wrong(scene, source)
         if not text:
             text = self._conditional(partial)
-            found = [one for one in partial if text and self._conditional([one]) == text]
-            self._partly.setdefault(source, []).extend((one, text) for one in found[:1])
+            named = [one for one in partial if text and self._conditional([one]) == text]
+            self._partly.setdefault(source, []).extend((one, text) for one in named[:1])
         return text
 
     def _held(self, level: Sequence[Candidate], scene: Scene, source: str) -> _Level:
@@ -165,6 +165,7 @@ class Across:
         text = self._worded(best, source)
         if text:
             self._chosen[scene.name, source] = best[0].candidate
+            self._explains[scene.name, source] = best[0].names
         return text
 
     def best(self, scene: Scene, source: str, depth: int) -> list[Held]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -80,6 +81,9 @@ def longer(reported: ReportedRun) -> str:
     )
     if part is None or part == 0.0 or abs(1.0 + part) < STILL:
         return ""
+    single = float(np.float32(h))
+    if single != h and reported.is_made(partial(ReportedRun.stepped, timestep=single), SLACK):
+        return "the step is kept in single precision"
     text = f"steps are {100 * abs(part):.4g} % too {'long' if part > 0 else 'short'}"
     return f"{text}{_grid(h, h * (1.0 + part))}"
 

@@ -16,8 +16,7 @@ from omegadot.reference_impl.system import Array, State, System
 
 # So many states on either side at least: the odds that chance sorts them are then below 1 in 20.
 LEAST = 3
-# In so many ways at least can the states be sorted: some forty conditions are tried.
-WAYS = 1000
+ODDS = 20  # as many times as conditions are tried must there be ways to sort the states
 CLEAR = 1e-3  # relative: a narrower gap between two sides is chance, where many numbers are tried
 
 
@@ -77,14 +76,15 @@ def only_where(parts: Sequence[tuple[System, State, NDArray[np.bool_]]]) -> str:
     sound = np.concatenate([right for _, _, right in parts])
     if np.count_nonzero(sound) < LEAST or np.count_nonzero(~sound) < LEAST:
         return ""
-    if comb(len(sound), int(np.count_nonzero(sound))) < WAYS:
-        return ""
     exact = [kinds_of_states(states) for _, states, _ in parts]
     for text in exact[0]:
         holds = np.concatenate([one[text] for one in exact])
         if np.array_equal(holds, ~sound):
             return text
     every = [features_of_states(system, states) for system, states, _ in parts]
+    ways = comb(len(sound), int(np.count_nonzero(sound)))
+    if ways < ODDS * (len(exact[0]) + 2 * len(every[0])):
+        return ""
     for text, (_, unit) in every[0].items():
         values = np.concatenate([one[text][0] for one in every])
         low, high = values[sound], values[~sound]

@@ -86,6 +86,14 @@ def features_of(system: System, initial: State) -> Features:
     return Features(kinds, sizes)
 
 
+def ways_of(scenarios: Sequence[Features]) -> int:
+    """In how many ways scenarios must be sorted so that by chance one condition in 20 runs does.
+
+    Every kind, or its opposite, and every size, above or below a limit, is one.
+    """
+    return 20 * sum(2 * len(one.kinds) + 2 * len(one.sizes) for one in scenarios[:1])
+
+
 def in_common(shown: Sequence[Features], others: Sequence[Features]) -> list[str]:
     """Conditions that hold for all that show a fault and for none of the others, kinds first.
 

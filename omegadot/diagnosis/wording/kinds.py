@@ -75,6 +75,20 @@ def agreed(here: Sequence[str], over_cases: Mapping[str, tuple[Sequence[str], bo
     return plain if len(plain) <= MOST_NAMED else []
 
 
+def over_run(text: str, by_scenario: Mapping[str, Sequence[str]]) -> str:
+    """A cause with the numbers of the first scenario that shows its kind, where they are others.
+
+    One mistake has one sentence.
+    """
+    kind = kind_of(text)
+    alike = {n: t for n, texts in by_scenario.items() for t in texts if kind_of(t) == kind}
+    if len(set(alike.values())) < 2:
+        return text
+    first, shown = next(iter(alike.items()))
+    others = sum(one != shown for one in alike.values())
+    return f"{shown} ({first}; other numbers on {others} more)"
+
+
 def either(texts: Sequence[str]) -> list[str]:
     """One sentence of causes that explain the same; none without any."""
     known = [text for text in dict.fromkeys(texts) if text]
