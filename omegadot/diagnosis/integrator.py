@@ -40,7 +40,7 @@ from omegadot.reference_impl.system import State, System
 # stepping again by all that may be wrong takes long. The order that steps have lost explains them.
 VAIN, VAIN_BESIDE_ORDER = 8, 3
 IN_THE_FIRST = "in the first step of a run alone"
-FIRST_ALONE = "only the first steps are wrong"  # which says less than what is wrong in them
+FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
 

@@ -1,4 +1,4 @@
-"""Whether two candidates are one cause in other words: they agree on any system whatever."""
+"""Whether two candidates are one cause, worded in two ways: they agree on any system."""
 
 from __future__ import annotations
 

@@ -182,7 +182,7 @@ def _by_series(order: int) -> Step:
     return step
 
 
-# What says less comes first: on many bodies the velocity of translation is constant.
+# What states less comes first: on many bodies the velocity of translation is constant.
 EULER: dict[str, Step] = {
     "the attitude moves by the omega of the step's start": _old_omega,
     "the position moves by the velocity of the step's start": _old_velocity,
