@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.candidate import Candidate
+from omegadot.diagnosis.equations.equation_form import same_form
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.equations.held import Held, Scene, Scenes
 from omegadot.diagnosis.equations.same_cause import same_cause
@@ -288,8 +289,9 @@ class Across:
         for one in whole:
             if not any(same_cause(one.candidate, other.candidate, pivoted) for other in kept):
                 kept.append(one)
-        texts = [one.law or self._text_of(one, source) for one in kept]
-        texts = list(dict.fromkeys(texts))
+        if len(kept) > MOST_NAMED:  # the plainest of those that are one equation in this run
+            kept = [one for k, one in enumerate(kept) if not _like_any(one, kept[:k])]
+        texts = list(dict.fromkeys(one.law or self._text_of(one, source) for one in kept))
         if not texts or len(texts) > MOST_NAMED:
             return ""
         return texts[0] if len(texts) == 1 else "either " + ", or ".join(texts)
@@ -326,3 +328,16 @@ def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:
 
 def _distinct(level: Sequence[Candidate]) -> list[Candidate]:
     return list({one.key: one for one in level}.values())
+
+
+def _like_any(one: Held, others: Sequence[Held]) -> bool:
+    """Whether it is the same equation as another on every scenario that shows it."""
+    plain = one.candidate.reading is None and one.candidate.terms is None
+
+    def like(other: Held) -> bool:
+        if not plain or other.candidate.reading or other.candidate.terms:
+            return False
+        pairs = [[x.candidate.form(s.system) for x in (one, other)] for s in one.shown]
+        return all(a is not None and b is not None and same_form(a, b) for a, b in pairs)
+
+    return any(map(like, others))
