@@ -7,22 +7,17 @@ from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
 
+from omegadot.diagnosis.equations.at_states import where_of, where_wrong
 from omegadot.diagnosis.equations.candidate import Candidate
-from omegadot.diagnosis.equations.equation_form import same_form
-from omegadot.diagnosis.equations.evidence import SLACK, Evidence
+from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.held import Held, Scene, Scenes
-from omegadot.diagnosis.equations.same_cause import same_cause
 from omegadot.diagnosis.equations.search import levels
-from omegadot.diagnosis.wording.conditions import only_where
-from omegadot.diagnosis.wording.features import in_common
-from omegadot.reference_impl.system import State, System
+from omegadot.diagnosis.equations.worded import conditional, worded
 
 PLAIN = 2  # levels of one scenario without limits: they fit all states, or those that are wrong
 QUICK = 3  # levels that are quick, and more basic than what another scenario has shown
 MOST_DEEP = 5  # scenarios that are searched to the end; the rest have what these have
-MOST_NAMED = 3  # causes between which a scenario does not decide
 
 
 @dataclass(frozen=True)
@@ -101,7 +96,7 @@ class Across:
         if not scene.evidence[source].clear:
             return ""
         text = self._shared(scene, source, PLAIN)
-        text = text or self._conditional(self._quick_of(scene, source, PLAIN).partial)
+        text = text or conditional(self._quick_of(scene, source, PLAIN).partial)
         if text:
             return text
         text = self._at_some_states(scene, source) or self._shared(scene, source, QUICK)
@@ -119,7 +114,7 @@ class Across:
             if number < QUICK:
                 continue
             found = self._held(level, scene, source)
-            text = self._worded(found.strong, source)
+            text = self._text_of(found.strong, source)
             if text:
                 self._accepted.append([one.candidate for one in found.strong])
                 self._chosen[name, source] = found.strong[0].candidate
@@ -128,8 +123,8 @@ class Across:
             partial += found.partial
         text = self._weak_cause(scene, source, weak) or self._where_wrong(scene, source)
         if not text:
-            text = self._conditional(partial)
-            named = [one for one in partial if text and self._conditional([one]) == text]
+            text = conditional(partial)
+            named = [one for one in partial if text and conditional([one]) == text]
             self._partly.setdefault(source, []).extend((one, text) for one in named[:1])
         return text
 
@@ -150,7 +145,7 @@ class Across:
             before = self._quick_of(scene, source, PLAIN) if depth > PLAIN else NONE
             weak, partial, strong = before.weak, [*before.partial], before.strong
             for level in islice(self._search(scene, source), PLAIN * (depth > PLAIN), depth):
-                if strong or self._conditional(partial):
+                if strong or conditional(partial):
                     break
                 found = self._held(level, scene, source)
                 weak, partial, strong = weak or found.weak, [*partial, *found.partial], found.strong
@@ -163,7 +158,7 @@ class Across:
         Between two that fit one scenario those decide that distinguish them.
         """
         best = self.best(scene, source, depth)
-        text = self._worded(best, source)
+        text = self._text_of(best, source)
         if text:
             self._chosen[scene.name, source] = best[0].candidate
             self._explains[scene.name, source] = best[0].names
@@ -185,8 +180,8 @@ class Across:
             fitted = _fitting(one.candidate, evidence)
             if fitted and scene.name in one.names:
                 self._chosen[scene.name, source] = fitted
-                return self._worded([one], source)
-        text = self._worded(weak, source)
+                return self._text_of([one], source)
+        text = self._text_of(weak, source)
         if text:
             self._chosen[scene.name, source] = weak[0].candidate
             if weak[0].candidate.numbers is not None:
@@ -208,7 +203,7 @@ class Across:
             fits = [one for one in (_fitting(one, evidence) for one in group) if one]
             held = [self._all.held(one, scene, source) for one in fits]
             whole = [one for one in held if one.holds and one.strong]
-            text = self._worded(whole, source)
+            text = self._text_of(whole, source)
             if text:
                 self._chosen[scene.name, source] = whole[0].candidate
                 return text
@@ -240,82 +235,30 @@ class Across:
                 wrong = one.evidence[source].at(np.flatnonzero(~one.evidence[source].sound))
                 self._nested[source].add(replace(one, evidence={source: wrong}))
         best = self._nested[source].best(scene, source, PLAIN)
-        where = {one.candidate.key: self._where_of(one, source) for one in best}
+        where = {one.candidate.key: self._where_of(one.candidate, source) for one in best}
         sorted_ = [one for one in best if where[one.candidate.key]]
-        text = self._worded(sorted_ or best, source)
+        text = self._text_of(sorted_ or best, source)
         if not text:
             return ""
         condition = where[sorted_[0].candidate.key] if sorted_ else ""
         return f"{text}, but only where {condition}" if condition else f"{text}, but not always"
 
-    def _where_of(self, held: Held, source: str) -> str:
-        """At which of the states that would show it a cause holds."""
-        key = (held.candidate.key, source)
-        if key not in self._conditions:
-            parts = list[tuple[System, State, NDArray[np.bool_]]]()
-            for one in self.scenes.values():
-                evidence = one.evidence.get(source)
-                made = held.candidate.predicted(evidence) if evidence else None
-                if evidence is None or made is None:
-                    continue
-                shows = evidence.shares_between(made, evidence.true) > SLACK
-                parts.append((evidence.system, evidence.states[shows], evidence.sound[shows]))
-            self._conditions[key] = only_where(parts)
-        return self._conditions[key]
+    def _text_of(self, whole: Sequence[Held], source: str) -> str:
+        pivoted = any(s.system.load.pivot is not None for s in self.scenes.values())
+        return worded(whole, source, pivoted)
 
-    def _sorted(self, scene: Scene, source: str) -> str:
-        """At which states the engine is wrong."""
-        evidence = scene.evidence[source]
-        every = [e for one in self.scenes.values() if (e := one.evidence.get(source))]
-        parts = [(e.system, e.states, e.sound) for e in every]
-        # where nothing of the kind acts, every state is right, and shows nothing
-        shown = [part for part in parts if not np.all(part[2])]
-        mixed = sum(bool(np.any(right)) for _, _, right in shown)
-        if np.all(evidence.sound) or not mixed:
-            return ""
-        alone = [(evidence.system, evidence.states, evidence.sound)]
-        where = only_where(parts) or (only_where(shown) if mixed > 1 else "")
-        return where or (only_where(alone) if len(shown) < 2 else "")
+    def _evidence(self, source: str) -> list[Evidence]:
+        return [e for one in self.scenes.values() if (e := one.evidence.get(source))]
+
+    def _where_of(self, one: Candidate, source: str) -> str:
+        if (one.key, source) not in self._conditions:
+            self._conditions[one.key, source] = where_of(one, self._evidence(source))
+        return self._conditions[one.key, source]
 
     def _where_wrong(self, scene: Scene, source: str) -> str:
         """Where the equation holds at some states: at which it does not."""
-        where = self._sorted(scene, source)
+        where = where_wrong(scene.evidence[source], self._evidence(source))
         return f"the equation holds at some states, and is wrong only where {where}" * bool(where)
-
-    def _worded(self, whole: Sequence[Held], source: str) -> str:
-        """Causes that hold everywhere; several where no scenario decides between them."""
-        pivoted = any(s.system.load.pivot is not None for s in self.scenes.values())
-        kept = list[Held]()
-        for one in whole:
-            if not any(same_cause(one.candidate, other.candidate, pivoted) for other in kept):
-                kept.append(one)
-        if len(kept) > MOST_NAMED:  # the plainest of those that are one equation in this run
-            kept = [one for k, one in enumerate(kept) if not _like_any(one, kept[:k])]
-        texts = list(dict.fromkeys(one.law or self._text_of(one, source) for one in kept))
-        if not texts or len(texts) > MOST_NAMED:
-            return ""
-        return texts[0] if len(texts) == 1 else "either " + ", or ".join(texts)
-
-    def _text_of(self, held: Held, source: str) -> str:
-        """One cause; where its numbers are others on each scenario, those of the first."""
-        one = held.candidate
-        text = one.text(held.shown[0].evidence[source].system) + held.where()
-        if not held.numbers or one.numbers is None:
-            return text
-        return f"{text} ({held.shown[0].name}; other numbers on {len(held.numbers)} more)"
-
-    def _conditional(self, held: Sequence[Held]) -> str:
-        """The first cause that holds on the scenarios of one kind alone."""
-        for one in held:
-            shown, against = (
-                [scene.features for scene in group] for group in (one.shown, one.against)
-            )
-            common = in_common(shown, against)
-            if common and len(common) <= 2:
-                evidence = next(iter(one.shown[0].evidence.values()))
-                text = one.law or one.candidate.text(evidence.system)
-                return f"{text}, but only where {' or where '.join(common)}"
-        return ""
 
 
 def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:
@@ -328,16 +271,3 @@ def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:
 
 def _distinct(level: Sequence[Candidate]) -> list[Candidate]:
     return list({one.key: one for one in level}.values())
-
-
-def _like_any(one: Held, others: Sequence[Held]) -> bool:
-    """Whether it is the same equation as another on every scenario that shows it."""
-    plain = one.candidate.reading is None and one.candidate.terms is None
-
-    def like(other: Held) -> bool:
-        if not plain or other.candidate.reading or other.candidate.terms:
-            return False
-        pairs = [[x.candidate.form(s.system) for x in (one, other)] for s in one.shown]
-        return all(a is not None and b is not None and same_form(a, b) for a, b in pairs)
-
-    return any(map(like, others))
