@@ -241,7 +241,11 @@ class Across:
         if not text:
             return ""
         condition = where[sorted_[0].candidate.key] if sorted_ else ""
-        return f"{text}, but only where {condition}" if condition else f"{text}, but not always"
+        return (
+            f"{text}: it is wrong only where {condition}"
+            if condition
+            else f"{text}, but not always"
+        )
 
     def _text_of(self, whole: Sequence[Held], source: str) -> str:
         pivoted = any(s.system.load.pivot is not None for s in self.scenes.values())

@@ -33,7 +33,7 @@ SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
 
 def kind_of(text: str) -> str:
     """A cause without its numbers, and without where it shows."""
-    for end in (", but only where", ", at steps of", ", on "):
+    for end in (", but only where", ": it is wrong only where", ", at steps of", ", on "):
         text = text.partition(end)[0]
     same = text.replace("too short", "too long").partition(": rounded to")[0]
     return NUMBER.sub("#", same)
