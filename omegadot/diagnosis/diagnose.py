@@ -56,6 +56,7 @@ class CaseCauses:
         runs: Sequence[JudgedRun],
     ) -> None:
         self._across, self._case, self._states = engine.across, case, evaluation_states
+        self._over = engine.integrators
         self._answers = replace(result, runs={}, first_steps={}, restarts={})
         by_name: dict[str, list[JudgedRun]] = {}
         for run in runs:
@@ -64,7 +65,6 @@ class CaseCauses:
             name: IntegratorCauses(engine, case, truth, result, own)
             for name, own in by_name.items()
         }
-        self._runs_fail = any(fails(run) for run in runs)
         self._shared_rows = [row for row in shared if row.verdict == "fail"]
         scene = scene_of(case, evaluation_states, result)
         for name, integrator in self._integrators.items():
@@ -114,7 +114,8 @@ class CaseCauses:
                     return lever_causes(*model) or found
                 steps = [one.steps for one in self._integrators.values()]
                 right = bool(steps) and all(one is not None and one.sound for one in steps)
-                right = right and not self._runs_fail
+                failing = (one.fails.values() for one in self._over.values())
+                right = right and not any(map(any, failing))  # on any scenario of the run
                 return [f"{one}{ALONE * right}" for one in found]
         if ("equation", "residual_reloaded") in failed:
             found = equation_causes(across, self._case.name, RELOADED)
