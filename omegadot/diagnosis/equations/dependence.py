@@ -14,7 +14,7 @@ from omegadot.harness.scaled import STATES, TWICE
 from omegadot.reference_impl.system import Array
 
 CLEAN = 1e-4  # of an exponent
-CLEAR_OF_ROUNDING = 1e4
+CLEAR_OF_ROUNDING = 1.0 / CLEAN  # in bounds, which are of many more roundings than there are
 LEAST = 4  # states
 
 
