@@ -35,11 +35,11 @@ from omegadot.gates.states.equation import (
     evaluation_states_of,
 )
 from omegadot.gates.truth import Truth
-from omegadot.harness import siblings
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
-from omegadot.harness.judge_engine import shared_rows
+from omegadot.harness.judging.engine import shared_rows
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase
+from omegadot.harness.requests import siblings
 
 
 class CaseCauses:

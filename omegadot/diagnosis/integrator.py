@@ -32,7 +32,7 @@ from omegadot.gates.errors.measured_run import orders_for
 from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
 

@@ -32,7 +32,7 @@ from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun, is_finite
+from omegadot.harness.judging.judged_run import JudgedRun, is_finite
 
 ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
 LIMIT = "is held"

@@ -13,12 +13,12 @@ from omegadot.adapters.pinocchio.adapter import LOOPED, PREFIX, PinocchioAdapter
 from omegadot.adapters.pinocchio.joint import PinocchioJoint
 from omegadot.adapters.pinocchio.model import build_model
 from omegadot.adapters.protocol import UnsupportedError
-from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import to_coordinates
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.rotations import attitude_angle, rotate_inverse
 from omegadot.reference_impl.schemes import SCHEMES, Motion
 from omegadot.reference_impl.stepping import step_body

@@ -15,9 +15,9 @@ from command_line import FAULTY, QUICK, Result, omegadot, quick_scenario
 
 from omegadot.adapters.mujoco.adapter import MujocoAdapter
 from omegadot.commands.cli import main
-from omegadot.reference_impl.exact_solution import exact_states
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.reference_impl.rotations import attitude_angle, rotate
+from omegadot.reference_impl.solutions.exact_solution import exact_states
 from omegadot.reports.choice.page import draw_choice
 from omegadot.reports.choice.sentences import missed_text, step_text
 from omegadot.scenarios import load_scenario

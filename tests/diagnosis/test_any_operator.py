@@ -17,7 +17,7 @@ from omegadot.diagnosis.stepping.order_lost import order_lost
 from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.states.equation import random_states
 from omegadot.gates.steps.probe import DOUBLE, Probe
-from omegadot.harness.scaled import STATES, doubled
+from omegadot.harness.requests.scaled import STATES, doubled
 from omegadot.reference_impl.loads import damping_torque
 from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.schemes import SCHEMES, Scheme

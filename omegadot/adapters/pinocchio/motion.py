@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from omegadot.reference_impl.arithmetic.components import rotated
-from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL
+from omegadot.reference_impl.one_body.body_configurations import ATTITUDE, SPATIAL
 from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.system import Array, Load
 

@@ -19,7 +19,7 @@ from omegadot.gates.case import knobs_of
 from omegadot.gates.rows import Row, worst
 from omegadot.gates.runs import repeats
 from omegadot.gates.runs.exact import exact_rows
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
 from omegadot.reports.text.numbers import listed, short, times_its_bound
 from omegadot.workers.harness_end.process import Answer

@@ -12,7 +12,7 @@ from omegadot.diagnosis.wording.digits import listed
 from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION, norm
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State
 

@@ -14,8 +14,8 @@ from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
-from omegadot.reference_impl.body_motion import body_motion
+from omegadot.harness.judging.judged_run import JudgedRun
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.stepping import step_body

@@ -20,7 +20,7 @@ from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.states.equation import BOUND
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import rotate, turn_in_body
 from omegadot.reference_impl.system import State

@@ -11,8 +11,8 @@ import numpy as np
 from omegadot.diagnosis.reported.clock import GRIDS
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.growth import changes
 from omegadot.reference_impl.rotations import rotation_between
+from omegadot.reference_impl.solutions.growth import changes
 from omegadot.reference_impl.system import Array, State
 
 MOST_TRIES = 8

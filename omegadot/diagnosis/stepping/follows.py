@@ -12,8 +12,8 @@ from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.stepping.restep import on_rows
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, common_factor
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through

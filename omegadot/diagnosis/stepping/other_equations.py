@@ -10,8 +10,8 @@ from omegadot.diagnosis.equations.equation_form import Form, accelerations
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.fitted import SLACK
-from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State
 
