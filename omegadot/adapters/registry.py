@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import re
+import shlex
+import shutil
 import sys
 from collections.abc import Callable
 from importlib.metadata import entry_points
@@ -15,6 +18,9 @@ from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.reference_impl.system import System
 
 ENTRY_POINT_GROUP = "omegadot.adapters"
+# Before the command line of a program that serves an engine, in the place of module:Class.
+PROGRAM = "command:"
+_NAMED = re.compile(r"([A-Za-z][\w-]*)=")
 
 BUILT_IN: dict[str, str] = {
     "exact": "omegadot.adapters.exact.adapter:ExactAdapter",
@@ -83,24 +89,66 @@ def through_file(adapter: Adapter, via: str) -> Adapter:
     return cast(Adapter, _FromFile(adapter, via))
 
 
-def build_adapter(target: str, setup: Setup = "physics", via: str = "") -> Adapter:
-    """Build the adapter that ``module:Class`` or ``FILE.py:Class`` names.
+def program_of(command: str) -> list[str]:
+    """The words of a command line, its program found. Raises AdapterError."""
+    try:
+        words = shlex.split(_NAMED.sub("", command, count=1) if _NAMED.match(command) else command)
+    except ValueError as error:
+        raise AdapterError(f"{command}: {error}; correct the quotes.") from None
+    program = shutil.which(words[0]) if words else None
+    if program is None:
+        name = words[0] if words else command
+        raise AdapterError(f"{command}: there is no program {name}; install it or check its path.")
+    return [program, *words[1:]]
 
-    via: the format of the files by which systems are loaded; "" for the engine's API.
-    Raises AdapterError when the target is malformed, UnsupportedError as `through_file` does, and
-    whatever the engine's import raises (ImportError when it is not installed).
+
+def name_in_command(command: str) -> str:
+    """The engine's name in ``NAME=PROGRAM ...``, "" without one."""
+    found = _NAMED.match(command)
+    return found[1] if found else ""
+
+
+def factory_of(target: str) -> Callable[..., Adapter] | str:
+    """The class that ``module:Class`` or ``FILE.py:Class`` names, or a program's command line.
+
+    The latter is given by ``command:PROGRAM ...``, or by a text in the place of the class. Raises
+    AdapterError where there is neither, and whatever importing the module raises.
     """
+    if target.startswith(PROGRAM):
+        return target.removeprefix(PROGRAM)
     module_name, separator, class_name = target.rpartition(":")
     if not separator or not class_name:
         raise AdapterError(f"{target}: not an adapter; give module:Class or FILE.py:Class.")
     module = _import_target(module_name)
-    factory: Callable[..., Adapter] | None = getattr(module, class_name, None)
-    if not callable(factory):
+    factory: Callable[..., Adapter] | str | None = getattr(module, class_name, None)
+    if not (callable(factory) or isinstance(factory, str)):
         raise AdapterError(f"{target}: {module_name} has no class {class_name}; check its name.")
-    try:
-        adapter = factory(setup=setup)
-    except ModuleNotFoundError as error:
-        extra = next((name for name, own in OPTIONAL.items() if own == target), "")
-        advice = f"; install it with pip install 'omegadot[{extra}]'" if extra else ""
-        raise ImportError(f"{error}{advice}") from error
+    return factory
+
+
+def build_adapter(
+    target: str,
+    setup: Setup = "physics",
+    via: str = "",
+    served: Callable[[str, Setup], Adapter] | None = None,
+) -> Adapter:
+    """Build the adapter that a target names, see `factory_of`.
+
+    via: the format of the files by which systems are loaded; "" for the engine's API.  served: what
+    builds the adapter of a program.
+    Raises AdapterError when the target is malformed, UnsupportedError as `through_file` does, and
+    whatever the engine's import raises (ImportError when it is not installed).
+    """
+    factory = factory_of(target)
+    if not isinstance(factory, str):
+        try:
+            adapter = factory(setup=setup)
+        except ModuleNotFoundError as error:
+            extra = next((name for name, own in OPTIONAL.items() if own == target), "")
+            advice = f"; install it with pip install 'omegadot[{extra}]'" if extra else ""
+            raise ImportError(f"{error}{advice}") from error
+    elif served is None:
+        raise AdapterError(f"{target}: a program serves engines in a process of its own only.")
+    else:
+        adapter = served(factory, setup)
     return through_file(adapter, via) if via else adapter

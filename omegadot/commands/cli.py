@@ -155,10 +155,18 @@ def _as_before(received: list[int]) -> None:
             signal.signal(number, signal.SIG_DFL)
 
 
+# What is wrong with a path that was given; another one is right. All else is the system's.
+_WRONG_PATH = {
+    *(errno.ENAMETOOLONG, errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ELOOP, errno.EINVAL),
+    *(errno.EACCES, errno.EPERM, errno.EROFS, errno.EEXIST, errno.EBUSY, errno.ENXIO),
+}
+
+
 def _is_our_own(error: Exception) -> bool:
     """Whether the system or a worker of ours failed, rather than the arguments being wrong."""
-    if isinstance(error, OSError):
-        return True
+    failed = error if isinstance(error, OSError) else error.__cause__
+    if isinstance(failed, OSError):
+        return failed.filename is None or failed.errno not in _WRONG_PATH
     engines = sys.modules.get("omegadot.harness.engines")
     return engines is not None and isinstance(error, engines.NoTruthError)
 

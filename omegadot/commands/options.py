@@ -45,7 +45,12 @@ Texts = list[str] | None
 Output = Annotated[Format, typer.Option("--format", help="Output format.")]
 PageOutput = Annotated[PageFormat, typer.Option("--format", help="Output format.")]
 Adapters = Annotated[
-    Texts, option("FILE.py:CLASS", "An engine of your own; repeatable.", "--adapter")
+    Texts,
+    option(
+        "FILE.py:CLASS",
+        "An engine of your own, or a program that serves one with its arguments; repeatable.",
+        "--adapter",
+    ),
 ]
 Ways = Annotated[
     Texts,
@@ -78,7 +83,7 @@ def given(arguments: Mapping[str, Any]) -> dict[str, Any]:
     found = {
         name: value.value if isinstance(value, StrEnum) else value
         for name, value in arguments.items()
-        if value is not None and name != "output"
+        if value not in (None, []) and name != "output"
     }
     return {**found, "progress": on_a_terminal()}
 

@@ -15,7 +15,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.wrong_equation import (
     ALONG,
     FORWARD,
@@ -26,6 +25,7 @@ from omegadot.diagnosis.equations.wrong_equation import (
 )
 from omegadot.diagnosis.integrator import IntegratorCauses, fails, source_of
 from omegadot.diagnosis.models.wrong_model import lever_causes, model_causes
+from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import batch_cause, kept_causes
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
@@ -35,11 +35,11 @@ from omegadot.gates.states.equation import (
     evaluation_states_of,
 )
 from omegadot.gates.truth import Truth
-from omegadot.harness import siblings
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
-from omegadot.harness.judge_engine import shared_rows
+from omegadot.harness.judging.engine import shared_rows
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase
+from omegadot.harness.requests import siblings
 
 
 class CaseCauses:
@@ -47,7 +47,7 @@ class CaseCauses:
 
     def __init__(
         self,
-        across: Across,
+        engine: EngineOverScenarios,
         case: Case,
         truth: Truth,
         evaluation_states: EvaluationStates,
@@ -55,22 +55,22 @@ class CaseCauses:
         shared: Sequence[Row],
         runs: Sequence[JudgedRun],
     ) -> None:
-        self._across, self._case, self._states = across, case, evaluation_states
+        self._across, self._case, self._states = engine.across, case, evaluation_states
+        self._over = engine.integrators
         self._answers = replace(result, runs={}, first_steps={}, restarts={})
         by_name: dict[str, list[JudgedRun]] = {}
         for run in runs:
             by_name.setdefault(run.integrator.name, []).append(run)
         self._integrators = {
-            name: IntegratorCauses(across, case, truth, result, own)
+            name: IntegratorCauses(engine, case, truth, result, own)
             for name, own in by_name.items()
         }
-        self._runs_fail = any(fails(run) for run in runs)
         self._shared_rows = [row for row in shared if row.verdict == "fail"]
         scene = scene_of(case, evaluation_states, result)
         for name, integrator in self._integrators.items():
             if integrator.steps is not None:
                 scene.evidence[source_of(name)] = integrator.steps.evidence
-        across.add(scene)
+        engine.across.add(scene)
 
     def release(self) -> None:
         """Work out what needs the trajectories, and let go of them."""
@@ -114,7 +114,8 @@ class CaseCauses:
                     return lever_causes(*model) or found
                 steps = [one.steps for one in self._integrators.values()]
                 right = bool(steps) and all(one is not None and one.sound for one in steps)
-                right = right and not self._runs_fail
+                failing = (one.fails.values() for one in self._over.values())
+                right = right and not any(map(any, failing))  # on any scenario of the run
                 return [f"{one}{ALONE * right}" for one in found]
         if ("equation", "residual_reloaded") in failed:
             found = equation_causes(across, self._case.name, RELOADED)
@@ -139,16 +140,16 @@ class Causes:
     """Causes over the scenarios of a run, of which each engine's are kept in small arrays."""
 
     def __init__(self) -> None:
-        self._engines: dict[str, Across] = {}
+        self._engines: dict[str, EngineOverScenarios] = {}
 
     def of_case(self, judged: JudgedCase, found: EngineCase, seed: int) -> CaseCauses:
         """One more case of an engine. It must have an exact trajectory."""
         assert judged.truth is not None
-        across = self._engines.setdefault(found.engine.name, Across())
+        engine = self._engines.setdefault(found.engine.name, EngineOverScenarios())
         states = evaluation_states_of(judged.case, judged.truth, seed)
         with np.errstate(all="ignore"):
             return CaseCauses(
-                across, judged.case, judged.truth, states, found.result, found.shared, found.runs
+                engine, judged.case, judged.truth, states, found.result, found.shared, found.runs
             )
 
 
@@ -189,7 +190,7 @@ def diagnose(
 ) -> list[str]:
     """Sentences that explain the failed gates of one case; none without failure."""
     shared = shared_rows(case, evaluation_states, result)
-    causes = CaseCauses(Across(), case, truth, evaluation_states, result, shared, runs)
+    causes = CaseCauses(EngineOverScenarios(), case, truth, evaluation_states, result, shared, runs)
     found = causes.sentences(None)
     names = dict.fromkeys(run.integrator.name for run in _by_length(runs) if fails(run))
     for name in names if not found else ():

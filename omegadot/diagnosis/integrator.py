@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.describe import scenarios_in_common
 from omegadot.diagnosis.equations.wrong_equation import known_difference
+from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
-from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, Followed, follows, keeps_pace
+from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, keeps_pace
 from omegadot.diagnosis.stepping.jumps import jump_cause, jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import (
     kinematic_causes,
@@ -25,18 +25,22 @@ from omegadot.diagnosis.stepping.kinematics import (
 from omegadot.diagnosis.stepping.order_lost import order_lost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
-from omegadot.diagnosis.wording.kinds import agreed, either, is_of_one_run
+from omegadot.diagnosis.wording.kinds import agreed, either, is_of_one_run, over_run
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import orders_for
 from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import State, System
 
+# Scenarios on which the runs of an integrator are looked at in vain, before the rest is left alone:
+# stepping again by all that may be wrong takes long. The order that steps have lost explains them.
+VAIN, VAIN_BESIDE_ORDER = 8, 3
 IN_THE_FIRST = "in the first step of a run alone"
+FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
 
@@ -55,23 +59,25 @@ class IntegratorCauses:
 
     def __init__(
         self,
-        across: Across,
+        engine: EngineOverScenarios,
         case: Case,
         truth: Truth,
         result: CaseResult,
         runs: Sequence[JudgedRun],
     ) -> None:
-        self._across, self._case, self._truth = across, case, truth
+        self._across, self._case, self._truth = engine.across, case, truth
         self._result: CaseResult | None = result
         self._runs = list(runs)
         integrator = runs[0].integrator
         self._name, self._declares = integrator.name, integrator.scheme in SCHEMES
         self._again = next(filter(None, (again_cause(run.rows) for run in runs)), "")
-        if self._again:
-            across.again.setdefault(self._name, self._again)
-        self._beginning = _beginning_of(truth, result, runs)
+        over = self._over = engine.integrators[self._name]
+        over.again = over.again or self._again
+        self._beginning = _beginning_of(case.system, truth, result, runs)
+        if self._beginning is not None:
+            over.beginnings[case.name] = self._beginning
         failed = [run for run in runs if fails(run)]
-        across.fails.setdefault(self._name, {})[case.name] = bool(failed)
+        over.fails[case.name] = bool(failed)
         self._turned_wrong = any(
             row.channel == "attitude" and row.verdict == "fail"
             for run in failed
@@ -79,9 +85,7 @@ class IntegratorCauses:
         )
         self._brief = all(len(run.sweep.times) < LEAST_SAMPLES for run in runs)
         self._of_runs: RunCauses | None = None
-        self._followed: dict[tuple[str, ...], Followed | None] = {}
         self.steps: VanishingSteps | None = None
-        self._order_lost, self._seen = "", ""
         probe, answer = result.first_steps.get(self._name, (None, None))
         if probe is not None and answer is not None and answer.ok:
             tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
@@ -89,13 +93,17 @@ class IntegratorCauses:
             self.steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
             if any(map(fails, runs)) and self.steps.sound:
                 due = orders_for(integrator, case.system)
-                self._order_lost = order_lost(case.system, probe, stepped, eps, due)
+                found = order_lost(case.system, probe, stepped, eps, due)
+                if found is not None:
+                    over.lost[case.name] = found
 
     def release(self, wanted: bool) -> None:
         """Work out what needs the trajectories, where it is wanted, and let go of them."""
         if wanted and any(map(fails, self._runs)) and self._result is not None:
             failed = [run for run in self._runs if fails(run)]
-            self._seen = known_of_runs(self._truth, self._result, failed)
+            seen = known_of_runs(self._truth, self._result, failed)
+            if seen is not None:
+                self._over.seen[self._case.name] = seen
             self.sentences()
         self._result, self._runs = None, []
 
@@ -111,13 +119,13 @@ class IntegratorCauses:
             return [one for one in seen if is_of_one_run(one)] or [self._again]
         if steps is None or steps.sound:
             found = self._of_trajectories()
-            lost = either([self._order_lost])
+            own = self._over.lost.get(self._case.name)
+            lost = [own.with_others(self._over.lost.values()).text] if own else []
             if not found or any(OF_ONE_FIELD in text for text in found):
                 found = lost or found
             return found or self._known_of_runs()
-        elsewhere = self._across.again.get(self._name)
-        if elsewhere:  # what is left over from a run spoils the short ones that follow
-            return [elsewhere]
+        if self._over.again:  # what is left over from a run spoils the short ones that follow
+            return [self._over.again]
         found = self._of_steps(steps) or self._of_trajectories()
         jumped = either([jump_cause(steps, self._beginning)])
         if any(OF_ONE_FIELD in text for text in found):
@@ -134,7 +142,10 @@ class IntegratorCauses:
         common = steps.common_cause()
         if common:
             first = self._beginning is not None and not keeps_pace(self._beginning, steps)
-            return [f"{IN_THE_FIRST}: {common}" if first else common]
+            if not first:
+                return [common]
+            seen = [one for one in self._of_trajectories() if not one.startswith(FIRST_ALONE)]
+            return seen or [f"{IN_THE_FIRST}: {common}"]
         if jumps(steps):
             return [] if self._declares else either([jump_cause(steps, self._beginning)])
         if steps.still:
@@ -153,7 +164,8 @@ class IntegratorCauses:
             return [share]
         found = self._of_equation(steps)
         if any(one.startswith(IN_THE_FIRST) or f"or {IN_THE_FIRST}" in one for one in found):
-            found = self._of_trajectories() or found
+            seen = [one for one in self._of_trajectories() if not one.startswith(FIRST_ALONE)]
+            found = seen or found
         if share and not self._turned_wrong:
             return either([share, *found])
         return found
@@ -169,16 +181,14 @@ class IntegratorCauses:
         text, one = self._across.cause(*where), self._across.chosen(*where)
         if not text:
             return []
-        if one is not None and self._beginning is not None:
-            if one.key not in self._followed:
-                followed = follows(self._case.system, self._beginning, one, steps.eps)
-                self._followed[one.key] = followed
-            if self._followed[one.key] == "between":
-                later = f"in the first step of a run, {text}; later steps come nearer to the right"
-                return self._of_trajectories() or [f"{later} equation"]
-            if self._followed[one.key] == "right":
-                first = f"{IN_THE_FIRST}, {text}"
-                return either([velocity_share_cause(steps), first])
+        alike = self._across.explained(*where)
+        followed = self._over.followed(one, alike, steps.eps) if one is not None else set()
+        if "between" in followed or {"right", "wrong"} <= followed:
+            later = f"in the first step of a run, {text}; later steps come nearer to the right"
+            return [f"{later} equation"]
+        if "right" in followed:
+            first = f"{IN_THE_FIRST}, {text}"
+            return either([velocity_share_cause(steps), first])
         return [f"in the steps, {text}"]
 
     def _known(self, steps: VanishingSteps) -> list[str]:
@@ -190,30 +200,38 @@ class IntegratorCauses:
 
     def _known_of_runs(self) -> list[str]:
         """What is seen of the runs where nothing fits, and in which scenarios alone."""
-        fails_in = self._across.fails[self._name]
+        fails_in = self._over.fails
         scenes = self._across.scenes
         failing, passing = (
             [s.features for name, s in scenes.items() if fails_in.get(name) is wrong]
             for wrong in (True, False)
         )
-        texts = [text for text in (self._seen, scenarios_in_common(failing, passing)) if text]
+        own = self._over.seen.get(self._case.name)
+        seen = own.with_others(self._over.seen.values()).text if own else ""
+        texts = [text for text in (seen, scenarios_in_common(failing, passing)) if text]
         return [f"none is known; {'; '.join(texts)}"] if texts else []
 
     def _of_trajectories(self) -> list[str]:
         """What makes the runs, and most of those of the other cases."""
-        over = self._across.of_runs.setdefault(self._name, {})
+        over = self._over.causes
         if self._of_runs is None:
             self._of_runs = NOTHING
-            if self._result is not None:
+            vain = sum(not texts for texts, _ in over.values())
+            most = VAIN_BESIDE_ORDER if self._case.name in self._over.lost else VAIN
+            looked = any(texts for texts, _ in over.values()) or vain < most
+            if self._result is not None and looked:
                 # a wrong equation shows in steps that vanish, and from more states
                 wrong = self.steps is None or not np.all(self.steps.evidence.sound)
                 how = (self._case, self._truth, self._result, self._runs)
                 self._of_runs = run_causes(*how, equations=wrong)
                 over[self._case.name] = (self._of_runs.texts, self._of_runs.decisive)
-        return either(agreed(self._of_runs.texts, over))
+        known = {name: texts for name, (texts, _) in over.items()}
+        return either([over_run(text, known) for text in agreed(self._of_runs.texts, over)])
 
 
-def _beginning_of(truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]) -> Beginning | None:
+def _beginning_of(
+    system: System, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> Beginning | None:
     """The first samples of the failed run with the shortest steps."""
     for run in sorted(runs, key=lambda run: run.sweep.timestep):
         answer = result.runs.get((run.integrator.name, run.sweep.knob))
@@ -222,5 +240,5 @@ def _beginning_of(truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]) -
         times, state = run.sweep.times, State(**answer.result["state"])
         if len(state.position) == len(times):
             first = slice(0, SAMPLES + 1)
-            return Beginning(times[first], state[first], truth.at(run.sweep)[first])
+            return Beginning(system, times[first], state[first], truth.at(run.sweep)[first])
     return None

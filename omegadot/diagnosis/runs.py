@@ -9,7 +9,7 @@ from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.reported.clock import clock_cause
 from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.precision import precision_reported
-from omegadot.diagnosis.reported.run import ReportedRun, reported_run, reported_run_guesses
+from omegadot.diagnosis.reported.run import SLACK, ReportedRun, reported_run, reported_run_guesses
 from omegadot.diagnosis.reported.run_causes import (
     CAUSES_REPORTED,
     SEEN,
@@ -32,11 +32,12 @@ from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun, is_finite
+from omegadot.harness.judging.judged_run import JudgedRun, is_finite
 
 ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
 LIMIT = "is held"
-CLEAR_OF_SINGLE = 64.0  # times rounding: what is off by less decides little
+# In single precision what fits within SLACK bounds must be off by far more without it.
+CLEAR_OF_SINGLE = SLACK * BEYOND_ROUNDING
 MOST_TRIED = 1000  # steps of a second run, in which a cause is looked for again
 
 
@@ -54,6 +55,22 @@ class RunCauses:
 NOTHING = RunCauses()
 
 
+class _Look:
+    """The runs of one integrator on a scenario, and the schemes that each is nearest to."""
+
+    def __init__(self, case: Case, truth: Truth, result: CaseResult) -> None:
+        self.case, self.truth, self.result = case, truth, result
+        self._guesses: dict[float, list[ReportedRun]] = {}
+
+    def guesses(self, run: JudgedRun) -> list[ReportedRun]:
+        """Of a run that declares no scheme; worked out once."""
+        knob = run.sweep.knob
+        if knob not in self._guesses:
+            known = (self.case, self.truth, self.result)
+            self._guesses[knob] = reported_run_guesses(*known, run)
+        return self._guesses[knob]
+
+
 def run_causes(
     case: Case,
     truth: Truth,
@@ -65,30 +82,28 @@ def run_causes(
 
     equations: whether the equation that is stepped may be another than the right one.
     """
-    truth = truth.in_precision(result.precision)
+    look = _Look(case, truth.in_precision(result.precision), result)
     failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
     for run in failed:
         answer = result.runs.get((run.integrator.name, run.sweep.knob))
         if answer is not None and answer.ok:
-            text = clock_cause(answer.result["time"], run.sweep, truth.yardstick.eps)
+            text = clock_cause(answer.result["time"], run.sweep, look.truth.yardstick.eps)
             if text:
                 return RunCauses((text,))
-    several = _of_several_schemes(case, truth, result, runs) if failed else ""
+    several = _of_several_schemes(look, runs) if failed else ""
     if several:
         return RunCauses((several,))
     for run in sorted(failed, key=lambda run: run.sweep.steps):
-        found = _of_run(case, truth, result, run, equations)
+        found = _of_run(look, run, equations)
         if found.texts:
-            kept = _of_others(found, case, truth, result, run, failed, equations)
+            kept = _of_others(look, found, run, failed, equations)
             return _at_long_steps(kept, runs)
     return NOTHING
 
 
 def _of_others(
+    look: _Look,
     found: RunCauses,
-    case: Case,
-    truth: Truth,
-    result: CaseResult,
     run: JudgedRun,
     failed: Sequence[JudgedRun],
     equations: bool,
@@ -98,7 +113,7 @@ def _of_others(
     if not longer or all(map(is_fact, found.texts)):
         return found
     second = min(longer, key=lambda one: one.sweep.steps)
-    other = _of_run(case, truth, result, second, equations)
+    other = _of_run(look, second, equations)
     if other.texts and all(map(is_fact, other.texts)):
         return found
     kinds = set(map(kind_of, other.texts))
@@ -106,13 +121,11 @@ def _of_others(
     return RunCauses(both, found.decisive or other.decisive)
 
 
-def _of_several_schemes(
-    case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
-) -> str:
+def _of_several_schemes(look: _Look, runs: Sequence[JudgedRun]) -> str:
     """Runs of one integrator that are different schemes' at different steps, none declared."""
     named = dict[float, set[str]]()
     for run in runs:
-        for guess in reported_run_guesses(case, truth, result, run):
+        for guess in look.guesses(run):
             if guess.is_own:
                 known = named.setdefault(run.sweep.timestep, set())
                 known.add(guess.integrator.scheme or "")
@@ -139,13 +152,12 @@ def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
     return RunCauses(tuple(text + where for text in kept), found.decisive or limit)
 
 
-def _of_run(
-    case: Case, truth: Truth, result: CaseResult, run: JudgedRun, equations: bool
-) -> RunCauses:
+def _of_run(look: _Look, run: JudgedRun, equations: bool) -> RunCauses:
     """Causes in what one run reports, then in its stepping, then in where it is sound.
 
     Where nothing but the omega-dot reported along it failed, only that is looked at.
     """
+    case, truth, result = look.case, look.truth, look.result
     reported = reported_run(case, truth, result, run)
     if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
         text = omega_dot_late(case, truth, result, run)
@@ -153,7 +165,10 @@ def _of_run(
     if reported is not None:
         return _of_reported(reported, result, equations)
     # By the schemes of the reference that come nearest, where none is declared.
-    guesses = reported_run_guesses(case, truth, result, run)
+    guesses = look.guesses(run)
+    own = [one for one in guesses if one.is_own]
+    if own and not any(one.is_declared for one in own):
+        return _lower_order(own)
     for guess in guesses:
         found = _of_reported(guess, result, equations)
         if found.texts:
@@ -163,6 +178,25 @@ def _of_run(
         return found
     text = restart_cause(truth, result, run)
     return RunCauses((text,)) if text else NOTHING
+
+
+def _lower_order(guesses: Sequence[ReportedRun]) -> RunCauses:
+    """Of a run that is a known scheme's: that it is of a lower order than is declared."""
+    texts = list[str]()
+    for guess in guesses:
+        integrator, system = guess.integrator, guess.case.system
+        orders = [
+            (own, due)
+            for channel, due in integrator.orders.items()
+            if (own := guess.declared.order(channel, system, integrator.coordinates)) is not None
+            and due is not None
+        ]
+        order, due = min(orders, default=(0, 0))
+        if order >= due:
+            return NOTHING  # by one of those that it may be, all is as declared
+        named = guess.declared.name
+        texts.append(f"it is stepped by {named}, which is of order {order}, not {due}")
+    return RunCauses(tuple(texts), is_decisive(guesses[0]))
 
 
 def _of_other_slips(guesses: Sequence[ReportedRun]) -> RunCauses:

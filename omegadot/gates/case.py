@@ -8,7 +8,7 @@ from typing import TypedDict
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.reference_impl.companion import Steps
+from omegadot.reference_impl.solutions.companion import Steps
 from omegadot.reference_impl.system import Array, State, System
 from omegadot.scenarios import Scenario
 

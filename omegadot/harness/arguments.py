@@ -10,9 +10,10 @@ from os import PathLike
 from typing import Any, Literal, TypeVar, get_args
 
 from omegadot.adapters.protocol import Description, Integrator
-from omegadot.adapters.registry import is_absent, registered
+from omegadot.adapters.registry import is_absent
 from omegadot.gates.case import ACCURACIES, Case, sweep_of
-from omegadot.harness.engine_target import EngineLike, is_target, target_of
+from omegadot.harness.engine_target import EngineLike, is_target, name_of, target_of
+from omegadot.harness.own_engines import known_engines
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
@@ -22,27 +23,35 @@ from omegadot.scenarios.model import MOST_STEPS
 T = TypeVar("T")
 
 
-def several(given: T | Sequence[T]) -> list[T]:
+def several(given: T | Sequence[T] | None, name: str = "") -> list[T]:
     """One argument, or several in any iterable, as a list; a text, a table or a class is one.
 
-    An array is taken for its plain numbers.
+    An array is taken for its plain numbers. None is an empty list, for which a default may stand.
+    name: of an argument that has such a default; a list that is empty, as a filter leaves it, is
+    no request for the default, and raises UsageError.
     """
+    if given is None:
+        return []
     plain: Any = given.tolist() if hasattr(given, "tolist") else given
     one = isinstance(plain, str | PathLike | Mapping | type | Scenario)
-    return [plain] if one or not isinstance(plain, Iterable) else list(plain)
+    found = [plain] if one or not isinstance(plain, Iterable) else list(plain)
+    if name and not found:
+        raise UsageError(f"{name}: is empty; name at least one, or leave it out for the default.")
+    return found
 
 
 def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:
-    """Targets by engine name: the class's, in lower case, without Adapter. Raises UsageError."""
+    """Targets by engine name, see `name_of`. Raises UsageError."""
     found = {}
     for adapter in extra:
         target = target_of(adapter)
         _, separator, name = target.rpartition(":")
         if not separator or not name:
             raise UsageError(
-                f"--adapter {target}: no class is named; give FILE.py:Class or module:Class."
+                f"--adapter {target}: no class is named; give FILE.py:Class or module:Class, or a "
+                "program with its arguments."
             )
-        found[name.removesuffix("Adapter").lower()] = target
+        found[name_of(target)] = target
     return found
 
 
@@ -55,7 +64,7 @@ def engine_choices(
     extra: engines of one's own, by class.  option: by which they were given, for errors.  The same
     name may come several times with different integrators. Raises UsageError.
     """
-    known = registered()
+    known = known_engines()
     names = [e for e in wanted if isinstance(e, str) and not is_target(e, known)]
     added = adapters_named([*extra, *(engine for engine in wanted if engine not in names)])
     known |= added

@@ -16,7 +16,7 @@ from omegadot.gates.case import Case, Sweep, knobs_of
 from omegadot.gates.rows import Row, worst
 from omegadot.gates.runs.exact import exact_rows, floor_rows
 from omegadot.gates.runs.trajectory import time_row
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase, Outcome
 from omegadot.reference_impl.system import Array, State
 from omegadot.reports.record import schema

@@ -1,23 +1,33 @@
-"""Which class an engine of one's own is: a file, a module, or the class itself."""
+"""Which engine of one's own is meant: a class by its file or module, itself, or a program."""
 
 from __future__ import annotations
 
 import ast
 import importlib.util
+import re
 import sys
 from collections.abc import Container
 from pathlib import Path
 
-from omegadot.adapters.registry import OURS
+from omegadot.adapters.registry import (
+    OURS,
+    PROGRAM,
+    AdapterError,
+    name_in_command,
+    program_of,
+)
 from omegadot.harness.usage import UsageError
 
 EngineLike = str | type[object]
-"""``NAME``, ``NAME:INTEGRATOR``, ``FILE.py``, ``FILE.py:Class``, ``module:Class``, or a class."""
+"""``NAME``, ``NAME:INTEGRATOR``, ``FILE.py``, ``FILE.py:Class``, ``module:Class``, a class, or the
+command line of a program, ``node worker.js`` or ``NAME=node worker.js``."""
 
 
 def is_target(engine: EngineLike, known: Container[str]) -> bool:
     """Whether an engine is given by its class, not by one of the names known."""
     if not isinstance(engine, str):
+        return True
+    if is_command(engine):
         return True
     left, separator, right = engine.rpartition(":")
     if not separator or left in known:
@@ -27,8 +37,44 @@ def is_target(engine: EngineLike, known: Container[str]) -> bool:
     return left.endswith(".py") or (named and importlib.util.find_spec(package) is not None)
 
 
+def is_command(engine: str) -> bool:
+    """Whether it is a program with arguments: words, and no file of that whole name."""
+    if engine.startswith(PROGRAM):
+        return True
+    file = engine if engine.endswith(".py") else engine.rpartition(":")[0]
+    words = len(engine.split()) > 1 and "\0" not in engine
+    return words and not (file.endswith(".py") and Path(file).is_file())
+
+
+def name_of(target: str) -> str:
+    """The engine's name: the class's, in small letters without Adapter; of a program the name
+    before ``=``, or else that of the last file in its command line, without its suffix.
+    """
+    if not target.startswith(PROGRAM):
+        return target.rpartition(":")[2].removesuffix("Adapter").lower()
+    command = target.removeprefix(PROGRAM)
+    given = name_in_command(command)
+    return given or re.sub(r"[^\w-]+", "-", _file_in(command).stem).lower()
+
+
+def _file_in(command: str) -> Path:
+    """The last file in a program's command line."""
+    words = program_of(command)
+    named = [word for word in words[1:] if not word.startswith("-")] or words
+    return Path(named[-1])
+
+
+def file_of(target: str) -> Path | None:
+    """The file in which an engine of one's own stands; None where a module is named."""
+    if target.startswith(PROGRAM):
+        return _file_in(target.removeprefix(PROGRAM))
+    module = target.rpartition(":")[0]
+    return Path(module) if module.endswith(".py") else None
+
+
 def target_of(engine: EngineLike) -> str:
-    """``FILE.py:Class`` or ``module:Class``, which an engine's own process can import.
+    """``FILE.py:Class``, ``module:Class`` or ``command:PROGRAM ...``, as an engine's own process
+    takes it.
 
     A file alone is given its adapter's class. Raises UsageError.
     """
@@ -36,6 +82,12 @@ def target_of(engine: EngineLike) -> str:
         return _target_of_class(engine)
     if "\0" in engine:
         raise UsageError(f"{engine}: no file has a null character in its name; check the path.")
+    if is_command(engine):
+        try:
+            program_of(engine.removeprefix(PROGRAM))
+        except AdapterError as error:
+            raise UsageError(str(error)) from None
+        return PROGRAM + engine.removeprefix(PROGRAM)
     if engine.endswith(".py"):
         return f"{engine}:{_class_in(Path(engine))}"
     file, _, name = engine.rpartition(":")

@@ -11,7 +11,7 @@ from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Companion, SchemeKey, Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.plan import Engine, EngineChoice
 from omegadot.harness.usage import check_count, check_number, check_setup
 from omegadot.workers.harness_end.process import Answer

@@ -15,9 +15,10 @@ from omegadot.gates.steps.scheme import comparison_keys
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.engines import Engines, outcome_of
-from omegadot.harness.judge import JudgedRun
-from omegadot.harness.judge_engine import shared_rows
-from omegadot.harness.judge_runs import judge_case
+from omegadot.harness.judging.engine import shared_rows
+from omegadot.harness.judging.judged_run import JudgedRun
+from omegadot.harness.judging.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.judging.runs import judge_case
 from omegadot.harness.outcome import (
     EngineCase,
     JudgedCase,
@@ -27,10 +28,14 @@ from omegadot.harness.outcome import (
     tasks_of,
 )
 from omegadot.harness.plan import Engine
-from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
-from omegadot.harness.repeats import request_again
-from omegadot.harness.step_probes import probe_steps
-from omegadot.harness.truth_requests import Companions, case_companions, case_truth, reference_runs
+from omegadot.harness.requests.repeats import request_again
+from omegadot.harness.requests.step_probes import probe_steps
+from omegadot.harness.requests.truth_requests import (
+    Companions,
+    case_companions,
+    case_truth,
+    reference_runs,
+)
 
 
 class Runner:

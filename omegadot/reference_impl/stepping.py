@@ -9,13 +9,13 @@ from itertools import repeat
 import numpy as np
 
 from omegadot.reference_impl.arithmetic.components import in_lanes
-from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import (
     Coordinates,
     canonical,
     from_coordinates,
     to_coordinates,
 )
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array, State, System
 

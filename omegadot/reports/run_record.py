@@ -11,6 +11,7 @@ from pathlib import Path
 from omegadot.reports.notebook import framed
 from omegadot.reports.record import record as stored
 from omegadot.reports.record.record import Record, write_record
+from omegadot.reports.record.whole_file import path_of
 
 _BROKEN = ("crashed", "timeout", "raised")
 
@@ -87,7 +88,7 @@ class RunRecord(Record):
 
         Raises RecordError where the folder holds anything but an earlier record.
         """
-        write_record(self, Path(folder), self.page())
+        write_record(self, path_of(folder), self.page())
         return Path(folder)
 
     def markdown(self) -> str:
@@ -100,7 +101,7 @@ class RunRecord(Record):
         """Write the charts as SVG and PNG, for papers; the paths. Raises RecordError."""
         from omegadot.reports.charts.static.write import write_figures
 
-        return write_figures(self, Path(folder))
+        return write_figures(self, path_of(folder))
 
     def __repr__(self) -> str:
         return f"<omegadot record of {len(self.tasks)} runs: {self.headline}>"
@@ -112,4 +113,4 @@ class RunRecord(Record):
 
 def read_record(folder: str | os.PathLike[str]) -> RunRecord:
     """Read the record that a run has stored in a folder. Raises RecordError."""
-    return RunRecord.of(stored.read_record(Path(folder)))
+    return RunRecord.of(stored.read_record(path_of(folder)))

@@ -48,6 +48,8 @@ def read_bytes(path: Path, file: str, kind: str, largest: int) -> bytes:
 def read_toml(path: Path, file: str) -> dict[str, Any]:
     """The tables of a TOML file, a BOM dropped. file: its name in errors. Raises ScenarioError."""
     content = read_bytes(path, file, "TOML", LARGEST_FILE)
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise ScenarioError(file, None, "UTF-16 text", "save it in UTF-8")
     try:
         return _parse(content.decode("utf-8-sig"), file)
     except UnicodeDecodeError as error:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 import struct
 from typing import Any, BinaryIO
 
@@ -38,7 +39,10 @@ def _pack(value: Any, arrays: list[Array]) -> Any:
         return [_pack(item, arrays) for item in value]
     if isinstance(value, set | frozenset):
         return sorted(value)
-    return value.item() if isinstance(value, np.generic) else value
+    value = value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, float) and not math.isfinite(value):  # JSON has no such number
+        return _pack(np.array(value), arrays)
+    return value
 
 
 def _unpack(value: Any, arrays: list[Array]) -> Any:
@@ -58,7 +62,9 @@ def encode_frame(message: dict[str, Any]) -> bytes:
     """
     arrays: list[Array] = []
     body = _pack(message, arrays)
-    header = json.dumps({"body": body, "shapes": [a.shape for a in arrays]}).encode()
+    header = json.dumps(
+        {"body": body, "shapes": [a.shape for a in arrays]}, allow_nan=False
+    ).encode()
     return struct.pack(">Q", len(header)) + header + b"".join(a.tobytes() for a in arrays)
 
 

@@ -36,23 +36,35 @@ PLACES |= {"releases": 1}
 
 @dataclass(frozen=True)
 class AdverseCase:
-    """A command line, and what is adverse about it."""
+    """A command line, and what is adverse about it. wrong: whether no such path can be used."""
 
     name: str
     arguments: tuple[str, ...]
+    wrong: bool = False
 
 
 def adverse_cases() -> list[AdverseCase]:
     """One case for each option or argument and each value that its kind may meet."""
     commands: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
     return [
-        AdverseCase(f"{command}:{parameter.opts[0]}:{name}", (command, *arguments))
+        AdverseCase(
+            f"{command}:{parameter.opts[0]}:{name}", (command, *arguments), _wrong(parameter, value)
+        )
         for command, parsed in commands.items()
         for parameter in parsed.params
         if not getattr(parameter, "is_flag", False)
         for name, value in _values(parameter)
         for arguments in [_with(command, parameter, value)]
     ]
+
+
+def _wrong(parameter: Any, value: tuple[str, ...]) -> bool:
+    """Whether the file or folder can be none, for whatever command."""
+    kind = parameter.metavar or "NAME"
+    paths = values.FILES | values.FOLDERS
+    return kind in paths and (
+        value[0] == values.TOO_LONG or (kind in values.FILES and value[0] in values.NO_FILES)
+    )
 
 
 def _with(command: str, parameter: Any, value: tuple[str, ...]) -> tuple[str, ...]:

@@ -116,12 +116,14 @@ def adverse_files(folder: Path) -> None:
     (folder / "deep.urdf").write_text("<a>" * 20_000 + "</a>" * 20_000)
 
 
+TOO_LONG = "x" * 300
+NO_FILES = {"loop", "fifo", "/dev/zero", "text/x", "a-folder"}  # neither to read nor to replace
 FILE_VALUES = [
     *("empty", "binary", "latin1", "utf16", "bom", "nulls", "one-line", "deep", "keys", "text"),
     *("json", "parquet", "toml", "a-folder", "record-of-nothing", "fifo", "loop", "dangling"),
-    *("nowhere", "/dev/zero", "/dev/null", "/dev/full", "/proc/self/mem", "x" * 300, "text/x"),
+    *("nowhere", "/dev/zero", "/dev/null", "/dev/full", "/proc/self/mem", TOO_LONG, "text/x"),
 ]
 FOLDER_VALUES = [
     *("text", "fifo", "loop", "a-folder/text/x", "text/x", "/dev/null", "/dev/null/x", "/proc/x"),
-    *("x" * 300, "/", "..", "dangling/x", "", "\0", "/sys/x"),
+    *(TOO_LONG, "/", "..", "dangling/x", "", "\0", "/sys/x"),
 ]

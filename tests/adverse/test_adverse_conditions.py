@@ -115,6 +115,8 @@ def test_a_condition_ends_no_command_in_a_traceback(
     )
     printed = (done.stdout + done.stderr).decode(errors="replace")
     assert done.returncode in (0, 1, 2, 3, 128 + signal.SIGPIPE), printed
+    if "No space left" in printed:  # the system's fault, not the arguments'
+        assert done.returncode == 3, printed
     assert "Traceback" not in printed
     assert "Exception ignored" not in printed
     assert not [name for name in os.listdir(folder) if name.startswith(".")], "left half-written"

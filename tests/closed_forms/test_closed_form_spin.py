@@ -9,8 +9,8 @@ from closed_form_errors import EPS, errors
 from closed_form_taylor import TaylorSeries
 
 from omegadot.reference_impl.closed_forms import closed_form_of, floor, problem_of
-from omegadot.reference_impl.exact_solution import exact_states
 from omegadot.reference_impl.rotations import attitude_angle, quaternion_product, rotate
+from omegadot.reference_impl.solutions.exact_solution import exact_states
 from omegadot.reference_impl.system import Body, Load, State, System
 
 TIMES = np.array([0.0, 1e-3, 0.4, 3.0, 9.0])

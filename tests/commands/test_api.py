@@ -205,3 +205,63 @@ def test_one_or_several_are_taken_in_any_container(folder: Path) -> None:
 def test_exact_beyond_every_digit_is_refused(scenario: str) -> None:
     with pytest.raises(api.UsageError, match="holds no digit"):
         api.exact(scenario, 1e300)
+
+
+@pytest.mark.parametrize("call", [
+    lambda none: api.run(none),
+    lambda none: api.run("sphere", none),
+    lambda none: api.run("sphere", "exact", timesteps=none),
+    lambda none: api.run("sphere", "exact", accuracies=none),
+    lambda none: api.check("exact", scenarios=none),
+    lambda none: api.check("exact", scenarios="sphere", integrators=none),
+    lambda none: api.choose(none, attitude="1deg"),
+    lambda none: api.choose("sphere", none, attitude="1deg"),
+    lambda none: api.schemes(none),
+    lambda none: api.faults(none),
+    lambda none: api.versions("mujoco", ["1.0", "2.0"], scenarios=none, offline=True),
+    lambda none: api.versions("mujoco", ["1.0", "2.0"], integrators=none, offline=True),
+])  # fmt: skip
+def test_an_empty_list_is_no_request_for_everything(call: Any) -> None:
+    with pytest.raises(api.UsageError, match="is empty; name at least one"):
+        call([])
+
+
+@pytest.mark.parametrize("path", [3, "x" * 300])
+@pytest.mark.parametrize("call", [
+    lambda path: api.run("sphere", "exact", out=path),
+    lambda path: api.run("sphere", "exact", exceptions=path),
+    lambda path: api.check("exact", scenarios="sphere", exceptions=path),
+    lambda path: api.choose("sphere", "exact", attitude="1deg", out=path),
+    lambda path: api.score(path, "sphere"),
+    lambda path: api.fit(path),
+    lambda path: api.fit("no.csv", out=path),
+    lambda path: api.report(path),
+    lambda path: api.compare(path, path),
+    lambda path: api.read_record(path),
+])  # fmt: skip
+def test_a_path_that_can_be_none_is_an_error_of_our_own(call: Any, path: Any) -> None:
+    with pytest.raises((api.UsageError, api.RecordError, api.ScenarioError), match=r"\.$"):
+        call(path)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "score no.csv --scenario sphere --detect --omega-bias 1,2,3",
+        "score no.csv --scenario sphere --detect --out here",
+        "run sphere --setup as-shipped --exceptions no.toml",
+        "check exact --scenario sphere --seed 5",
+        "versions mujoco 1.0 2.0 --offline --installer pip",
+        "versions mujoco 1.0 2.0 --offline --bisect energy --jobs 2",
+        "fit no.csv --out fitted",
+    ],
+)
+def test_an_option_that_would_be_ignored_is_refused(
+    line: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["omegadot", *line.split()])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2
+    assert "no.csv" not in (err := capsys.readouterr().err)
+    assert err.count("\n") == 1

@@ -15,11 +15,11 @@ from command_line import FAULTY, QUICK, Result, omegadot, quick_scenario
 
 from omegadot.adapters.mujoco.adapter import MujocoAdapter
 from omegadot.commands.cli import main
-from omegadot.reference_impl.exact_solution import exact_states
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.reference_impl.rotations import attitude_angle, rotate
+from omegadot.reference_impl.solutions.exact_solution import exact_states
 from omegadot.reports.choice.page import draw_choice
-from omegadot.reports.choice.sentences import step_text
+from omegadot.reports.choice.sentences import missed_text, step_text
 from omegadot.scenarios import load_scenario
 
 ATTITUDE, MOMENTUM = 1e-4, 1e-8
@@ -182,6 +182,13 @@ def test_a_body_that_cannot_be_takes_an_option_and_is_named(tmp_path: Path) -> N
     )
     choice = json.loads((tmp_path / "o/choice.json").read_text())
     assert choice["scenarios"][0]["definition"]["body"]["allow_impossible_inertia"] is True
+
+
+def test_what_is_just_missed_differs_in_its_digits() -> None:
+    """It read "1.0e-6, required at most 1.0e-6"."""
+    missed = {"requirement": "energy-drift", "found": 1.04e-6, "limit": 1e-6, "factor": 1.04}
+    text = missed_text({**missed, "unit": "1"})
+    assert text == "energy drift 1.04e-6, required at most 1.00e-6 (off by 1.04x)"
 
 
 def test_nothing_qualifies(tmp_path: Path) -> None:

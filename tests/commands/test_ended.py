@@ -1,5 +1,6 @@
 """What a run leaves when it is ended: its record beside an earlier one, and no process."""
 
+import json
 import os
 import signal
 import subprocess
@@ -9,13 +10,20 @@ from pathlib import Path
 
 import psutil
 import pytest
-from command_line import PROGRAM, omegadot, quick_scenario
+from command_line import PROGRAM, quick_scenario
+from synthetic_record import build
 
+from omegadot.reports.record.record import write_record
+
+# Its children leave its session and its environment, one each.
 SLOW = """
+import subprocess
 from omegadot.adapters.reference import ReferenceAdapter
 
 class Endless(ReferenceAdapter):
     def run(self, *arguments, **more):
+        subprocess.Popen(["sleep", "600"], start_new_session=True)
+        subprocess.Popen(["sleep", "600"], env={})
         open("busy", "w").close()
         while True:
             pass
@@ -31,7 +39,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def begun(folder: Path) -> tuple[subprocess.Popen[str], list[psutil.Process]]:
-    """The command, and its workers, once one of them is busy."""
+    """The command, and its workers with their children, once one of them is busy."""
     running = subprocess.Popen(
         COMMAND,
         cwd=folder,
@@ -57,8 +65,7 @@ def gone(processes: list[psutil.Process]) -> bool:
 
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
 def test_a_signal_writes_what_there_is_beside_an_earlier_record(folder: Path, name: str) -> None:
-    first = omegadot("run", "quick.toml", "--engine", "dart", "--out", "out", folder=folder)
-    assert first.code == 0
+    write_record(build(("sphere",), {"mujoco": {"RK4": 4}}, (0.02,), 4), folder / "out", "<p>")
     before = (folder / "out" / "run.json").read_bytes()
     running, workers = begun(folder)
     number = getattr(signal, name)
@@ -71,12 +78,15 @@ def test_a_signal_writes_what_there_is_beside_an_earlier_record(folder: Path, na
     assert "The earlier record in out is kept: this run was interrupted." in printed
     assert "Traceback" not in printed
     assert (folder / "out" / "run.json").read_bytes() == before
-    assert '"complete": false' in (folder / "out-interrupted" / "run.json").read_text()
+    run = json.loads((folder / "out-interrupted" / "run.json").read_text())
+    assert (run["complete"], run["worker_deaths"]) == (False, [])
     assert gone(workers)
 
 
 def test_workers_die_with_a_harness_that_is_killed(folder: Path) -> None:
-    """Caught: a busy worker, which does not look at its channel, goes on for ever."""
+    """Caught: a busy worker, which does not look at its channel, goes on for ever; its children,
+    which do not die with it.
+    """
     running, workers = begun(folder)
     os.kill(running.pid, signal.SIGKILL)
     running.wait()

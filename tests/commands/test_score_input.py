@@ -71,7 +71,7 @@ def test_bad_rows_are_named(tmp_path, capsys, edit, message):
         (b"", "is empty"),
         (b" \n\n", "is empty"),
         (b"\x89PNG\r\n\x1a\n\0\0\0", "neither CSV nor Parquet"),
-        ("t,wx\n0,1\n".encode("utf-16"), "neither CSV nor Parquet"),
+        ("t,wx\n0,1\n".encode("utf-16"), "UTF-16 text; save it in UTF-8"),
         (b"t,wx,wy,wz\n0,1,\xff,3\n", "not UTF-8 text (byte 0xff in line 2)"),
         (b"PAR1 and no more", "not a readable Parquet file"),
         (b"hello world\nthis is no table\n", "no line of numbers"),

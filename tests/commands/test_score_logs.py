@@ -32,7 +32,9 @@ def written(path, stamps, rates=RATES, head="time,wx,wy,wz"):
 def score(tmp_path, capsys):
     def scored(trace, *arguments):
         out = tmp_path / "out"
-        return run_score(capsys, trace, *MAPPED, "--out", out, "--format", "json", *arguments)
+        # A search for conventions takes no unit, and writes nothing.
+        read = MAPPED[:2] if "--detect" in arguments else (*MAPPED, "--out", out)
+        return run_score(capsys, trace, *read, "--format", "json", *arguments)
 
     return scored
 

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 from score_line import BRICK, INERTIA, START, run_score, runge_kutta, slope, tumble, turns
 
 from omegadot.commands.score.declared import KNOWN
-from omegadot.reference_impl.flight_schemes import FLIGHT_SCHEMES
+from omegadot.reference_impl.flight.schemes import FLIGHT_SCHEMES
 from omegadot.reference_impl.schemes import SCHEMES
 
 STEP, COUNT = 0.1, 100
@@ -181,8 +181,8 @@ def test_every_scheme_has_one_name():
 @pytest.mark.parametrize("sequence", ["ZYX", "XYZ", "ZXZ"])
 def test_angles_of_any_sequence_converge_to_the_exact_motion(sequence):
     from omegadot.commands.score.score import case_given
-    from omegadot.reference_impl.euler_angles import Angles
-    from omegadot.reference_impl.flight_schemes import step_flight
+    from omegadot.reference_impl.flight.euler_angles import Angles
+    from omegadot.reference_impl.flight.schemes import step_flight
 
     case = case_given(BRICK)
     system, start = case.system, case.initial

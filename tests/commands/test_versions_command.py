@@ -238,7 +238,7 @@ def test_an_interpreter_with_another_version_is_not_taken(
         ({"engine": "mujoko", "adapter": None}, "write mujoco"),
         ({"engine": "mujoco", "adapter": None, "package": "own"}, "give --adapter too"),
         ({"releases": ["1.0"]}, "at least two versions"),
-        ({"releases": ["3.0..4.0"]}, "no release for this Python"),
+        ({"releases": ["3.0..4.0"]}, "the cache holds no release that lies there"),
     ],
 )
 def test_wrong_usage_is_one_sentence(tmp_path: Path, more: dict[str, Any], message: str) -> None:

@@ -21,7 +21,7 @@ from omegadot.commands.versions.installer import (
     python_of,
     reason_of,
 )
-from omegadot.commands.versions.release import Span, product_of
+from omegadot.commands.versions.release import Span, product_of, requested_releases
 from omegadot.harness.usage import UsageError
 
 MUJOCO = product_of("mujoco")
@@ -159,6 +159,14 @@ def test_offline_there_is_what_the_cache_has(tmp_path: Path) -> None:
     absent = offline.place("3.7.0")
     assert isinstance(absent, Absent)
     assert "not in the cache" in absent.reason
+    assert isinstance(offline.place("4.0"), Place)  # the same release as 4.0.0
+
+
+def test_offline_the_ends_of_a_range_that_are_not_there_are_named() -> None:
+    wanted, _ = requested_releases(["3.9..3.10.2"], lambda span: ["3.10.0"], ["3.10.0", "4.0.0"])
+    assert wanted == ["3.9", "3.10.0", "3.10.2"]
+    with pytest.raises(UsageError, match="the cache holds no release that lies there"):
+        requested_releases(["1.0..2.0"], lambda span: [], ["3.10.0"])
 
 
 def test_a_cache_that_cannot_be_made_is_wrong_usage(tmp_path: Path) -> None:

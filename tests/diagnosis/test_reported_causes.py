@@ -19,8 +19,8 @@ from omegadot.gates.case import Case, Sweep
 from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import random_states
 from omegadot.harness.arguments import case_of
-from omegadot.reference_impl.body_motion import attitude_motion
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.one_body.body_motion import attitude_motion
 from omegadot.reference_impl.rotations import quaternion_product, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, State

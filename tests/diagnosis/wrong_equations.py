@@ -241,7 +241,10 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "products": (products_in_another_order, "the products of inertia are in another order"),
     "mass-float32": (mass_in_single_precision, "the mass is kept in single precision"),
     "spatial": (spatial, "the linear acceleration is the spatial one"),
-    "fast": (no_gyroscopic_term_when_fast, "there, the gyroscopic term is missing"),
+    "fast": (
+        no_gyroscopic_term_when_fast,
+        "the gyroscopic term is missing: it is wrong only where |omega| is above",
+    ),
     "row": (gyroscopic_without_x, "of the gyroscopic term the x component is missing"),
     "world-omega": (gyroscopic_of_world_omega, "formed with omega in world axes"),
     "constant": (constant_rate, "omega-dot has a constant (0, 0, 0.002) rad/s^2 in body axes"),

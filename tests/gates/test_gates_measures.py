@@ -139,8 +139,8 @@ def test_rounding_grows_with_steps_and_growth() -> None:
     np.testing.assert_allclose(found["omega"], theta, **close)
     np.testing.assert_allclose(found["attitude"], theta, **close)
     np.testing.assert_allclose(found["position"], reach, **close)
-    turning = 2 * 2.5 * 2.0 * theta
-    energy = (turning * 2.0 + 2.0 * 5.0 * speed + 2.0 * 3.0 * reach) / 30.0
+    turning = 2 * 2.5 * 2.0 * theta * (1 + theta)
+    energy = (turning * 2.0 + 2.0 * (5.0 + speed) * speed + 2.0 * 3.0 * reach) / 30.0
     np.testing.assert_allclose(found["energy"], energy, **close)
     np.testing.assert_allclose(found["angular_momentum"], turning / 5.0, **close)
     np.testing.assert_allclose(found["linear_momentum"], 2.0 * speed / 10.0, **close)
@@ -168,8 +168,30 @@ def test_rounding_of_a_pivoted_body_takes_its_lever_along() -> None:
     np.testing.assert_allclose(
         found["linear_momentum"], 2.0 * speed / yardstick.sizes["linear_momentum"], **close
     )
-    turning = 2 * yardstick.scale.largest * 2.0 * theta
-    arm = 2.0 * (0.5 * speed + yardstick.speed * reach)
+    turning = 2 * yardstick.scale.largest * 2.0 * theta * (1 + theta)
+    arm = 2.0 * (0.5 * speed + (yardstick.speed + speed) * reach)
     np.testing.assert_allclose(
         found["angular_momentum"], (turning + arm) / yardstick.sizes["angular_momentum"], **close
     )
+
+
+@pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
+def test_invariants_are_bounded_wherever_the_state_is(size: float) -> None:
+    """Of a motion that has blown up, too: its energy goes with the square of what it is off by."""
+    yardstick = Yardstick(DOWN, TIMES, STATES)
+    theta, speed, reach = np.full(3, size), np.full(3, 7.0 * size), np.full(3, 5.0 * size)
+    along = np.array([0.0, 0.0, 1.0])
+    off = replace(
+        STATES,
+        angular_velocity=STATES.angular_velocity + size * yardstick.rate * along,
+        linear_velocity=STATES.linear_velocity + 7.0 * size * along,
+        position=STATES.position + 5.0 * size * along,
+    )
+    for channel, bound in yardstick.invariant_round_off(theta, speed, reach).items():
+        assert np.all(yardstick.distance(channel, off, STATES) <= bound * (1.0 + 1e-6)), channel
+
+
+def test_squares_that_overflow_have_no_bound() -> None:
+    yardstick = Yardstick(DOWN, TIMES, STATES)
+    steps, growth = np.array([0.0, 10.0, 40.0]), np.array([1.0, 1e200, 1e300])
+    assert np.isinf(yardstick.round_off(0.1, steps, growth)["energy"][1:]).all()

@@ -16,9 +16,9 @@ from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.case import Sweep
 from omegadot.gates.rows import Row
 from omegadot.gates.steps.restart import refused, restart_of, row
-from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.scheme import every_channel
+from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import State
 

@@ -78,7 +78,7 @@ def test_errors_of_a_trajectory() -> None:
             findings[channel].note,
         )
         assert (found["error_end"].value, found["error_end"].verdict) == (4.0, "info")
-        assert (found["unexplained_max"].value, found["unexplained_max"].bound) == (2.5, 0.9)
+        assert (found["unexplained_max"].value, found["unexplained_max"].bound) == (2.5, 1.8)
         assert found["unexplained_max"].verdict == "info"
 
 

@@ -76,9 +76,7 @@ def test_a_lever_is_the_difference_of_two_places() -> None:
 
 
 def test_a_pivoted_body_has_no_bias_of_translation() -> None:
-    weight = np.linalg.norm(
-        np.cross([0.0, -3.0, 2.0], [0.0, 0.0, -20.0]) - 0.5 * np.array([0, 0, 2])
-    )
+    weight = np.linalg.norm(np.cross([0.0, -3.0, 2.0], [0.0, 0.0, -20.0])) + 0.5 * 2.0
     expected = 54.0 * (4.0 + 5.0) + weight + 2.0 * 5.0 * (10.0 + 6.0)
     assert torque_size(PIVOTED, STATE, ACCELERATION) == pytest.approx(expected, rel=16 * EPS)
 
@@ -100,3 +98,13 @@ def test_a_lever_between_two_places_in_the_world_is_off_by_a_rounding_of_them() 
         assert linear_size(weightless, there, rest) == EPS * place * turning
         assert linear_size(weightless, there, rest, 2.0**-23) == 2.0**-23 * place * turning
     assert turning > 0.0
+
+
+def test_loads_that_cancel_count_each() -> None:
+    """At its terminal rate a body has no torque left, but the roundings of damping and drive."""
+    load = Load(damping=np.array(4.0), torque_world=np.array([0.0, 0.0, 12.0]))
+    spinning = State(np.array([1.0, 0, 0, 0]), np.array([0, 0, 3.0]), np.zeros(3), np.zeros(3))
+    still = Acceleration(np.zeros(3), np.zeros(3))
+    ball = System((Body(np.array(1.0), np.zeros(3), 1e-3 * np.eye(3)),), load)
+    size = float(torque_size(ball, spinning, still))
+    assert size == pytest.approx(12.0 + 12.0 + 1e-3 * 9.0)

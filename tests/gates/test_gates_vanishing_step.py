@@ -131,6 +131,13 @@ def test_velocities_kept_as_momenta_are_rounded_as_such() -> None:
     assert set(reported(on, requested, omega=1.01)) == {"omega"}
 
 
+def test_a_step_that_does_not_vanish_is_reported_as_one() -> None:
+    on = system(1.0, 2.0, 3.0)
+    requested = probe(on, [0.4, -1.0, 0.7], [1.2, 0.3, -0.5])
+    notes = reported(on, requested, kept=lambda w: w + np.array([0.0, 0.25, 0.0]))
+    assert notes["omega"] == "as the step vanishes, it still changes by 2.5e-01 rad/s"
+
+
 def test_omega_put_back_on_its_ellipsoids_is_open_in_one_direction_only() -> None:
     # Moments that differ by 1e-6: the ellipsoids of energy and momentum nearly coincide.
     on = system(1.0, 1.0 + 1e-6, 1.0 + 3e-6)

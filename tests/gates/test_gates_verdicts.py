@@ -84,7 +84,8 @@ def test_a_scheme_explains_at_every_sample() -> None:
     found = judge(evidence(error, BOUND), "euler", 1)
     assert found == Finding("explained", "explained by euler, to 1.0e-11")
     for place in range(3):
-        left = BOUND.copy()
+        left = 2.0 * BOUND  # the engine's rounding and the reference's
+        assert judge(evidence(error, left, None, SLOW, SLOW), "euler", 1).kind == "explained"
         left[place] *= 1.01
         assert judge(evidence(error, left, None, SLOW, SLOW), "euler", 1).kind == "unexplained"
 
@@ -200,3 +201,12 @@ def test_what_is_not_known_is_unresolved() -> None:
 def test_what_is_conserved_may_not_drift_at_any_order() -> None:
     found = by_order(VANISHED, declared=None)
     assert found == Finding("unexplained", "declared conserved, and it drifts")
+
+
+def test_an_unknown_scheme_may_round_the_momentum() -> None:
+    """An error that grows as the step shrinks is no scheme's, if it is larger than all rounding."""
+    grows = ObservedOrder(-1.6, False)
+    found = evidence([0.0, 1e-9, 1e-9], None, None, grows)
+    assert judge(found, None, 3).kind == "unsettled"
+    assert judge(replace(found, of_momentum=np.full(3, 2e-9)), None, 3).kind == "unresolved"
+    assert judge(replace(found, of_momentum=np.full(3, 5e-10)), None, 3).kind == "unsettled"

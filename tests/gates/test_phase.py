@@ -13,8 +13,8 @@ from omegadot.reference_impl.closed_forms import problem_of
 from omegadot.reference_impl.closed_forms.digits import many_digits
 from omegadot.reference_impl.closed_forms.euler_poinsot import constants_of
 from omegadot.reference_impl.closed_forms.free_rotation import inertia_and_omega
-from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.rotations import turn_in_body
+from omegadot.reference_impl.solutions.exact_solution import exact_solution
 from omegadot.reference_impl.system import State
 
 

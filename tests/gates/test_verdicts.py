@@ -52,7 +52,7 @@ def test_rounding_needs_no_other_reason() -> None:
 
 def test_the_declared_scheme_explains_its_own_error() -> None:
     assert kind(LARGE, BOUND / 2, (None, None), 1) == "explained"
-    assert kind(LARGE, 2 * BOUND, (ObservedOrder(0.0, True),) * 2, 1) == "unexplained"
+    assert kind(LARGE, 3 * BOUND, (ObservedOrder(0.0, True),) * 2, 1) == "unexplained"
 
 
 def test_an_error_of_the_declared_order_is_consistent() -> None:

@@ -12,11 +12,11 @@ from omegadot.gates.truth import SchemeKey, Truth
 from omegadot.harness import in_process
 from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
-from omegadot.harness.judge_runs import judge_case
+from omegadot.harness.judging.judged_run import JudgedRun
+from omegadot.harness.judging.runs import judge_case
 from omegadot.harness.outcome import EngineCase
 from omegadot.harness.plan import Engine, EngineChoice
-from omegadot.harness.truth_requests import case_companions, case_truth
+from omegadot.harness.requests.truth_requests import case_companions, case_truth
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.scenarios import load_builtin
 from omegadot.workers.harness_end.process import Answer

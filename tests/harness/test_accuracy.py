@@ -36,13 +36,13 @@ from omegadot.gates.states.equation import EvaluationStates, evaluation_states_o
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
 from omegadot.harness.in_process import driver_of
-from omegadot.harness.judge import JudgedRun
-from omegadot.harness.judge_runs import judge_case
+from omegadot.harness.judging.judged_run import JudgedRun
+from omegadot.harness.judging.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.judging.runs import judge_case
 from omegadot.harness.random_cases import random_case
-from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
-from omegadot.harness.repeats import request_again
-from omegadot.harness.step_probes import probe_steps
-from omegadot.harness.truth_requests import case_truth
+from omegadot.harness.requests.repeats import request_again
+from omegadot.harness.requests.step_probes import probe_steps
+from omegadot.harness.requests.truth_requests import case_truth
 from omegadot.scenarios import load_builtin
 
 pytestmark = pytest.mark.no_cover  # its lines are covered by others

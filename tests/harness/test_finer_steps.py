@@ -17,7 +17,7 @@ from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS, Declared, MeasuredRun, findings_of
 from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN
-from omegadot.harness.judge_runs import _finer_steps_decide, _undetermined
+from omegadot.harness.judging.runs import _finer_steps_decide, _undetermined
 from omegadot.reference_impl.system import Array
 
 BOUND = 1e-12

@@ -14,7 +14,7 @@ from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.detect import Nameless, judge
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.harness.arguments import case_of
-from omegadot.harness.no_solution import reason_without_a_solution
+from omegadot.harness.judging.no_solution import reason_without_a_solution
 from omegadot.reference_impl.system import State
 from omegadot.scenarios import scenario
 from omegadot.workers.harness_end.process import Answer

@@ -20,8 +20,8 @@ from omegadot.commands.faults.catalogue import FAULTS
 from omegadot.commands.faults.detect import Judgement, Nameless, judge
 from omegadot.commands.faults.prepared import Pool, Prepared
 from omegadot.gates.case import Sweep
-from omegadot.harness.repeats import OTHERS, short_sweep
-from omegadot.harness.siblings import siblings_of
+from omegadot.harness.requests.repeats import OTHERS, short_sweep
+from omegadot.harness.requests.siblings import siblings_of
 from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.system import Body, System
 from omegadot.scenarios.random_traits import BLOCK

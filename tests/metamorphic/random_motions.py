@@ -18,11 +18,11 @@ from omegadot.gates.bounds.scales import (
 )
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import SchemeKey, scheme_key
-from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.inertia import inertia_of_moments
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import normalize, rotation_matrix
+from omegadot.reference_impl.solutions.companion import Steps, companion
 from omegadot.reference_impl.system import Acceleration, Body, Load, State, System
 
 ROTATION = ("omega", "attitude", "angular_momentum")

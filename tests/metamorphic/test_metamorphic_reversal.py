@@ -16,9 +16,9 @@ from test_metamorphic_equation import engine
 
 from omegadot.gates.bounds.measures import Yardstick
 from omegadot.gates.bounds.scales import EPS
-from omegadot.reference_impl.exact_solution import exact_solution
-from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.solutions.exact_solution import exact_solution
+from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.system import State, System
 
 FRICTIONLESS = Wanted(damped=False)

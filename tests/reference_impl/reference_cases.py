@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import strategies as st
 
-from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import Coordinates, from_coordinates, to_coordinates
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.rotations import exp_quaternion, normalize, rotation_matrix
 from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array, Body, Load, State, System

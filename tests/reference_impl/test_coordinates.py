@@ -21,7 +21,6 @@ from reference_cases import (
     turned,
 )
 
-from omegadot.reference_impl.body_motion import body_motion, motion_over
 from omegadot.reference_impl.coordinates import (
     COORDINATES,
     Coordinates,
@@ -34,9 +33,10 @@ from omegadot.reference_impl.coordinates import (
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import acceleration_of, forward_dynamics
+from omegadot.reference_impl.one_body.body_motion import body_motion, motion_over
 from omegadot.reference_impl.rotations import attitude_angle, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.series import solve_series
+from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 

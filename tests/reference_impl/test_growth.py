@@ -10,10 +10,10 @@ from reference_cases import DAMPED, DRIVEN, EPS, TOP, in_long_double, rows, star
 from scipy.linalg import expm
 
 from omegadot.reference_impl.cross_product import skew
-from omegadot.reference_impl.growth import changes, growth_along
 from omegadot.reference_impl.rotations import turn_in_body
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.series import solve_series
+from omegadot.reference_impl.solutions.growth import changes, growth_along
+from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from reference_cases import EPS, one_step, start, system
 
-from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array
 

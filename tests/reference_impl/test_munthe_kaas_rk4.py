@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from reference_cases import EPS, one_step, start, system
 
-from omegadot.reference_impl.body_configurations import rate, rate_to_second_order
+from omegadot.reference_impl.one_body.body_configurations import rate, rate_to_second_order
 from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product, rotation_between
 from omegadot.reference_impl.schemes import SCHEMES
 

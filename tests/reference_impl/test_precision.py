@@ -20,10 +20,10 @@ from omegadot.reference_impl.arithmetic.precision import (
     in_doubles,
     to_double,
 )
-from omegadot.reference_impl.exact_solution import ExactSolution, exact_solution
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
-from omegadot.reference_impl.series import solve_series
+from omegadot.reference_impl.solutions.exact_solution import ExactSolution, exact_solution
+from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.symmetric import inverse
 from omegadot.reference_impl.system import Acceleration, Body, Load, State, System
 from omegadot.scenarios import builtin_names, load_builtin

@@ -27,7 +27,7 @@ from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
 from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.scheme import CHANNELS, kinds_of
-from omegadot.reference_impl.series import solve_series
+from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 

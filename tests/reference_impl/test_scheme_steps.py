@@ -11,12 +11,6 @@ from hypothesis import strategies as st
 from reference_cases import EPS, one_step, start, states, system, systems, turned
 from scipy.spatial.transform import Rotation
 
-from omegadot.reference_impl.body_configurations import (
-    cayley,
-    rate_to_second_order,
-    retract_attitude,
-)
-from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import (
     COORDINATES,
     Coordinates,
@@ -27,6 +21,12 @@ from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.one_body.body_configurations import (
+    cayley,
+    rate_to_second_order,
+    retract_attitude,
+)
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.jacobian import (

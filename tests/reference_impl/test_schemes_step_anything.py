@@ -11,8 +11,8 @@ import pytest
 from reference_cases import DRIVEN, EPS, TOP, start
 
 import omegadot
-from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import to_coordinates
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.schemes import SCHEMES, Motion
 from omegadot.reference_impl.stepping import step_through as step_and_time
 from omegadot.reference_impl.system import Array

@@ -7,7 +7,6 @@ import pytest
 from many_digits import exact_states
 from reference_cases import DAMPED, DRIVEN, EPS, FREE, TOP, rows, start, system, turned
 
-from omegadot.reference_impl import series
 from omegadot.reference_impl.arithmetic.precision import extended, to_double, to_extended
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
@@ -19,7 +18,8 @@ from omegadot.reference_impl.rotations import (
     quaternion_product,
     rotation_matrix,
 )
-from omegadot.reference_impl.series import solve_extended, solve_series
+from omegadot.reference_impl.solutions import series
+from omegadot.reference_impl.solutions.series import solve_extended, solve_series
 from omegadot.reference_impl.system import Array, State, System
 from omegadot.scenarios import builtin_names, load_builtin
 

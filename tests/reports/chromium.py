@@ -59,6 +59,7 @@ class Chromium:
         self._buffer, self._number, self._session = b"", 0, None
         self.messages: list[str] = []
         self.requests: list[str] = []
+        self._untouched: Path | None = None
         try:
             self._start()
         except BaseException:
@@ -121,12 +122,29 @@ class Chromium:
 
     def open(self, path: Path, width=1280, height=6000, dark=False):
         """Load a file in a window of this size, in the light or in the dark."""
-        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
-        self.call("Emulation.setDeviceMetricsOverride", **size)
+        self._untouched = None
+        self.messages.clear()
+        self.requests.clear()
+        self.resize(width, height)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", features=[scheme])
         self.call("Page.navigate", url=path.as_uri())
         self.wait("document.readyState === 'complete'")
+
+    def untouched(self, path: Path, ready: str, acting: bool, **size):
+        """A page as it was loaded: again only if the test before acted on it, or had another.
+
+        acting: whether what comes does so.
+        """
+        if self._untouched != path:
+            self.open(path, **size)
+            self.wait(ready)
+        self._untouched = None if acting else path
+
+    def resize(self, width, height):
+        """Another window, with the page that is loaded."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.call("Emulation.setDeviceMetricsOverride", **size)
 
     def evaluate(self, script):
         """The value of an expression, awaited where it is a promise."""

@@ -37,9 +37,7 @@ def path(tmp_path_factory):
 
 @pytest.fixture
 def page(browser, path):
-    browser.messages.clear()
-    browser.open(path)
-    browser.wait(DRAWN)
+    browser.untouched(path, DRAWN, acting=True)
     yield browser
     assert browser.messages == []
 
@@ -260,13 +258,20 @@ def test_paper_gets_every_scenario_with_its_charts_and_the_bodies(browser, path)
     browser.call("Emulation.setEmulatedMedia", media="print")
     hidden = "[...document.querySelectorAll('.still')].filter((s) => !s.clientWidth).length"
     assert browser.evaluate(hidden) == 0
-    assert browser.evaluate("document.querySelector('.controls').offsetHeight") == 0
+    for what in (".controls", "#view", ".hint"):  # nothing to click, no empty places
+        assert browser.evaluate(f"document.querySelector('{what}').offsetHeight") == 0
+    assert "click" not in browser.evaluate("document.body.innerText")
     browser.call("Emulation.setEmulatedMedia", media="")
     browser.evaluate("dispatchEvent(new Event('afterprint'))")
     assert browser.evaluate(charts) == CHARTS
     width = "document.querySelector('.chart .main-svg')?.clientWidth"
     browser.evaluate("document.querySelector('.chart').scrollIntoView()")
     browser.wait(f"{width} > 21 * 16")
+    # Charts that show what their reader selected are printed as they are.
+    browser.evaluate("document.getElementById('shown').value = 'all'")
+    browser.evaluate(
+        "document.getElementById('shown').dispatchEvent(new Event('change', {bubbles: true}))"
+    )
     browser.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert browser.evaluate(width) == 21 * 16
     browser.evaluate("dispatchEvent(new Event('afterprint'))")

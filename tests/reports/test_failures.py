@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -42,6 +43,19 @@ def test_a_failing_engine_is_one_sentence(record: Record) -> None:
         "times its bound (3 of 6 runs fail). Likely cause: the gyroscopic term is missing."
     )
     assert summarise(record).failures == ()
+
+
+def test_the_failing_gate_stands_beside_its_engine_with_its_number(record: Record) -> None:
+    """Caught: a failing cell that shows a figure which passes, and no other."""
+    found = failing(record)
+    text = "equation gate: omega-dot residual 2.0e-3, 2.0e10 times its bound"
+    failed = {key: cell.failed for key, cell in summarise(found).cells.items() if cell.failed}
+    assert [(name, column.engine) for name, column in failed] == [("sphere", "dart")]
+    assert next(iter(failed.values())).startswith(text)
+    page = draw_page(found)
+    (beside,) = re.findall(r'<span class="failed">(.*?)</span>', page)
+    assert beside.replace("\u2060", "").startswith(text)
+    assert page.count('<span class="gate">equation</span>') == 1
 
 
 def test_a_cause_that_is_not_known_is_not_named(record: Record) -> None:

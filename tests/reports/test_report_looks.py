@@ -8,6 +8,7 @@ import pytest
 from synthetic_record import INTEGRATORS, engine_entry
 
 from omegadot.reports.charts.palette import COLOURS, INK, colours, dashes
+from omegadot.reports.page.page import draw_page
 
 CSS = files("omegadot.reports.page").joinpath("templates", "report.css").read_text()
 
@@ -95,3 +96,13 @@ def test_a_scheme_is_a_dash_and_an_engine_never_repeats_one():
     assert found["mujoco", "Euler"] == found["reference", "semi-implicit-euler"] == ""
     assert found["mujoco", "RK4"] == found["reference", "lie-rk4"] == found["twins", "RK4"]
     assert len({dash for (engine, _), dash in found.items() if engine == "twins"}) == 4
+
+
+def test_no_label_of_a_picture_is_cut(record):
+    """Caught: a tick at the very end of an axis, half of whose label lies outside."""
+    page = draw_page(record)
+    labels = re.findall(r'<text x="(\d+)" y="\d+">([^<]*)</text>', page)
+    assert "10⁻¹³" in {text for _, text in labels}
+    # At 11 px a figure is 7 px wide at most, a raised one 5 px.
+    widths = {text: sum(5 if c in "⁰¹²³⁴⁵⁶⁷⁸⁹⁻" else 7 for c in text) for _, text in labels}
+    assert all(int(x) + widths[text] / 2 <= 440 for x, text in labels)

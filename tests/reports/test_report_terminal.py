@@ -25,12 +25,12 @@ def row(text, name):
     return next(line for line in text.splitlines() if line.startswith(name))
 
 
-@pytest.mark.parametrize(("engines", "width"), [(4, 100), (5, 120)])
+@pytest.mark.parametrize(("engines", "width"), [(4, 132), (5, 160)])
 def test_all_three_numbers_fit_below_their_headings(engines, width):
     some = dict(list(FIVE.items())[:engines])
     text = printed(build(NAMES, engines=some), width)
-    assert row(text, "sphere").count("✓ 6e-15 5e-3 1e-2") == engines
-    assert text.count("resid mom. att.") == engines
+    assert row(text, "sphere").count("✓ 6e-15    5e-3  1e-2") == engines
+    assert text.count("residual drift attitude") == engines
     assert max(map(len, text.splitlines())) <= width
 
 
@@ -41,12 +41,26 @@ def test_verdicts_survive_a_narrow_terminal(width):
     assert max(map(len, text.splitlines())) <= width
 
 
+def test_where_one_number_fits_it_is_named_at_the_left():
+    text = printed(build(NAMES, engines=FIVE), 80)
+    assert row(text, "sphere").count("✓ 6e-15 ") == 5
+    assert text.splitlines()[1].rstrip() == "omega-dot residual"
+
+
+def test_runs_of_the_yardsticks_are_counted_apart():
+    text = printed(build(NAMES, engines=dict(list(FIVE.items())[:2])), 120)
+    assert "12 runs: 12 pass; 12 runs of exact and reference: 12 pass" in text
+    alone = printed(build(NAMES, engines=dict(list(FIVE.items())[:1])), 120)
+    assert "12 runs: 12 pass\n" in alone
+    assert " of exact and reference" not in alone
+
+
 def test_piped_output_is_plain_and_whole(capsys, record):
     print_summary(record)
     text = capsys.readouterr().out
     assert "\x1b" not in text
     assert row(text, "sphere").count("3e-15") == 3
-    assert "30 runs: 30 pass" in text
+    assert "18 runs: 18 pass; 12 runs of exact and reference: 12 pass" in text
     assert "Both engines agree" in text
 
 

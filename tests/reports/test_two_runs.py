@@ -100,6 +100,17 @@ def test_rounding_on_either_machine_is_no_change(seed: int) -> None:
     assert not inside.better
 
 
+def test_a_version_that_changed_is_listed_once(base) -> None:
+    """It is the package's and the engine's; that of another package stands by itself."""
+    was, now = copy.deepcopy(base), copy.deepcopy(base)
+    for record, version in ((was, "3.9.0"), (now, "3.10.0")):
+        record.run["versions"] = {"mujoco": version, "numpy": version}
+        for engine in record.run["engines"]:
+            engine["version"] = version if engine["name"] == "mujoco" else engine["version"]
+    listed = [one.what for one in compare_records(was, now).settings]
+    assert listed == ["version of numpy", "mujoco version"]
+
+
 @pytest.mark.parametrize(("times", "worse", "better"), [(2.1, 1, 0), (1.9, 0, 0), (-2.1, 0, 1)])
 def test_a_figure_beyond_both_bounds_is_a_change(base, times, worse, better) -> None:
     moved = edited(base, value=value_of(base) + times * BOUND)
@@ -134,10 +145,15 @@ def test_a_bound_that_allows_everything_holds_nothing(base) -> None:
     assert not compare_records(base, loose).regressed
 
 
-@pytest.mark.parametrize("now", ["fail", "declared", "info"])
-def test_a_verdict_that_turned_worse_is_a_regression_within_the_band(base, now) -> None:
+@pytest.mark.parametrize(
+    ("now", "words"),
+    [("fail", "fails"), ("declared", "fails as declared"), ("info", "not judged")],
+)
+def test_a_verdict_that_turned_worse_is_a_regression_within_the_band(base, now, words) -> None:
     found = compare_records(base, edited(base, verdict=now))
     assert [(c.was, c.now, c.moved) for c in found.worse] == [("pass", now, False)]
+    assert f"passes → {words}" in as_text(found)
+    assert "_" not in found.worse[0].what
     back = compare_records(edited(base, verdict=now), base)
     assert not back.regressed
     assert len(back.better) == 1

@@ -1,14 +1,18 @@
 """What is replaced: a file of the same kind that omegadot wrote, and nothing else."""
 
 import os
+import tempfile
 from pathlib import Path
 
 import pytest
 
 from omegadot.commands.report.report import report
-from omegadot.reports.record.record import FILES, unfinished_name, write_record
+from omegadot.commands.run.result import result_of
+from omegadot.reports.record.interrupted import place_of_interrupted
+from omegadot.reports.record.record import FILES, Record, check_folder, read_record, write_record
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.record.whole_file import PAGE_MARK, write_whole
+from omegadot.reports.run_record import RunRecord
 
 PAGE = f"<!doctype html>{PAGE_MARK} report</title>"
 
@@ -65,10 +69,62 @@ def test_a_report_does_not_destroy_its_record(tmp_path: Path, record) -> None:  
     assert {name: (folder / name).read_bytes() for name in FILES} == before
 
 
-def test_an_interrupted_run_has_a_name_of_its_own(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]
+def interrupted(record: Record, finished: int) -> Record:
+    """The same, interrupted after so many tasks."""
+    tasks = [
+        task if k < finished else {**task, "outcome": "interrupted", "gates": {}}
+        for k, task in enumerate(record.run["tasks"])
+    ]
+    return Record(
+        {**record.run, "complete": False, "tasks": tasks}, record.metrics, record.trajectories
+    )
+
+
+def test_one_interrupted_run_is_kept_beside_a_record(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]
+    """Caught: folders that pile up, and a longer interrupted run that a shorter one replaces."""
+    folder, beside = tmp_path / "run", tmp_path / "run-interrupted"
+    short, long = interrupted(record, 1), interrupted(record, 2)
+
+    def place(one: Record) -> Path | None:
+        found, note = place_of_interrupted(one.run, folder)
+        assert (note == "") == (found == folder)
+        return found
+
+    assert place(short) == folder
+    write_record(short, folder, PAGE)
+    assert place(short) == place(long) == folder
+    write_record(long, folder, PAGE)
+    assert (place(short), place(long)) == (beside, folder)
+    write_record(record, folder, PAGE)
+    assert place(long) == beside
+    write_record(long, beside, PAGE)
+    assert (place(short), place(long)) == (None, beside)
+    write_record(record, beside, PAGE)
+    assert place(long) is None
+
+
+def test_a_record_in_a_record_is_refused_before_the_run(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]
+    outer, inner = tmp_path / "run", tmp_path / "run" / "a" / "sub"
+    write_record(record, outer, PAGE)
+    with pytest.raises(RecordError, match=r"lies in the record .*run, which no run could"):
+        check_folder(inner)
+    assert sorted(os.listdir(outer)) == sorted(FILES)
+    write_record(record, tmp_path / "new" / "sub", PAGE)
+    with pytest.raises(RecordError, match="new: holds 'sub', which is another record"):
+        check_folder(tmp_path / "new")
+
+
+def test_a_shorter_interrupted_run_is_kept_out_of_the_way(  # type: ignore[no-untyped-def]
+    tmp_path: Path, record, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Caught: a run that finds no place beside longer ones, and is lost."""
+    monkeypatch.setattr(RunRecord, "page", lambda _: PAGE)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     folder = tmp_path / "run"
-    assert unfinished_name(folder) == folder
-    for name in ("run", "run-interrupted", "run-interrupted-2"):
-        write_record(record, tmp_path / name, PAGE)
-        assert not unfinished_name(folder).exists()
-        assert unfinished_name(folder).name.startswith("run-interrupted")
+    write_record(record, folder, PAGE)
+    write_record(interrupted(record, 2), tmp_path / "run-interrupted", PAGE)
+    result = result_of(RunRecord.of(interrupted(record, 1)), (), folder)
+    assert result.folder is not None
+    assert not read_record(result.folder).run["complete"]
+    assert "interrupted after 2 tasks, this one after 1." in result.note
+    assert result.note.endswith(f"This run's record is in {result.folder}.")

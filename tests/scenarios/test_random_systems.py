@@ -9,8 +9,8 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
+from omegadot.reference_impl.solutions.exact_solution import exact_solution
 from omegadot.scenarios import ScenarioError, scenario, scenario_of
 from omegadot.scenarios.pairs import covering_rows
 from omegadot.scenarios.random_systems import random_names, random_scenario

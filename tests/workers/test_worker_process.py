@@ -2,6 +2,7 @@
 
 import os
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -97,6 +98,14 @@ def test_a_death_between_requests_is_counted() -> None:
         time.sleep(0.01)
     worker.finish()
     assert worker.deaths == ["ended by signal 9 (SIGKILL)"]
+
+
+def test_what_the_harness_ends_is_no_death() -> None:
+    worker = worker_of(PRINT.format(text=WELCOME) + "time.sleep(3600)", 60.0)
+    worker.start()
+    threading.Timer(0.1, worker.stop).start()
+    assert worker.request("model").outcome == "crashed"
+    assert worker.deaths == []
 
 
 def test_peak_memory_is_the_workers_own_and_holds_what_it_gave_back() -> None:

@@ -8,8 +8,8 @@ import numpy as np
 
 from omegadot.adapters.protocol import Description, Integrator, Trajectory, UnsupportedError
 from omegadot.adapters.reference.adapter import ReferenceAdapter
-from omegadot.reference_impl.exact_solution import exact_states
-from omegadot.reference_impl.series import solve_series
+from omegadot.reference_impl.solutions.exact_solution import exact_states
+from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import State
 

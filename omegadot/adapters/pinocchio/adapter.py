@@ -36,6 +36,8 @@ CONVENTIONS = (
     "a pivoted body has a spherical joint at the pivot: its velocity is omega in body axes",
     "no stepper: the reference's schemes step pinocchio.aba (convention LOCAL) and "
     "pinocchio.integrate in these coordinates",
+    "computeABADerivatives works about the world's origin and loses digits with the distance from "
+    "it: its result does not depend on the place, so a free body is put at the origin for it",
     "no damping inside aba: -damping * omega and the applied torques are added to the joint torque "
     "at every evaluation",
 )

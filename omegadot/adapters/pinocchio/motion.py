@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from omegadot.reference_impl.arithmetic.components import rotated
-from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL
+from omegadot.reference_impl.one_body.body_configurations import ATTITUDE, SPATIAL
 from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.system import Array, Load
 
@@ -50,14 +50,23 @@ def joint_motion(pin: Any, model: Any, load: Load) -> Motion:
     parts["retract"] = partial(pin.integrate, model)
     parts["normalize"] = partial(pin.normalize, model)
     parts["coordinate_rate"] = _coordinate_rate
-    aba, derivatives, damping = pin.aba, pin.computeABADerivatives, float(load.damping)
+    aba, damping = pin.aba, float(load.damping)
+
+    def derivatives(q: Array, v: Array, torque: Any) -> Any:
+        """Pinocchio's, of the body at the world's origin: it works them out about that point, and
+        of a body far from it loses digits. They do not depend on the place.
+        """
+        if load.pivot is None:
+            q = q.copy()
+            q[:3] = 0.0
+        return pin.computeABADerivatives(model, data, q, v, torque)
 
     def steady(q: Array, v: Array) -> Array:
         found: Array = aba(model, data, q, v, torque)
         return found
 
     def steady_jacobian(q: Array, v: Array, _: Array | None) -> tuple[Array, Array]:
-        by_v: Array = derivatives(model, data, q, v, torque)[1]
+        by_v: Array = derivatives(q, v, torque)[1]
         return data.ddq, by_v
 
     if not callable(torque):
@@ -68,7 +77,7 @@ def joint_motion(pin: Any, model: Any, load: Load) -> Motion:
         return found
 
     def jacobian(q: Array, v: Array, _: Array | None) -> tuple[Array, Array]:
-        _, by_v, inverse_mass = derivatives(model, data, q, v, torque(q, v))
+        _, by_v, inverse_mass = derivatives(q, v, torque(q, v))
         if damping:
             by_v = by_v.copy()
             by_v[:, -3:] -= damping * inverse_mass[:, -3:]

@@ -11,10 +11,10 @@ from omegadot.adapters.protocol import (
     Trajectory,
     UnsupportedError,
 )
-from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, Array, Body, State, System

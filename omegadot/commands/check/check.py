@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from omegadot.adapters.registry import registered
 from omegadot.commands.check.judge import CAUSE
 from omegadot.commands.check.result import Check, Result, Subject, Tally
 from omegadot.commands.check.select import Arguments, Selection, select
@@ -19,7 +18,8 @@ from omegadot.commands.check.shrink import shrink as shrink_check
 from omegadot.commands.check.suite import SEED, Suite
 from omegadot.commands.progress import Count, Reporter, Reporting, reporting
 from omegadot.harness.arguments import Via, adapters_named, several
-from omegadot.harness.engine_target import EngineLike, target_of
+from omegadot.harness.engine_target import EngineLike, is_target, target_of
+from omegadot.harness.own_engines import known_engines
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios import ScenarioLike
 
@@ -72,11 +72,11 @@ class CheckResult:
 def check(
     engine: EngineLike,
     *,
-    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
+    scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
     random: int | None = None,
     seed: int = 0,
-    integrators: str | Sequence[str] = (),
-    via: Via | Sequence[Via] = (),
+    integrators: str | Sequence[str] | None = None,
+    via: Via | Sequence[Via] | None = None,
     exceptions: str | Path | Sequence[str | Path] = (),
     baseline: str | Path | None = None,
     update_baseline: bool = False,
@@ -96,16 +96,16 @@ def check(
     Raises UsageError, ScenarioError, RecordError and NoTruthError.
     """
     arguments = Arguments(
-        scenarios=several(scenarios),
+        scenarios=several(scenarios, "scenarios"),
         random=random,
         seed=seed,
-        via=several(via),
+        via=several(via, "via"),
         exceptions=several(exceptions),
         baseline=baseline,
         update=update_baseline,
         timeout=timeout,
     )
-    selection = select(arguments_of(engine, several(integrators), arguments))
+    selection = select(arguments_of(engine, several(integrators, "integrators"), arguments))
     with reporting(progress) as report:
         suite = Suite(selection)
         count = Count(report, "checking", len(suite.checks))
@@ -160,11 +160,11 @@ def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Argu
 
     Raises UsageError.
     """
-    known = registered()
+    known = known_engines()
     adapters: list[str] = []
     if isinstance(engine, str) and engine in known:
         name = engine
-    elif not isinstance(engine, str) or engine.endswith(".py") or ":" in engine:
+    elif not isinstance(engine, str) or is_target(engine, known) or ":" in engine:
         left, _, right = engine.partition(":") if isinstance(engine, str) else ("", "", "")
         if left in known:
             raise UsageError(f"{engine}: give the integrator apart, as --integrator {right}.")
@@ -173,7 +173,7 @@ def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Argu
     else:
         raise UsageError(
             f"{engine}: no such engine; {nearest(engine, known)}, or give "
-            "FILE.py:Class or module:Class."
+            "FILE.py:Class, module:Class or a program with its arguments."
         )
     engines = [f"{name}:{integrator}" for integrator in integrators] or [name]
     return replace(arguments, engines=engines, adapters=adapters, required=[name])

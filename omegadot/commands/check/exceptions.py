@@ -19,6 +19,7 @@ from omegadot.commands.check.compare import baseline_checks
 from omegadot.commands.check.result import Check, Result, Subject, checks_of
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of
+from omegadot.harness.engine_target import file_of
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios import ScenarioError, builtin_names, load_builtin
@@ -76,10 +77,10 @@ def read_exceptions(path: Path) -> list[DeclaredException]:
 
 def _next_to(target: str) -> Path | None:
     """Where an adapter's own exceptions stand: module.exceptions.toml next to module.py."""
-    module = target.rpartition(":")[0]
-    if module.endswith(".py"):
-        return Path(module).with_suffix(SUFFIX)
-    package, *rest = module.split(".")
+    file = file_of(target)
+    if file is not None:
+        return file.with_suffix(SUFFIX)
+    package, *rest = target.rpartition(":")[0].split(".")
     spec = importlib.util.find_spec(package)  # the package alone: nothing of it is imported
     if spec is None or spec.origin is None:
         return None

@@ -19,9 +19,9 @@ from omegadot.gates.case import knobs_of
 from omegadot.gates.rows import Row, worst
 from omegadot.gates.runs import repeats
 from omegadot.gates.runs.exact import exact_rows
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
-from omegadot.reports.text.numbers import listed, short
+from omegadot.reports.text.numbers import listed, short, times_its_bound
 from omegadot.workers.harness_end.process import Answer
 
 CAUSE = "Likely cause: "
@@ -32,12 +32,7 @@ NOTE_BEFORE_FIGURE = ("restarted", "rate_at_no_step", "start", "precision", *rep
 
 
 def _excess(row: Row) -> float:
-    """How many times its bound a value is; infinite where it is not finite or nothing is due."""
-    if row.metric in NOTE_ALONE:
-        return 0.0
-    if row.bound is None or not math.isfinite(row.value):
-        return math.inf
-    return row.value / row.bound if row.bound > 0.0 else math.inf
+    return 0.0 if row.metric in NOTE_ALONE else times_its_bound(row.value, row.bound)
 
 
 def _unit(row: Row) -> str:

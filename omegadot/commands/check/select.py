@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from omegadot.adapters.registry import registered
 from omegadot.commands.check.exceptions import DeclaredException, exceptions_of
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import (
@@ -18,8 +17,10 @@ from omegadot.harness.arguments import (
     scenarios_of,
 )
 from omegadot.harness.engine_target import EngineLike
+from omegadot.harness.own_engines import known_engines
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, check_count
+from omegadot.reports.record.whole_file import path_of
 from omegadot.scenarios import Scenario, ScenarioLike, scenario
 from omegadot.scenarios.random_systems import LARGEST_SEED, MOST_SYSTEMS, random_names
 from omegadot.scenarios.random_traits import BLOCK
@@ -70,7 +71,7 @@ def select(arguments: Arguments) -> Selection:
     if arguments.update and arguments.baseline is None:
         raise UsageError("--update-baseline: give the folder of the baselines with --baseline DIR.")
     adapters = adapters_named(arguments.adapters)
-    known = {**registered(), **adapters}
+    known = {**known_engines(), **adapters}
     unknown = tuple(name for name in arguments.required if name not in known)
     wanted = list(arguments.engines)
     for name in (*adapters, *arguments.required):
@@ -84,9 +85,9 @@ def select(arguments: Arguments) -> Selection:
         arguments,
         choices,
         cases=[case_of(scenario, ()) for scenario in (*named, *drawn)],
-        exceptions=exceptions_of(choices, map(Path, arguments.exceptions)),
+        exceptions=exceptions_of(choices, map(path_of, arguments.exceptions)),
         unknown=unknown,
-        baseline=None if arguments.baseline is None else Path(arguments.baseline),
+        baseline=None if arguments.baseline is None else path_of(arguments.baseline),
         drawn=frozenset(scenario.name for scenario in drawn),
     )
 
@@ -98,5 +99,9 @@ def _drawn(arguments: Arguments, named: set[str]) -> list[Scenario]:
         count = 0 if arguments.scenarios else BLOCK
     check_count("--random", count, 0, MOST_SYSTEMS)
     check_count("--seed", arguments.seed, 0, LARGEST_SEED)
+    if arguments.seed and not count:
+        raise UsageError(
+            f"--seed {arguments.seed}: no random system is drawn; give their number with --random."
+        )
     names = random_names(arguments.seed, count)
     return [scenario(name) for name in names if name not in named]

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import time
 import warnings
+from collections import Counter
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from omegadot.commands.check.judge import failure
+from omegadot.commands.check.judge import CAUSE, failure
 from omegadot.commands.check.result import GATES_OF_A_RUN, GATES_OF_A_SCENARIO, Check, Result
 from omegadot.commands.check.simpler import SIMPLER, brief
 from omegadot.commands.check.tables import Tables, ingredients, tables_of
@@ -28,6 +29,7 @@ from omegadot.scenarios.writing import to_toml
 MOST = 3  # failures that are shrunk, each of another kind
 TRIALS = 60  # for each
 SECONDS = 20.0  # for all together
+UNKNOWN = "none is known"  # with which begins what is known where no cause is
 
 
 @dataclass(frozen=True)
@@ -56,14 +58,18 @@ class Failing:
 
 
 def kinds_of_failure(results: Mapping[Check, Result], cases: Mapping[str, Case]) -> list[Check]:
-    """One failing check a kind, gate by integrator, three at most: on the case of fewest steps.
+    """One failing check a kind, gate by integrator, three at most.
 
-    Where a gate of the engine fails, those of its runs fail in consequence, and are left out; of an
-    integrator the first of its gates that fails is taken.
+    Of the checks that show the cause of the most, the one on the case of fewest steps. Where a gate
+    of the engine fails, those of its runs fail in consequence, and are left out; of an integrator
+    the first of its gates that fails is taken.
     """
+    causes = {c: r.message.partition(CAUSE)[2] for c, r in results.items()}
+    named = Counter(cause for cause in causes.values() if cause and not cause.startswith(UNKNOWN))
 
-    def cost(check: Check) -> int:
-        return sum(sweep.steps for sweep in cases[check.scenario].sweeps)
+    def cost(check: Check) -> tuple[int, int]:
+        steps = sum(sweep.steps for sweep in cases[check.scenario].sweeps)
+        return -named[causes[check]], steps
 
     failed = [c for c, r in results.items() if r.verdict == "fail" and c.scenario in cases]
     found: list[Check] = []

@@ -7,7 +7,6 @@ import os
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from omegadot import __version__
@@ -22,7 +21,7 @@ from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError, check_number
-from omegadot.reports.record.whole_file import make_folder
+from omegadot.reports.record.whole_file import make_folder, path_of
 from omegadot.scenarios import ScenarioLike
 from omegadot.workers.machine import describe_machine, package_versions
 
@@ -31,8 +30,8 @@ Quantity = str | float
 
 
 def choose(
-    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
-    engines: EngineLike | Sequence[EngineLike] = (),
+    scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
+    engines: EngineLike | Sequence[EngineLike] | None = None,
     *,
     body: str | os.PathLike[str] | None = None,
     allow_impossible_inertia: bool = False,
@@ -86,10 +85,10 @@ def choose(
         "python": python,
         "duration": duration,
     }
-    file = read_requirements(Path(requirements)) if requirements else {}
+    file = read_requirements(path_of(requirements)) if requirements else {}
     wanted = merged(file, requested, str(requirements))
     motion = Motion(
-        several(scenarios),
+        several(scenarios, "scenarios"),
         None if body is None else os.fspath(body),
         angular_velocity,
         orientation,
@@ -98,13 +97,13 @@ def choose(
     )
     request = RunRequest(
         cases_of(motion),
-        _choices(several(engines), several(adapters)),
+        _choices(several(engines, "engines"), several(adapters)),
         timeout=timeout,
         jobs=(os.cpu_count() or 1) if jobs is None else jobs,
     )
     check_number("--budget", budget, 0.0)
     if out is not None:
-        make_folder(Path(out))
+        make_folder(path_of(out))
     with reporting(progress) as report:
         choice = Choice(request, wanted, budget, report)
         choice.execute()

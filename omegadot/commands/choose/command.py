@@ -105,7 +105,7 @@ def choose(
     from omegadot.reports.record.run_json import dump_json
     from omegadot.reports.text.numbers import listed
 
-    found = choose_engine(named, **arguments, command=options.command_line())
+    found = choose_engine(named or None, **arguments, command=options.command_line())
     if output is options.Format.json:
         typer.echo(dump_json(found.document), nl=False)
     else:

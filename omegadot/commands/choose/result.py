@@ -12,6 +12,7 @@ from omegadot.commands.report.report import redraw
 from omegadot.reports.choice.page import draw_choice, write_choice
 from omegadot.reports.notebook import framed
 from omegadot.reports.record.record import RUN
+from omegadot.reports.record.whole_file import path_of
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,7 @@ class ChooseResult:
 
         Raises RecordError.
         """
-        out = Path(folder)
+        out = path_of(folder)
         write_choice(self.document, out)
         paths = (out / "choice.html", out / "choice.json")
         return (*paths, redraw(out)) if (out / RUN).is_file() else paths

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from omegadot.reports.record.record import Record, read_record
+from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.two_runs.comparison import Comparison, compare_records
 
 RunLike = str | os.PathLike[str] | Record
@@ -17,7 +18,9 @@ def compare(was: RunLike, now: RunLike) -> Comparison:
 
     was, now: folders, or records. Raises RecordError.
     """
-    one, other = (run if isinstance(run, Record) else read_record(Path(run)) for run in (was, now))
+    one, other = (
+        run if isinstance(run, Record) else read_record(path_of(run)) for run in (was, now)
+    )
     labels = (_label(was, "A"), _label(now, "B"))
     return compare_records(one, other, labels)
 

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
-from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.solutions.exact_solution import exact_solution
 from omegadot.reference_impl.system import Array, State
 from omegadot.scenarios import ScenarioLike
 

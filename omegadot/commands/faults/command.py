@@ -32,6 +32,6 @@ def faults(
     from omegadot.commands.faults.faults import faults as find_faults
     from omegadot.commands.faults.print_faults import print_faults
 
-    found = find_faults(engine or [], random=random, seed=seed, progress=on_a_terminal())
+    found = find_faults(engine or None, random=random, seed=seed, progress=on_a_terminal())
     print_faults(found, output.value)
     raise typer.Exit(0 if found.passed else 1)

@@ -20,12 +20,12 @@ from omegadot.gates.errors.verdicts import UNDECIDED
 from omegadot.gates.rows import Row
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.harness.in_process import driver_of
-from omegadot.harness.judge import JudgedRun
-from omegadot.harness.judge_engine import shared_rows
-from omegadot.harness.judge_runs import judge_case
-from omegadot.harness.refine import MOST_HALVINGS, Refinements, refine
-from omegadot.harness.repeats import request_again
-from omegadot.harness.step_probes import probe_steps
+from omegadot.harness.judging.engine import shared_rows
+from omegadot.harness.judging.judged_run import JudgedRun
+from omegadot.harness.judging.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.judging.runs import judge_case
+from omegadot.harness.requests.repeats import request_again
+from omegadot.harness.requests.step_probes import probe_steps
 
 GATES = ("model", "equation", "scheme", "invariants", "trajectory")
 

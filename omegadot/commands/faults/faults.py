@@ -46,7 +46,7 @@ class FaultsResult:
 
 
 def faults(
-    engines: str | Sequence[str] = (),
+    engines: str | Sequence[str] | None = None,
     *,
     random: int = DEFAULT,
     seed: int = 0,
@@ -61,7 +61,7 @@ def faults(
     """
     check_count("--random", random, 1, MOST_SYSTEMS)
     check_count("--seed", seed, 0, LARGEST_SEED)
-    given: list[str] = several(engines)
+    given: list[str] = several(engines, "engines")
     names = list(dict.fromkeys(given)) or ["reference"]
     for name in names:
         if name not in ENGINES:

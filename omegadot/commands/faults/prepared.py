@@ -19,7 +19,7 @@ from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.drive import Driver
 from omegadot.harness.in_process import driver_of
 from omegadot.harness.random_cases import random_case
-from omegadot.harness.truth_requests import case_companions, case_truth
+from omegadot.harness.requests.truth_requests import case_companions, case_truth
 
 MOST_DRAWN = 1000  # for each case that is wanted: rarer features are as good as none
 

@@ -9,7 +9,6 @@ from omegadot.adapters.protocol import Adapter, Integrator
 from omegadot.commands.faults.published import NONE, Published, attitude, free_body, see
 from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.exact_solution import exact_states
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import (
     attitude_angle,
@@ -19,6 +18,7 @@ from omegadot.reference_impl.rotations import (
     rotate_inverse,
     rotation_matrix,
 )
+from omegadot.reference_impl.solutions.exact_solution import exact_states
 from omegadot.reference_impl.system import Array, State
 
 EULERS = ("semi-implicit-euler", "semi-implicit-euler-short-turns")

@@ -6,9 +6,9 @@ from omegadot.adapters.protocol import Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.fault import Spoiled
 from omegadot.diagnosis.stepping.restep import on_rows, step_again
-from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.motion import AccelerationOf, acceleration_of
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.system import Acceleration, State
 

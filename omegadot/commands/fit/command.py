@@ -72,7 +72,7 @@ def fit(
     """Fit moments of inertia, principal axes, bias and damping to a trace of omega.
 
     Exit codes: 0 fitted, also where the data leave something open, which is then printed, 2 wrong
-    usage or input.
+    usage or input, 3 the system failed, as on a full disk.
     """
     given = {**locals()}
     del given["column"], given["output"]

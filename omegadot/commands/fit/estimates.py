@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,8 @@ from scipy.optimize import linear_sum_assignment
 
 from omegadot.commands.fit.scale import Scale
 from omegadot.commands.fit.spread import Spread
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array
 
 # A standard error above this means that the data determine nothing.
@@ -17,8 +20,9 @@ MOST_MOMENT = 0.25  # of the largest moment: all that bodies have is within 0 an
 MOST_TURN = 0.35  # rad, of an axis: a quarter of a right angle
 MOST_SIZE = 0.5  # relative, of the inertia where a torque is given
 TINY = 1e-300
-MOST_BIAS = 0.5  # of the size of omega
-MOST_DAMPING = 0.5  # of the largest moment times the size of omega
+SET = 64.0 * float(np.finfo(float).eps)  # relative: a number with such an error is set, not fitted
+MOST_OMEGA = 0.25  # of the size of omega, which its first value and a bias lie within
+MOST_DAMPING = 0.25  # of the largest moment times the size of omega
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,9 +32,10 @@ class Estimates:
     inertia: (3, 3), in the trace's body axes.  moments: (3,), the principal ones, each next to the
     body axis that its own is nearest to.  axes: (3, 3), their axes as columns.
     axis_errors: (3,) rad, of the direction of each.
-    omega: (3,) rad/s at the first sample, of the body.  bias: (3,) rad/s.  damping: N m s/rad, or
-    in the inertia's unit over s.  orientation: (4,), and its errors (3,) rad about the body's axes.
-    size_known: whether a torque that is given shows in omega.
+    omega: (3,) rad/s at the first sample, of the body.  reading: the same with the bias, as the
+    gyro gives it.  bias: (3,) rad/s.  damping: N m s/rad, or in the inertia's unit over s.
+    orientation: (4,), and its errors (3,) rad about the body's axes.
+    size_known: whether a torque that is given shows in omega.  size: rad/s, of omega.
     """
 
     inertia: Array
@@ -41,6 +46,8 @@ class Estimates:
     axis_errors: Array
     omega: Array
     omega_errors: Array
+    reading: Array
+    reading_errors: Array
     bias: Array
     bias_errors: Array
     damping: float
@@ -48,6 +55,7 @@ class Estimates:
     orientation: Array | None
     orientation_errors: Array | None
     size_known: bool
+    size: float
 
     @property
     def moments_known(self) -> NDArray[np.bool_]:
@@ -55,29 +63,54 @@ class Estimates:
         return self.size_known & np.less(self.moment_errors, MOST_MOMENT * np.max(self.moments))
 
     @property
+    def shape_known(self) -> bool:
+        """Whether any moment is determined that is not set."""
+        fitted = self.moment_errors > SET * self.moments
+        return bool(np.any(self.moments_known & fitted))
+
+    @property
     def axes_known(self) -> NDArray[np.bool_]:
         """(3,): whether the data determine each principal axis."""
         return np.less(self.axis_errors, MOST_TURN)
 
+    @property
+    def omega_known(self) -> NDArray[np.bool_]:
+        """(3,): whether the data determine each component of the body's first omega."""
+        return np.less(self.omega_errors, MOST_OMEGA * self.size)
 
-def estimates_of(spread: Spread, scale: Scale, size: float) -> Estimates:
-    """The numbers of a fit. size: rad/s, the unit of omega."""
+    @property
+    def bias_known(self) -> NDArray[np.bool_]:
+        """(3,): whether the data determine each component of the bias."""
+        return np.less(self.bias_errors, MOST_OMEGA * self.size)
+
+    @property
+    def damping_known(self) -> bool:
+        """Whether the data determine the damping."""
+        most = MOST_DAMPING * float(np.max(self.moments)) * self.size
+        return self.damping_error < most and (self.size_known or self.damping_error == 0.0)
+
+
+def estimates_of(spread: Spread, scale: Scale, size: float, spin: Array | None) -> Estimates:
+    """The numbers of a fit. size: rad/s, the unit of omega.  spin: as of `scale_of`."""
     one, free = spread.one, spread.free
     tensor, tensor_slopes = _tensor(spread, scale)
     moments, axes = principal(one.inertia)
     moment_slopes = np.stack([_entry(spread, scale, axis, axis) for axis in axes.T])
     turns = _turns(spread, moments, axes)
     errors = spread.error(moment_slopes)
-    if not free.shape:
-        errors, turns = np.full(3, np.nan), np.full(3, np.nan)
     damping = scale.factor * size * float(one.damping)
     damping_error = 0.0
     if free.damping:
         slopes = scale.factor * spread.slopes_of("damping")[0] + float(one.damping) * scale.slopes
         damping_error = size * float(spread.error(slopes))
     still = np.zeros(3)
-    size_slopes = sum(spread.slope_of_entry(axis, axis) for axis in np.eye(3))
-    size_error = float(spread.error(np.asarray(size_slopes))) / float(np.trace(one.inertia))
+    both = spread.slopes_of("omega")
+    if free.bias:
+        both = both + spread.slopes_of("bias")
+    about = np.eye(3) if spin is None else spin[None]
+    size_slopes = np.sum([spread.slope_of_entry(axis, axis) for axis in about], axis=0)
+    whole = float(np.sum([axis @ one.inertia @ axis for axis in about]))
+    size_error = float(spread.error(size_slopes)) / whole
     return Estimates(
         inertia=tensor,
         inertia_errors=spread.error(tensor_slopes),
@@ -87,6 +120,8 @@ def estimates_of(spread: Spread, scale: Scale, size: float) -> Estimates:
         axis_errors=turns,
         omega=size * one.omega,
         omega_errors=size * spread.error(spread.slopes_of("omega")),
+        reading=size * (one.omega + one.bias),
+        reading_errors=size * spread.error(both),
         bias=size * one.bias,
         bias_errors=size * spread.error(spread.slopes_of("bias")) if free.bias else still,
         damping=damping,
@@ -96,7 +131,38 @@ def estimates_of(spread: Spread, scale: Scale, size: float) -> Estimates:
             spread.error(spread.slopes_of("orientation")) if free.orientation else None
         ),
         size_known=not free.scale or size_error < MOST_SIZE,
+        size=size,
     )
+
+
+def widened(own: Estimates, others: list[Estimates]) -> Estimates:
+    """The same numbers, with errors that hold whichever of the fits is the truth.
+
+    ``e^2 = max_k (e_k^2 + (x_k - x)^2)`` over the fits k that the data allow.
+    """
+    found = own
+    for other in others:
+        same = linear_sum_assignment(-np.abs(own.axes.T @ other.axes))[1]
+        sines = np.linalg.norm(cross(own.axes.T, other.axes.T[same]), axis=1)
+        turns = np.arcsin(np.minimum(sines, 1.0))
+        apart = {
+            "inertia_errors": (other.inertia_errors, other.inertia - own.inertia),
+            "moment_errors": (other.moment_errors[same], other.moments[same] - own.moments),
+            "axis_errors": (other.axis_errors[same], turns),
+            "omega_errors": (other.omega_errors, other.omega - own.omega),
+            "reading_errors": (other.reading_errors, other.reading - own.reading),
+            "bias_errors": (other.bias_errors, other.bias - own.bias),
+            "damping_error": (other.damping_error, other.damping - own.damping),
+        }
+        if own.orientation is not None and other.orientation is not None:
+            turn = rotation_between(own.orientation, other.orientation)
+            apart["orientation_errors"] = (other.orientation_errors, turn)
+        wider: dict[str, Any] = {
+            name: np.maximum(getattr(found, name), np.hypot(error, difference))
+            for name, (error, difference) in apart.items()
+        }
+        found = replace(found, **wider, size_known=found.size_known and other.size_known)
+    return replace(found, damping_error=float(found.damping_error))
 
 
 def principal(inertia: Array) -> tuple[Array, Array]:
@@ -136,8 +202,14 @@ def _turns(spread: Spread, moments: Array, axes: Array) -> Array:
     return np.sqrt(squares)
 
 
-def open_directions(spread: Spread) -> list[Array]:
-    """Of the bias: unit vectors along which the data do not determine it."""
-    block = spread.places("bias")
-    values, axes = np.linalg.eigh(spread.covariance[block, block])
-    return [axes[:, k] for k in range(len(values)) if values[k] > MOST_BIAS**2]
+def open_directions(spreads: list[Spread]) -> list[Array]:
+    """Of the bias: unit vectors along which the data do not determine it.
+
+    spreads: of the fits that the data allow, the one that is reported first.
+    """
+    squares = []
+    for spread in spreads:
+        block, apart = spread.places("bias"), spread.one.bias - spreads[0].one.bias
+        squares.append(spread.covariance[block, block] + np.outer(apart, apart))
+    values, axes = np.linalg.eigh(max(squares, key=lambda square: float(np.trace(square))))
+    return [axes[:, k] for k in range(len(values)) if values[k] > MOST_OMEGA**2]

@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 
 from omegadot.commands.fit import picture
-from omegadot.commands.fit.estimates import Estimates, estimates_of
+from omegadot.commands.fit.determined import determined
+from omegadot.commands.fit.estimates import Estimates
 from omegadot.commands.fit.models import Terms, compare_models
 from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.samples import samples_of
-from omegadot.commands.fit.scale import known_of, scale_of, torque_of
+from omegadot.commands.fit.scale import known_of, torque_of
 from omegadot.commands.fit.scenario_file import MARK, scenario_of_fit, text_of
 from omegadot.commands.fit.sentences import sentences
-from omegadot.commands.fit.spread import spread_of
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.settings import GivenColumns, Reading, reading_of, settings_of
 from omegadot.harness.usage import UsageError, check_number
-from omegadot.reports.record.whole_file import check_target, write_whole
+from omegadot.reports.record.whole_file import check_target, path_of, write_whole
 from omegadot.scenarios import scenario
 
 
@@ -70,21 +70,15 @@ def fit(
         check_number("--mass", mass, 0.0)
     if name is not None:
         scenario("sphere", name=name)  # refuses what is no name, before the work
-    if out is not None and not Path(out).name.strip("."):
-        raise UsageError(f"--out {out}: is no file's name; give one such as fitted.toml.")
-    drawn = None if out is None else picture.beside(Path(out))
-    if out is not None and drawn is not None:
-        check_target(Path(out), MARK)
-        check_target(drawn, picture.MARK)
-    mapped = Path(map_file) if map_file else None
-    reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
+    target = None if out is None else _target(path_of(out))
+    mapped = path_of(map_file) if map_file else None
+    reading = reading_of(read_table(path_of(trace)), columns, mapped, settings)
     samples = samples_of(reading)
     digits = (samples.digits[0] / samples.size, samples.digits[1])
     compared = compare_models(samples.data(load), digits, terms)
-    spread = spread_of(compared.data, compared.best, compared.noise)
-    scale = scale_of(spread, known, samples.inertia_unit(load, compared.data.torque))
-    own = estimates_of(spread, scale, samples.size)
-    found_out = sentences(samples, compared, spread, own, scale, terms)
+    known_by = determined(samples, compared, known, load)
+    own, scale = known_by.own, known_by.scale
+    found_out = sentences(known_by, own, terms)
     found = scenario_of_fit(samples, own, load, mass or 1.0, name)
     result = FitResult(
         samples,
@@ -95,10 +89,23 @@ def fit(
         found,
         [*_options(columns, mapped, settings, reading), *_bias(own, reading)],
     )
-    if out is not None and drawn is not None:
-        write_whole(Path(out), text_of(found, found_out), MARK)
-        write_whole(drawn, picture.picture(result), picture.MARK)
+    if target is not None:
+        write_whole(target, text_of(found, found_out), MARK)
+        write_whole(picture.beside(target), picture.picture(result), picture.MARK)
     return result
+
+
+def _target(out: Path) -> Path:
+    """The scenario's file. Raises UsageError for another ending, RecordError where it is taken."""
+    if out.suffix != ".toml":  # nothing else is read as a scenario
+        raise UsageError(f"--out {out}: a scenario's file ends in .toml; give {_with_toml(out)}.")
+    check_target(out, MARK)
+    check_target(picture.beside(out), picture.MARK)
+    return out
+
+
+def _with_toml(out: Path) -> str:
+    return f"{out}.toml" if out.name.strip(".") else "one such as fitted.toml"
 
 
 def _options(

@@ -2,27 +2,44 @@
 
 An F-test compares the gain of a term with what noise alone gains. Its numerator is divided by the
 inflation of correlated residuals, so that a model that lacks something is not made to fit by a
-bias.
+bias. That a term is left out is a choice of words, not knowledge that it is zero: every model that
+the data allow counts in the standard errors.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.stats import f as fisher
 
-from omegadot.commands.fit.noise import FINEST, Noise, noise_of
+from omegadot.commands.fit.noise import FINEST, Noise, noise_of, one_lane
 from omegadot.commands.fit.parameters import Free
-from omegadot.commands.fit.solve import MOST_TRIALS, TRIALS, Data, Fitted, finish, follow, solve
+from omegadot.commands.fit.solve import (
+    CLOSE,
+    MOST_TRIALS,
+    TRIALS,
+    Data,
+    Fitted,
+    finish,
+    follow,
+    solve,
+)
+from omegadot.commands.fit.spread import spread_of
 from omegadot.commands.fit.start import sized, starts
+from omegadot.harness.usage import UsageError
 
 # The probability that noise alone gains so much. A term that is wrongly left out distorts the rest,
 # one that is wrongly taken widens the errors: bias and damping enter easily, shape does not.
 SIGNIFICANT = {"shape": 1e-3, "bias": 0.01, "damping": 0.01}
+ALLOWED = 1e-3  # the same, below which a model is refuted
 WIDEST = 1e4  # of weights, which derivatives by differences resolve
 ROUNDS = 3  # of the weights of omega and attitude: they settle in two
 FINE = 1e-5  # rms of residuals below which the motion is followed to the last digits
+VAGUE = 0.1  # a standard error of a bias, of the size of omega, beyond which it is tried smaller
+BIASES = (1.0, 0.3, 0.1)  # of the size of omega: what such a fit holds a bias within
+LARGEST = 4.0  # of the size of omega: a larger bias is none, but what nothing holds
 HOPELESS = 100.0  # a sum of squares so many times that of the richest is worth few trials
 ALONG = 0.1  # rad: a torque nearer to the axis than this does not turn it
 Digits = tuple[float, float]
@@ -33,20 +50,43 @@ NONE = (0.0, 0.0)
 class Compared:
     """The fits of a trace.
 
-    data: with the weight of the attitude that was used.  fits: by what is free.  noise: of the
-    chosen one.  chances: the probability that noise alone gains as much as each term did.
+    data: with the weight of the attitude that was used.  fits: by what is free.  rich: the model
+    with every term.  chosen: the one that is reported.  noise: of that.  chances: the probability
+    that noise alone gains as much as each term did.  vague: more fits of the richest, with smaller
+    biases, where the bias is open.
     """
 
     data: Data
     fits: dict[Free, Fitted]
+    rich: Free
     chosen: Free
     noise: Noise
     chances: dict[str, float]
+    vague: list[Fitted] = field(default_factory=list)
 
     @property
     def best(self) -> Fitted:
         """The fit of the chosen model."""
         return self.fits[self.chosen]
+
+    @cached_property
+    def allowed(self) -> list[Fitted]:
+        """The fits that the data do not refute against the richest; the chosen one is the first."""
+        rich = self.fits[self.rich]
+        others = [
+            fit
+            for free, fit in self.fits.items()
+            if free not in (self.rich, self.chosen)
+            and np.linalg.norm(fit.one.bias) < LARGEST
+            and _chance(self.data, fit, rich, self.noise) > ALLOWED / _sought(self.data, free)
+        ]
+        small = replace(self.rich, bias=False)  # as many numbers fewer as a bias has
+        others += [
+            fit
+            for fit in self.vague
+            if _chance(self.data, replace(fit, free=small), rich, self.noise) > ALLOWED
+        ]
+        return [self.best, *([] if self.chosen == self.rich else [rich]), *others]
 
     def rms(self, free: Free) -> float:
         """What a model leaves of a component of omega, in the units of the fit."""
@@ -82,7 +122,50 @@ def compare_models(data: Data, digits: Digits, terms: Terms) -> Compared:
         best = min(near, key=lambda fit: fit.cost)
         hopeless = best.cost > HOPELESS * fits[rich].cost
         fits[free] = finish(data, best, TRIALS if hopeless else MOST_TRIALS)
-    return _chosen(data, fits, rich, terms, digits)
+    fits = {free: fit for free, fit in fits.items() if _followed(data, fit)}
+    if not fits:
+        raise UsageError("No motion of a body was found that can be followed; fit another part.")
+    near = [fit for fit in fits.values() if not fit.free.shape]
+    if near and rich in fits:  # of a body that is nearly a sphere the balance shows no shape
+        sphere = min(near, key=lambda fit: fit.cost)
+        again = finish(data, replace(sphere, free=rich))
+        if again.cost < fits[rich].cost and _followed(data, again):
+            fits[rich] = again
+    lowest = min(fits.values(), key=lambda fit: fit.cost)
+    if lowest.free != rich:  # the richest holds every other, and can do no worse
+        again = finish(data, replace(lowest, free=rich))
+        fits[rich] = again if _followed(data, again) else replace(lowest, free=rich)
+    found_out = _chosen(data, fits, rich, terms, digits)
+    return replace(found_out, vague=_vague(found_out))
+
+
+def _followed(data: Data, fit: Fitted) -> bool:
+    """Whether its motion can be followed by itself, as it was among those beside it."""
+    try:
+        return bool(np.all(np.isfinite(data.residuals(one_lane(fit.one)))))
+    except ArithmeticError:
+        return False
+
+
+def _vague(compared: Compared) -> list[Fitted]:
+    """The fits with a small bias where the data leave a bias open.
+
+    A bias that is hardly held comes out large, and beside a large one the other numbers look sure.
+    """
+    data, rich, noise = compared.data, compared.fits[compared.rich], compared.noise
+    if not compared.rich.bias:
+        return []
+    spread = spread_of(data, rich, noise)
+    block = spread.places("bias")
+    if np.max(np.diag(spread.covariance)[block]) < VAGUE**2:
+        return []
+    found = []
+    for most in BIASES:
+        ridge = noise.omega * np.sqrt(noise.inflation) / most
+        fit = solve(replace(data, ridge=ridge), rich.one, compared.rich, CLOSE, MOST_TRIALS)
+        if _followed(data, fit):
+            found.append(fit)
+    return found
 
 
 def _weighted(data: Data, fit: Fitted, digits: Digits) -> tuple[Data, Fitted]:
@@ -107,31 +190,33 @@ def _smaller(rich: Free, terms: Terms, shapeless: bool) -> list[Free]:
 def _chosen(
     data: Data, fits: dict[Free, Fitted], rich: Free, terms: Terms, digits: Digits
 ) -> Compared:
-    """Drop the shape, then term after term, as long as noise alone gains as much."""
+    """Drop term after term, as long as noise alone gains as much.
+
+    The bias is the first, and with one a shape stays: a sphere with a bias shows almost any short
+    piece of a motion.
+    """
     chances: dict[str, float] = {}
-    chosen, noise = rich, noise_of(data, fits[rich], digits)
-    if _keeps_direction(data):
-        chances["shape"] = _chance(data, fits[replace(rich, shape=False)], fits[rich], noise)
-        if chances["shape"] > SIGNIFICANT["shape"] / len(
-            data.times
-        ):  # its frequency was sought as well
-            chosen = replace(rich, shape=False)
-    left = list(terms.open)
-    while left:
-        tried = {
-            name: _chance(data, fits[replace(chosen, **{name: False})], fits[chosen], noise)
-            for name in left
-        }
-        if "damping" in tried and not fits[chosen].one.damping > 0.0:
-            tried["damping"] = 1.0  # no friction drives a body
-        name = max(tried, key=lambda key: tried[key])
-        chances |= tried
-        if tried[name] <= SIGNIFICANT[name]:
-            break
-        chosen = replace(chosen, **{name: False})
-        noise = noise_of(data, fits[chosen], digits)
-        left.remove(name)
-    return Compared(data, fits, chosen, noise, chances)
+    chosen = rich
+    still = replace(rich, damping=False)
+    if "damping" in terms.open and still in fits and not fits[rich].one.damping > 0.0:
+        chosen, chances["damping"] = still, 1.0  # no friction drives a body
+    noise = noise_of(data, fits[chosen], digits)
+    for name in ("bias", "shape", "damping"):
+        small = replace(chosen, **{name: False})
+        if small == chosen or small not in fits or (name == "shape" and chosen.bias):
+            continue
+        chances[name] = _chance(data, fits[small], fits[chosen], noise)
+        if name == "damping" and not fits[chosen].one.damping > 0.0:
+            chances[name] = 1.0
+        if chances[name] > SIGNIFICANT[name] / _sought(data, small):
+            chosen = small
+            noise = noise_of(data, fits[chosen], digits)
+    return Compared(data, fits, rich, chosen, noise, chances)
+
+
+def _sought(data: Data, free: Free) -> int:
+    """In how many places noise was searched for what the model lacks: a shape has a frequency."""
+    return 1 if free.shape else len(data.times)
 
 
 def _chance(data: Data, small: Fitted, large: Fitted, noise: Noise) -> float:

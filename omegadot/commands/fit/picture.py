@@ -28,8 +28,7 @@ _STYLE = (
 
 def beside(scenario: Path) -> Path:
     """The picture's file: that of the scenario with another ending."""
-    own = scenario.suffix == ".toml"
-    return scenario.with_suffix(".svg") if own else scenario.with_name(f"{scenario.name}.svg")
+    return scenario.with_suffix(".svg")
 
 
 def residuals_of(result: FitResult) -> Array:

@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import typer
+from numpy.typing import NDArray
 from rich.table import Table
 from rich.text import Text
 
+from omegadot.commands.fit.estimates import SET
 from omegadot.commands.fit.picture import beside
 from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.sentences import direction
@@ -18,7 +20,6 @@ from omegadot.reference_impl.system import Array
 from omegadot.reports.text.text_grid import plain_console
 
 WIDTH_WHEN_PIPED = 200
-EPS = float(np.finfo(float).eps)
 UNKNOWN = "not determined"
 
 
@@ -87,14 +88,17 @@ def _tensor(result: FitResult) -> Table:
 def _others(result: FitResult) -> Table:
     own = result.estimates
     table = _grid("quantity", "x", "y", "z", "unit")
-    _row(table, "omega, first sample", own.omega, own.omega_errors, "rad/s")
+    _row(table, "omega, first sample", own.omega, own.omega_errors, "rad/s", own.omega_known)
+    if not np.all(own.omega_known):
+        _row(table, "omega + bias, first sample", own.reading, own.reading_errors, "rad/s")
     if own.orientation is not None:
         q = ", ".join(f"{part:.6f}" for part in own.orientation)
         table.add_row("attitude, first sample", f"w x y z = {q}", "", "", "")
     if "bias" in result.terms:
-        _row(table, "gyro bias", own.bias, own.bias_errors, "rad/s")
+        _row(table, "gyro bias", own.bias, own.bias_errors, "rad/s", own.bias_known)
     if "damping" in result.terms:
-        unit = "N m s/rad" if result.unit else "1/s, over the largest moment"
+        moment = "the largest moment" if result.compared.chosen.shape else "the moment about omega"
+        unit = "N m s/rad" if result.unit else f"1/s, over {moment}"
         table.add_row("damping", " +- ".join(_pair(own.damping, own.damping_error)), "", "", unit)
     _row(table, "residual, rms", result.rms, None, "rad/s")
     if result.rms_attitude is not None:
@@ -102,12 +106,21 @@ def _others(result: FitResult) -> Table:
     return table
 
 
-def _row(table: Table, name: str, values: Array, errors: Array | None, unit: str) -> None:
+def _row(
+    table: Table,
+    name: str,
+    values: Array,
+    errors: Array | None,
+    unit: str,
+    known: NDArray[np.bool_] | None = None,
+) -> None:
     if errors is None:
         table.add_row(name, *(f"{value:.3g}" for value in values), unit)
         return
-    pairs = zip(values, errors, strict=True)
-    table.add_row(name, *(" +- ".join(_pair(*pair)) for pair in pairs), unit)
+    sure = [True] * len(values) if known is None else known
+    rows = zip(values, errors, sure, strict=True)
+    cells = (" +- ".join(_pair(value, error)) if fixed else UNKNOWN for value, error, fixed in rows)
+    table.add_row(name, *cells, unit)
 
 
 def _models(result: FitResult) -> Table:
@@ -121,7 +134,7 @@ def _models(result: FitResult) -> Table:
 
 def _pair(value: float, error: float) -> tuple[str, str]:
     """A number to the second digit of its standard error, and that."""
-    if error <= 64.0 * EPS * abs(value):  # set, not fitted
+    if error <= SET * abs(value):
         return f"{value:.6g}", "0"
     decimals = 1 - int(np.floor(np.log10(error)))
     if decimals > 12 or decimals < 0 or abs(value) < 1e-3 or abs(value) >= 1e6:

@@ -57,12 +57,14 @@ class FitResult:
     @property
     def shape_determined(self) -> bool:
         """Whether omega shows any ratio of moments."""
-        return self.compared.chosen.shape
+        return self.compared.chosen.shape and self.estimates.shape_known
 
     @property
     def terms(self) -> tuple[str, ...]:
-        """Which of bias and damping are fitted."""
-        return _terms(self.compared.chosen)
+        """Which of bias and damping are fitted, and determined."""
+        own = self.estimates
+        sure = {"bias": bool(np.any(own.bias_known)), "damping": own.damping_known}
+        return tuple(name for name in _terms(self.compared.chosen) if sure[name])
 
     @property
     def rms(self) -> Array:
@@ -106,14 +108,18 @@ class FitResult:
             "axis_errors": _plain(own.axis_errors, own.axes_known) if shape else None,
             "inertia": _plain(own.inertia) if whole else None,
             "inertia_errors": _plain(own.inertia_errors) if whole else None,
-            "omega": _plain(own.omega),
-            "omega_errors": _plain(own.omega_errors),
+            "omega": _plain(own.omega, own.omega_known),
+            "omega_errors": _plain(own.omega_errors, own.omega_known),
+            "reading": _plain(own.reading),
+            "reading_errors": _plain(own.reading_errors),
             "orientation": None if own.orientation is None else _plain(own.orientation),
             "orientation_errors": (
                 None if own.orientation_errors is None else _plain(own.orientation_errors)
             ),
-            "bias": _plain(own.bias) if "bias" in self.terms else None,
-            "bias_errors": _plain(own.bias_errors) if "bias" in self.terms else None,
+            "bias": _plain(own.bias, own.bias_known) if "bias" in self.terms else None,
+            "bias_errors": _plain(own.bias_errors, own.bias_known)
+            if "bias" in self.terms
+            else None,
             "damping": own.damping if "damping" in self.terms else None,
             "damping_error": own.damping_error if "damping" in self.terms else None,
             "rms": _plain(self.rms),

@@ -77,17 +77,23 @@ def torque_of(given: str | Sequence[float] | None) -> Array:
     return torque
 
 
-def scale_of(spread: Spread, known: Known | None, unit: float) -> Scale:
-    """The scale of a fit. unit: kg m^2, that of the fit where a torque is given."""
+def scale_of(spread: Spread, known: Known | None, unit: float, spin: Array | None) -> Scale:
+    """The scale of a fit. unit: kg m^2, that of the fit where a torque is given.
+
+    spin: the axis about which the body turns, where no other moment shows.
+    """
     still = np.zeros(len(spread.covariance))
     if spread.free.scale:
         return Scale(unit, still, "kg m^2", "the torque that is given")
     _, axes = np.linalg.eigh(spread.one.inertia)
     name, value = ("largest", 1.0) if known is None else (known.name, known.value)
     axis = np.eye(3)[AXES[name]] if name in AXES else axes[:, PLACES[name]]
+    if known is None and spin is not None:
+        axis = spin
     size = float(axis @ spread.one.inertia @ axis)
     factor = value / size
     slopes = -factor / size * spread.slope_of_entry(axis, axis)
     if known is None:
-        return Scale(factor, slopes, "", "the largest moment, which is set to 1")
+        which = "the largest moment" if spin is None else "the moment about omega"
+        return Scale(factor, slopes, "", f"{which}, which is set to 1")
     return Scale(factor, slopes, "kg m^2", f"the {name} moment that is given")

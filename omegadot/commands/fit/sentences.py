@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from omegadot.commands.fit.determined import Determined
 from omegadot.commands.fit.estimates import Estimates, open_directions
 from omegadot.commands.fit.models import Compared, Terms
-from omegadot.commands.fit.samples import Samples
 from omegadot.commands.fit.scale import Scale
-from omegadot.commands.fit.spread import Spread, spread_of
 from omegadot.reference_impl.system import Array
 
 FLAT = 1e-5  # of the largest moment: nearer to the sum of the other two it is at the limit
@@ -16,23 +15,17 @@ POOR = 0.1  # rms of the residuals, of omega
 COARSE = 1.0  # rad from a sample to the next
 
 
-def sentences(
-    samples: Samples,
-    compared: Compared,
-    spread: Spread,
-    own: Estimates,
-    scale: Scale,
-    terms: Terms,
-) -> list[str]:
+def sentences(known: Determined, own: Estimates, terms: Terms) -> list[str]:
     """All that hold."""
-    shape = _shape(own) if compared.chosen.shape else _no_shape(compared, spread, own, scale)
+    compared = known.compared
     return [
         *([] if own.size_known else ["The torque is not seen in omega: no scale is determined."]),
-        *shape,
-        *_scale(compared, scale),
-        *_bias(compared, spread, terms),
-        *_damping(compared, own, terms),
-        *_quality(samples, compared),
+        *(_shape(own) if compared.chosen.shape else _no_shape(known, own)),
+        *_open(known, own),
+        *_scale(compared, known.scale, own),
+        *_bias(known, own),
+        *_damping(compared, known.scale, own, terms),
+        *_quality(compared),
     ]
 
 
@@ -41,39 +34,72 @@ def direction(axis: Array) -> str:
     return "(" + ", ".join(f"{part + 0.0:.2f}" for part in np.round(axis, 2)) + ")"
 
 
-def _no_shape(compared: Compared, spread: Spread, own: Estimates, scale: Scale) -> list[str]:
+def _no_shape(known: Determined, own: Estimates) -> list[str]:
     axis = own.omega / np.linalg.norm(own.omega)
     found = [
         f"omega keeps the direction {direction(axis)} within the noise, which shows no ratio of "
         "moments: every body that has a principal axis along it turns like this, and a sphere "
         "about any axis."
     ]
-    if spread.free.scale and own.size_known:
-        error = scale.factor * float(spread.error(spread.slope_of_entry(axis, axis)))
+    if known.compared.rich.scale and own.size_known:
+        value, error = known.moment_about(axis)
         found.append(
-            f"The moment about that axis is {axis @ own.inertia @ axis:.6g} +- {error:.2g} kg m^2; "
+            f"The moment about that axis is {value:.6g} +- {error:.2g} kg m^2; "
             "the others are not determined."
         )
     return found
 
 
+def _open(known: Determined, own: Estimates) -> list[str]:
+    """What the window does not determine, and how long it would have to be."""
+    left = known.open_terms(own)
+    if not left:
+        return []
+    verb = "separate" if len(left) > 1 else "determine"
+    found = f"This window does not {verb} {_listed(left)}"
+    fewest, best, longest = left, (0.0, 0.0), 0.0
+    for seconds, turned, still in known.longer():
+        best = (seconds, turned) if len(still) < len(fewest) else best
+        fewest = still if len(still) < len(fewest) else fewest
+        longest = seconds
+        if not fewest:
+            break
+    shown = f"{best[0]:.2g} s of this motion ({best[1]:.2g} rad)"
+    if not fewest:
+        return [f"{found}; some {shown} would."]
+    if len(fewest) < len(left):
+        gained = [name for name in left if name not in fewest]
+        found += f"; some {shown} would determine {_listed(gained)}"
+    if longest:
+        found += f"; {longest:.2g} s of it would not determine {_listed(fewest)}"
+    return [f"{found}."]
+
+
+def _listed(names: list[str]) -> str:
+    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+
+
 def _shape(own: Estimates) -> list[str]:
+    if not own.shape_known:
+        return ["No ratio of moments is determined."] if own.size_known else []
     found = []
     for axis, sure in zip("xyz", own.moments_known, strict=True):
         if not sure:
             found.append(f"The moment near {axis} is not determined.")
     open_axes = [axis for axis, sure in zip("xyz", own.axes_known, strict=True) if not sure]
-    if len(open_axes) == 3:
+    if len(open_axes) == 3 and np.all(own.moments_known):
         found.append(
             "The three moments are alike within their errors: no principal axis is determined."
         )
+    elif open_axes and not np.all(own.moments_known):
+        found.append(f"The principal axes near {' and '.join(open_axes)} are not determined.")
     elif open_axes:
         found.append(
             f"The moments near {' and '.join(open_axes)} are alike within their errors: their axes "
             "are open within their plane, as those of a symmetric body are."
         )
     a, b, c = sorted(own.moments)
-    if a + b - c < FLAT * c:
+    if np.all(own.moments_known) and a + b - c < FLAT * c:
         found.append(
             "The largest moment equals the sum of the other two: the body is flat, or the fit sits "
             "at the limit of what bodies can have, where standard errors hold on one side only."
@@ -81,52 +107,43 @@ def _shape(own: Estimates) -> list[str]:
     return found
 
 
-def _scale(compared: Compared, scale: Scale) -> list[str]:
-    if scale.unit or not compared.chosen.shape:
+def _scale(compared: Compared, scale: Scale, own: Estimates) -> list[str]:
+    if scale.unit or not (compared.chosen.shape and own.shape_known):
         return []
-    damped = " and the damping over a moment" if compared.chosen.damping else ""
+    damping = compared.chosen.damping and own.damping_known
+    damped = " and the damping over a moment" if damping else ""
     return [
         f"Without a torque only ratios of moments{damped} are determined, never their scale: give "
         "--torque, or a moment that is known with --moment."
     ]
 
 
-def _bias(compared: Compared, spread: Spread, terms: Terms) -> list[str]:
+def _bias(known: Determined, own: Estimates) -> list[str]:
     """Whether it is determined, and why it is not fitted."""
-    chosen = compared.chosen
-    rich = spread if chosen.bias else _rich(compared)
-    if rich is None:
+    compared = known.compared
+    if not compared.rich.bias:
         return []
-    axes = [direction(axis) for axis in open_directions(rich)]
+    given = "; --no-bias takes it as zero, which is right for a gyro that was calibrated."
+    axes = [direction(axis) for axis in open_directions(known.spreads)]
     if len(axes) == 3:
-        return ["A bias is not determined in any direction: it looks like omega itself."]
-    found = []
-    if not chosen.bias:
-        chance = compared.chances.get("bias", 1.0)
-        found.append(
-            f"A gyro bias is not supported by the data: noise alone gains as much with a "
-            f"probability of {chance:.2g}. It is taken as zero."
-        )
+        return [f"A bias is not determined in any direction: it looks like omega itself{given}"]
     if axes:
-        zero = " and is taken as zero there" if chosen.bias else ""
-        found.append(
-            f"A bias along {' and '.join(axes)} is not determined{zero}: other moments "
-            "would show the same omega."
-        )
-    return found
+        return [
+            f"A bias along {' and '.join(axes)} is not determined: other moments would show the "
+            f"same omega{given}"
+        ]
+    if compared.chosen.bias:
+        return []
+    errors = ", ".join(f"{error:.2g}" for error in own.bias_errors)
+    return [
+        "A gyro bias is not supported by the data: noise alone gains as much with a probability of "
+        f"{compared.chances.get('bias', 1.0):.2g}. It is taken as zero; its standard errors are "
+        f"{errors} rad/s."
+    ]
 
 
-def _rich(compared: Compared) -> Spread | None:
-    """The covariance of the model with a bias, where one was fitted."""
-    known = [free for free in compared.fits if free.bias and free.shape == compared.chosen.shape]
-    if not known:
-        return None
-    free = next((f for f in known if f.damping == compared.chosen.damping), known[0])
-    return spread_of(compared.data, compared.fits[free], compared.noise)
-
-
-def _damping(compared: Compared, own: Estimates, terms: Terms) -> list[str]:
-    if compared.chosen.damping:
+def _damping(compared: Compared, scale: Scale, own: Estimates, terms: Terms) -> list[str]:
+    if compared.chosen.damping and own.damping_known:
         if own.damping < 0.0:
             return [
                 "The damping comes out negative: the body gains energy, which no friction does. "
@@ -135,17 +152,22 @@ def _damping(compared: Compared, own: Estimates, terms: Terms) -> list[str]:
         return []
     if terms.damping is False:
         return []
+    if not own.damping_known:
+        return ["Damping is not determined."]
     negative = any(fit.one.damping < 0.0 for free, fit in compared.fits.items() if free.damping)
     chance = compared.chances.get("damping", 1.0)
     if chance == 1.0 and negative:
-        return ["No damping is seen: the energy does not fall. It is taken as zero."]
-    return [
-        "Damping is not supported by the data: noise alone gains as much with a probability of "
-        f"{chance:.2g}. It is taken as zero."
-    ]
+        found = "No damping is seen: the energy does not fall."
+    else:
+        found = (
+            "Damping is not supported by the data: noise alone gains as much with a probability of "
+            f"{chance:.2g}."
+        )
+    unit = "N m s/rad" if scale.unit else "1/s"
+    return [f"{found} It is taken as zero; its standard error is {own.damping_error:.2g} {unit}."]
 
 
-def _quality(samples: Samples, compared: Compared) -> list[str]:
+def _quality(compared: Compared) -> list[str]:
     noise, found = compared.noise, []
     if noise.correlation > 0.0:
         found.append(

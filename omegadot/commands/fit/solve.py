@@ -50,7 +50,8 @@ class Data:
 
     times: (n,) from zero.  omega: (n, 3).  orientation: (n, 4), or None where it is not given.
     torque: (3,), body axes; zero where none is known.  turn_weight: that of a rad of attitude where
-    one of omega is 1.  tolerance: relative, of the motion.
+    one of omega is 1.  tolerance: relative, of the motion.  ridge: the weight of what pulls bias,
+    damping and turn to zero.
     """
 
     times: Array
@@ -59,6 +60,7 @@ class Data:
     torque: Array
     turn_weight: float = 1.0
     tolerance: float = 1e-9
+    ridge: float = RIDGE
 
     def until(self, count: int) -> Data:
         """The first samples alone."""
@@ -161,8 +163,8 @@ def _evaluate(
 ) -> tuple[Array, Array]:
     """Residuals and their derivatives.
 
-    With one more for each of bias, damping and turn, so weak that it matters only where the data
-    give no hold.
+    With one more for each of bias, damping and turn, as a rule so weak that it matters only where
+    the data give no hold.
     """
     steps = STEP * np.maximum(np.abs(x), 1.0)
     vectors = np.vstack([x, x + np.diag(steps)])
@@ -171,7 +173,7 @@ def _evaluate(
     except ArithmeticError:
         count = data.omega.size * (1 if data.orientation is None else 2) + len(tail)
         return np.full(count, FAR), np.zeros((count, len(x)))
-    held = RIDGE * (vectors[:, len(x) - len(tail) :] + tail)
+    held = data.ridge * (vectors[:, len(x) - len(tail) :] + tail)
     left = np.hstack([left, held])
     return left[0], (left[1:] - left[0]).T / steps
 

@@ -8,9 +8,11 @@ data determine a number, and where they do not, the standard error comes out as 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import norm as normal
+from scipy.stats import t as student
 
 from omegadot.commands.fit.noise import Noise
 from omegadot.commands.fit.parameters import Free, Parameters, moved
@@ -19,6 +21,7 @@ from omegadot.reference_impl.system import Array
 
 STEP = 1e-5  # of central differences, of numbers of the order of one: rounding and curve are alike
 RESOLVED = 1e-7  # relative, of derivatives by differences
+FAR = 4.0  # standard errors
 RANGE = 1.0  # in the units of the fit: of omega, bias, damping and moments without any data
 TURN_RANGE = np.pi  # of the attitude
 SCALE_RANGE = 10.0  # of the inertia where it has a scale, of its size
@@ -59,18 +62,25 @@ class Spread:
         return np.eye(len(self.covariance))[self.places(name)]
 
 
-def spread_of(data: Data, fit: Fitted, noise: Noise) -> Spread:
-    """The covariance of a fit that leaves this noise."""
+def spread_of(data: Data, fit: Fitted, noise: Noise, free: Free | None = None) -> Spread:
+    """The covariance of a fit that leaves this noise.
+
+    free: what is open, which may be more than was fitted: a term that is zero in the fit, but need
+    not be so in the body or the gyro, widens the rest as any other.
+    """
+    fit = fit if free is None else replace(fit, free=free)
     directions = fit.free.directions(fit.one.inertia)
     count = fit.free.count
     # A body at the limit of what can exist is moved beyond it: the equations allow that, as long
     # as no moment vanishes.
     step = min(STEP, 0.1 * float(np.linalg.eigvalsh(fit.one.inertia)[0]))
-    left = data.residuals(
-        moved(fit.one, step * np.vstack([np.eye(count), -np.eye(count)]), fit.free)
-    )
+    lanes = moved(fit.one, step * np.vstack([np.eye(count), -np.eye(count)]), fit.free)
+    try:
+        left = data.residuals(lanes)
+    except ArithmeticError:  # beside it there is no motion: it shows nothing
+        left = np.zeros((2 * count, data.omega.size))
     slopes = (left[:count] - left[count:]) / (2.0 * step)
-    slopes /= noise.omega * np.sqrt(noise.inflation)
+    slopes /= noise.omega * np.sqrt(noise.inflation) * _of_few(left.shape[1] - count)
     size = float(np.linalg.norm(fit.one.inertia))
     ranges = np.full(count, RANGE)
     ranges[count - 3 * fit.free.orientation :] = TURN_RANGE
@@ -78,6 +88,14 @@ def spread_of(data: Data, fit: Fitted, noise: Noise) -> Spread:
         ranges[: len(directions)] = SCALE_RANGE * size
         ranges[count - 3 * fit.free.orientation - fit.free.damping :][: fit.free.damping] *= size
     return Spread(fit.one, fit.free, _covariance(slopes, ranges), directions)
+
+
+def _of_few(spare: int) -> float:
+    """By how much an error grows where its size is estimated from few residuals.
+
+    By Student's t: FAR standard errors then hold with the probability of a normal distribution.
+    """
+    return float(student.isf(normal.sf(FAR), max(spare, 1)) / FAR)
 
 
 def _covariance(slopes: Array, ranges: Array) -> Array:

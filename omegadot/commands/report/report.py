@@ -8,7 +8,13 @@ from pathlib import Path
 
 from omegadot.commands.compare.compare import compare
 from omegadot.reports.charts.chart_library import packed_library
-from omegadot.reports.record.whole_file import PAGE_MARK, check_target, write_whole
+from omegadot.reports.record.whole_file import (
+    PAGE_MARK,
+    as_record_error,
+    check_target,
+    path_of,
+    write_whole,
+)
 
 TWO_RUNS = Path("two-runs.html")
 PathLike = str | os.PathLike[str]
@@ -20,9 +26,9 @@ def report(run: PathLike, other: PathLike | None = None, *, out: PathLike | None
     out: the page's file; else ``report.html`` in the run's folder, or, of two runs,
     ``two-runs.html`` in the current one. Raises RecordError.
     """
-    file = None if out is None else Path(out)
+    file = None if out is None else path_of(out)
     if other is None:
-        return redraw(Path(run), file)
+        return redraw(path_of(run), file)
     from omegadot.reports.two_runs.page import draw_two_runs
 
     check_target(file or TWO_RUNS, PAGE_MARK)
@@ -34,7 +40,9 @@ def redraw(folder: Path, out: Path | None = None) -> Path:
 
     A choice of engine that was written into the run's folder is a section of it.
     """
-    if folder.is_dir():
+    with as_record_error(folder):
+        is_folder = folder.is_dir()
+    if is_folder:
         packed_library()  # started first: it has a core to itself
     collecting = gc.isenabled()
     gc.disable()  # nothing that is made here is garbage before the page is whole

@@ -16,13 +16,13 @@ from omegadot.reports.text.terminal import print_summary
 
 def exit_code(result: RunResult) -> int:
     """0 every gate holds, 1 a gate fails or a declared exception does not hold any more, 3 an
-    engine failed to answer or to start.
+    engine failed to answer or to start, or the record is not where it was requested.
 
     An engine that is not installed counts only where it was given by name.
     """
     if not result.complete:
         return options.INTERRUPTED
-    return options.exit_code(result.passed, result.answered)
+    return options.exit_code(result.passed, result.answered and not result.note)
 
 
 def print_text(result: RunResult) -> None:

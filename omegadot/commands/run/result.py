@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from omegadot.harness.plan import EngineChoice
-from omegadot.reports.record.record import unfinished_name
+from omegadot.reports.record.interrupted import place_of_interrupted
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.run_record import RunRecord, TaskResult
 
@@ -83,20 +83,23 @@ def result_of(
 ) -> RunResult:
     """The result of a record, which is written where a folder is given. Raises RecordError.
 
-    An interrupted run does not replace an earlier record: it is written beside it. What the disk
-    refuses is written to the system's folder for temporary files.
+    An interrupted run goes to the folder only where there is no earlier record, else beside it (see
+    `place_of_interrupted`). What finds no place, or is refused by the disk, is written to the
+    system's folder for temporary files.
     """
     folder, note = None, ""
     if out is not None:
-        requested = Path(out)
-        folder = requested if record.run["complete"] else unfinished_name(requested)
-        if folder != requested:
-            note = f"The earlier record in {requested} is kept: this run was interrupted."
+        folder = requested = Path(out)
+        if not record.run["complete"]:
+            folder, note = place_of_interrupted(record.run, requested)
         try:
-            record.save(folder)
+            if folder is not None:
+                record.save(folder)
         except RecordError as error:
-            if not isinstance(error.__cause__, OSError):
+            if folder == requested and not isinstance(error.__cause__, OSError):
                 raise
+            folder, note = None, str(error)
+        if folder is None:
             folder = record.save(Path(tempfile.mkdtemp(prefix="omegadot-")) / "run")
-            note = f"{error} It is in {folder}."
+            note = f"{note} This run's record is in {folder}."
     return RunResult(record, folder, frozenset(c.name for c in choices if c.required), note)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
-from pathlib import Path
 
 from omegadot.adapters.protocol import Setup
 from omegadot.commands.check.exceptions import exceptions_of
@@ -17,20 +16,22 @@ from omegadot.harness.arguments import Via, by_ways, case_of, engine_choices, sc
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import Outcome, RunRequest, tasks_of
 from omegadot.harness.runner import Runner
+from omegadot.harness.usage import UsageError
 from omegadot.reports.record.record import check_folder
+from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.run_record import RunRecord
 from omegadot.scenarios import ScenarioLike
 
 
 def run(
-    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
-    engines: EngineLike | Sequence[EngineLike] = (),
+    scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
+    engines: EngineLike | Sequence[EngineLike] | None = None,
     *,
-    timesteps: float | Sequence[float] = (),
-    accuracies: float | Sequence[float] = (),
+    timesteps: float | Sequence[float] | None = None,
+    accuracies: float | Sequence[float] | None = None,
     out: str | os.PathLike[str] | None = None,
     setup: Setup = "physics",
-    via: Via | Sequence[Via] = (),
+    via: Via | Sequence[Via] | None = None,
     adapters: EngineLike | Sequence[EngineLike] = (),
     exceptions: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (),
     timeout: float = 60.0,
@@ -53,13 +54,19 @@ def run(
     hold.  seed: of the random states.  command: what the record names as the command.
     Raises UsageError, ScenarioError, RecordError, NoTruthError, and RunInterrupted on Ctrl-C.
     """
-    choices = by_ways(engine_choices(several(engines), several(adapters)), several(via))
-    knobs = several(timesteps), several(accuracies)
-    cases = [case_of(scenario, *knobs) for scenario in scenarios_of(several(scenarios))]
+    choices = by_ways(
+        engine_choices(several(engines, "engines"), several(adapters)), several(via, "via")
+    )
+    knobs = several(timesteps, "timesteps"), several(accuracies, "accuracies")
+    cases = [
+        case_of(scenario, *knobs) for scenario in scenarios_of(several(scenarios, "scenarios"))
+    ]
     files: list[str | os.PathLike[str]] = several(exceptions)
-    known = exceptions_of(choices, map(Path, files))
+    if files and setup != "physics":
+        raise UsageError("--exceptions: they are of --setup physics; leave one of the two out.")
+    known = exceptions_of(choices, map(path_of, files))
     if out is not None:
-        check_folder(Path(out))
+        check_folder(path_of(out))
     cores = (os.cpu_count() or 1) if jobs is None else jobs
     request = RunRequest(cases, choices, setup, seed, timeout, cores, memory)
     started = time.perf_counter()

@@ -63,7 +63,7 @@ class SchemesResult:
 
 
 def schemes(
-    engines: EngineLike | Sequence[EngineLike] = (),
+    engines: EngineLike | Sequence[EngineLike] | None = None,
     *,
     adapters: EngineLike | Sequence[EngineLike] = (),
     pythons: Mapping[str, str] | None = None,
@@ -76,7 +76,7 @@ def schemes(
     """
     choices = [
         choice
-        for choice in engine_choices(several(engines), several(adapters))
+        for choice in engine_choices(several(engines, "engines"), several(adapters))
         if choice.required or choice.name not in (NOT_STEPPED, ITSELF)
     ]
     interpreters = checked_interpreters(pythons or {}, [choice.name for choice in choices])

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from omegadot.commands.score.measured import Measured, distance, filled
+from omegadot.diagnosis.equations.candidate import BY_MASS
 from omegadot.diagnosis.equations.equation_form import (
     Form,
     accelerations,
@@ -24,12 +25,11 @@ from omegadot.diagnosis.equations.equation_form import (
     stacked,
 )
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
-from omegadot.diagnosis.equations.search import BY_MASS
 from omegadot.diagnosis.stepping import trace as diagnosis
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.motion import AccelerationOf, acceleration_of
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.motion import slope_of

@@ -21,6 +21,7 @@ def _option(metavar: str, text: str, *names: str) -> Any:
 
 
 def score(
+    context: typer.Context,
     trace: Annotated[Path, typer.Argument(metavar="TRACE", help="A CSV or Parquet file.")],
     scenario: Annotated[
         str, _option("SCENARIO", "The scenario of the motion: a built-in name or a path.")
@@ -118,9 +119,10 @@ def score(
     run with it crashed, timed out or could not be started.
     """
     given = {**locals()}
-    for name_apart in ("column", "with_engine", "detect", "output"):
+    for name_apart in ("context", "column", "with_engine", "detect", "output"):
         del given[name_apart]
     if detect:
+        _refuse_beside_detect(context)
         from omegadot.commands.score.detection.detect import detect as detect_conventions
         from omegadot.commands.score.print_score import print_detected
 
@@ -138,7 +140,7 @@ def score(
         result = score_trace(
             **given,
             columns=column or [],
-            engines=with_engine or [],
+            engines=with_engine or None,
             command=command_line(),
             progress=on_a_terminal(),
         )
@@ -149,3 +151,21 @@ def score(
     else:
         print_text(result)
     raise typer.Exit(exit_code(result))
+
+
+# What a search for conventions takes; it finds the rest, and judges nothing.
+_OF_DETECT = {"trace", "scenario", "column", "map_file", "rate", "from_time", "to_time"}
+
+
+def _refuse_beside_detect(context: typer.Context) -> None:
+    """Raise UsageError for an option that would be ignored."""
+    from omegadot.harness.usage import UsageError
+
+    for parameter in context.command.params:
+        source = context.get_parameter_source(str(parameter.name))
+        typed = source is not None and source.name == "COMMANDLINE"
+        if typed and parameter.name not in _OF_DETECT | {"detect", "output"}:
+            raise UsageError(
+                f"{parameter.opts[0]}: --detect finds how the trace is to be read, and takes no "
+                "other setting; leave one of the two out."
+            )

@@ -111,8 +111,13 @@ def _check_widths(file: str, lines: pl.Series, rows: pl.Series, width: int, deli
         )
 
 
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")  # how such a text begins
+
+
 def text_of(file: str, content: bytes) -> str:
     """The file's text. Raises TraceError where it is no UTF-8 text."""
+    if content.startswith(_UTF16):
+        raise TraceError(f"{file}: UTF-16 text; save it in UTF-8.")
     if b"\0" in content:
         raise TraceError(f"{file}: neither CSV nor Parquet (binary, or text that is not UTF-8).")
     try:

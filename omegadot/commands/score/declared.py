@@ -9,8 +9,8 @@ import numpy as np
 from omegadot.commands.score.trace import Trace
 from omegadot.gates.bounds.scales import EPS
 from omegadot.harness.usage import UsageError, nearest
-from omegadot.reference_impl.euler_angles import Angles
-from omegadot.reference_impl.flight_schemes import FLIGHT_SCHEMES
+from omegadot.reference_impl.flight.euler_angles import Angles
+from omegadot.reference_impl.flight.schemes import FLIGHT_SCHEMES
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array
 

@@ -16,11 +16,11 @@ from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION, ROUNDINGS_PER
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.closed_forms import closed_form_of
 from omegadot.reference_impl.energy import total_energy
-from omegadot.reference_impl.exact_solution import exact_solution
-from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.momentum import angular_momentum, linear_momentum
 from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.series import solve_series
+from omegadot.reference_impl.solutions.exact_solution import exact_solution
+from omegadot.reference_impl.solutions.growth import growth_along
+from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.system import Array, State, System
 
 # Growth and floor change over turns of the body, not over samples.

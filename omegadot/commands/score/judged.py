@@ -31,7 +31,7 @@ from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
-from omegadot.reference_impl.euler_angles import Angles
+from omegadot.reference_impl.flight.euler_angles import Angles
 from omegadot.reference_impl.system import Array
 
 GATES = {c: "invariants" if c in INVARIANT_CHANNELS else "trajectory" for c in CHANNELS}

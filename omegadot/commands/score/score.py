@@ -6,9 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
-from omegadot.adapters.registry import registered
 from omegadot.commands.progress import Reporting, reporting
 from omegadot.commands.run.result import RunInterrupted, RunResult, result_of
 from omegadot.commands.score.convention import SETTINGS
@@ -24,9 +22,11 @@ from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.harness.arguments import case_of, engine_choices, scenarios_of, several
 from omegadot.harness.engine_target import EngineLike
+from omegadot.harness.own_engines import known_engines
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError
 from omegadot.reports.record.record import check_folder
+from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.run_record import RunRecord
 from omegadot.scenarios import ScenarioLike
 
@@ -101,7 +101,7 @@ def score(
     momentum: str | None = None,
     flip_time: str | None = None,
     name: str = "trace",
-    engines: EngineLike | Sequence[EngineLike] = (),
+    engines: EngineLike | Sequence[EngineLike] | None = None,
     out: str | os.PathLike[str] | None = None,
     command: Sequence[str] = (),
     progress: Reporting = False,
@@ -120,12 +120,12 @@ def score(
     given = locals()
     settings = {key: given[field] for key, field in SETTINGS.items()}
     required = {key: given[key.replace("-", "_")] for key in KINDS}
-    case, choices = case_given(scenario), _choices(name, several(engines))
+    case, choices = case_given(scenario), _choices(name, several(engines, "engines"))
     if out is not None:
-        check_folder(Path(out))
+        check_folder(path_of(out))
     requirements = requirements_of(required)
-    mapped = Path(map_file) if map_file else None
-    reading = reading_of(read_table(Path(trace)), columns, mapped, settings)
+    mapped = path_of(map_file) if map_file else None
+    reading = reading_of(read_table(path_of(trace)), columns, mapped, settings)
     found = judge_trace(case, reading, integrator_scheme, timestep)
     rows = rows_of(found, requirements)
     with reporting(progress) as report:
@@ -148,6 +148,6 @@ def _choices(name: str, engines: Sequence[EngineLike]) -> list[EngineChoice]:
         raise UsageError("--name is empty; give the trace a name.")
     if not name.isprintable():
         raise UsageError(f"--name {name!r}: give the trace a name of printable characters.")
-    if name in (*registered(), *(choice.name for choice in choices)):
+    if name in (*known_engines(), *(choice.name for choice in choices)):
         raise UsageError(f"--name {name}: an engine has this name; give the trace another.")
     return choices

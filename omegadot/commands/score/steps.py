@@ -13,12 +13,12 @@ from omegadot.commands.score.declared import KNOWN, Declared
 from omegadot.commands.score.exact_trajectory import Rounding, joined, part_of
 from omegadot.commands.score.measured import Measured, distance, filled
 from omegadot.gates.bounds.likeness import Likeness, likeness, share_of
-from omegadot.reference_impl.companion import Steps, companion
 from omegadot.reference_impl.coordinates import Coordinates, distinct
-from omegadot.reference_impl.flight_schemes import FLIGHT_SCHEMES, step_flight
-from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.flight.schemes import FLIGHT_SCHEMES, step_flight
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.solutions.companion import Steps, companion
+from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.system import Array, State
 
 # All schemes are stepped to the first samples, and only those that fit there to the end: so many

@@ -18,8 +18,8 @@ from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.states.equation import random_acceleration, random_states
 from omegadot.harness.arguments import case_of
 from omegadot.harness.usage import UsageError, nearest
-from omegadot.reference_impl.exact_solution import exact_states
-from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.solutions.exact_solution import exact_states
+from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.system import Acceleration, Array, State
 from omegadot.reports.text.numbers import plain
 from omegadot.scenarios import ScenarioLike, load_scenario, scenario

@@ -20,7 +20,7 @@ from platformdirs import user_cache_path
 
 from omegadot.commands.other_python import worker_command
 from omegadot.commands.versions.installer import Installer, InstallError, python_of
-from omegadot.commands.versions.release import Product, Span
+from omegadot.commands.versions.release import Product, Span, version_of
 from omegadot.harness.usage import UsageError
 from omegadot.reports.record.whole_file import write_whole
 
@@ -65,10 +65,12 @@ class Environments:
 
     def cached(self) -> list[str]:
         """The releases of the product whose environments are whole."""
+        return [version for version in self._noted() if self._known(version) is not None]
+
+    def _noted(self) -> list[str]:
         start = f"{self._product.package}-"
         names = [file.name for file in self._cache.glob(f"{start}*{_SUFFIX}")]
-        versions = [name.removeprefix(start).removesuffix(_SUFFIX) for name in names]
-        return [version for version in versions if self._known(version) is not None]
+        return [name.removeprefix(start).removesuffix(_SUFFIX) for name in names]
 
     def releases(self, span: Span) -> list[str]:
         """Those that there are in a span; without an installer those in the cache.
@@ -121,10 +123,17 @@ class Environments:
             ) from error
 
     def _marker(self, version: str) -> Path:
+        """Where it is noted that an environment is whole."""
         return self._cache / f"{self._product.package}-{version}{_SUFFIX}"
 
     def _known(self, version: str) -> Path | None:
-        """The interpreter of a whole environment; None where the Python it leads to is gone."""
+        """The interpreter of a whole environment; None where the Python it leads to is gone.
+
+        That of 4.0 is the one of 4.0.0.
+        """
+        if not self._marker(version).exists():
+            alike = (v for v in self._noted() if version_of(v) == version_of(version))
+            version = next(alike, version)
         try:
             reported = json.loads(self._marker(version).read_text(encoding="utf-8"))
             same = reported["requirements"] == self._product.requirements(version)

@@ -27,9 +27,9 @@ from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import forward_rows, inverse_rows
 from omegadot.gates.states.model import body_rows, state_rows
 from omegadot.gates.truth import scheme_key
-from omegadot.harness.judge import is_finite
+from omegadot.harness.judging.judged_run import is_finite
 from omegadot.reference_impl.energy import total_energy
-from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.harness_end.process import Answer
 from omegadot.workers.wire import body_from

@@ -49,12 +49,16 @@ FEWEST = 2
 
 
 def requested_releases(
-    arguments: Sequence[str], releases: Callable[[Span], Sequence[str]]
+    arguments: Sequence[str],
+    releases: Callable[[Span], Sequence[str]],
+    cached: Sequence[str] | None = None,
 ) -> tuple[list[str], dict[str, str]]:
     """The releases of ``VERSION``, ``LOW..HIGH`` and ``VERSION=PYTHON`` arguments, rising.
 
     With them the interpreters that some of the releases have already.
-    releases: the published ones, looked up where a range needs them. Raises UsageError.
+    releases: the published ones, looked up where a range needs them.  cached: offline, those of the
+    cache; the ends of a range are then versions too, so that it is seen which of them is not there.
+    Raises UsageError.
     """
     versions: list[str] = []
     pythons: dict[str, str] = {}
@@ -79,7 +83,9 @@ def requested_releases(
         elif dots and not (low and high):  # all releases of an engine are gigabytes
             raise UsageError(f"{argument}: a range has two ends; write 1.2.0..1.4.0.")
         elif dots:
-            versions += _within(argument, Span(low, high), releases)
+            span = Span(low, high)
+            versions += _within(argument, span, releases, cached is not None)
+            versions += [] if cached is None else _missing_ends(span, cached)
         elif version:
             versions.append(version)
         else:
@@ -94,7 +100,15 @@ def requested_releases(
     return found, pythons
 
 
-def _within(argument: str, span: Span, releases: Callable[[Span], Sequence[str]]) -> list[str]:
+def _missing_ends(span: Span, cached: Sequence[str]) -> list[str]:
+    """The ends of a range that the cache does not hold, whatever zeros they end in."""
+    there = {version_of(text) for text in cached}
+    return [end for end in (span.low, span.high) if version_of(end) not in there]
+
+
+def _within(
+    argument: str, span: Span, releases: Callable[[Span], Sequence[str]], offline: bool
+) -> list[str]:
     low, high = version_of(span.low), version_of(span.high)
     if low is not None and high is not None and low > high:
         raise UsageError(f"{argument}: it ends before it starts; write {span.high}..{span.low}.")
@@ -102,6 +116,11 @@ def _within(argument: str, span: Span, releases: Callable[[Span], Sequence[str]]
     if not found:
         known = rising(releases(Span("", "")))
         there = f"they go from {known[0]} to {known[-1]}" if known else "there are none"
+        if offline:
+            raise UsageError(
+                f"{argument}: the cache holds no release that lies there; of those in it "
+                f"{there}; leave out --offline to install others."
+            )
         raise UsageError(f"{argument}: no release for this Python lies there; {there}.")
     return found
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from omegadot.commands.versions.release import FEWEST
 from omegadot.reports.notebook import framed
+from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.versions.page import draw_versions, write_versions
 
 Value = float | str | None
@@ -97,7 +98,7 @@ class VersionsResult:
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
         """Write ``versions.json`` and ``versions.html``. Raises RecordError."""
-        write_versions(self.record, Path(folder))
+        write_versions(self.record, path_of(folder))
         return Path(folder)
 
     def __repr__(self) -> str:

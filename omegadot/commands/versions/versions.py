@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Literal
 
 from omegadot.adapters.protocol import Setup
@@ -21,7 +20,7 @@ from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import Via, check_way, several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, check_count, check_number, check_setup
-from omegadot.reports.record.whole_file import make_folder
+from omegadot.reports.record.whole_file import make_folder, path_of
 from omegadot.scenarios import ScenarioLike
 
 MOST_UNASKED = 1e9  # bytes
@@ -31,8 +30,8 @@ def versions(
     engine: str,
     releases: str | Sequence[str],
     *,
-    scenarios: ScenarioLike | Sequence[ScenarioLike] = (),
-    integrators: str | Sequence[str] = (),
+    scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
+    integrators: str | Sequence[str] | None = None,
     timestep: float | None = None,
     bisect: str | None = None,
     cache: str | os.PathLike[str] | None = None,
@@ -72,15 +71,20 @@ def versions(
     check_number("--timeout", timeout, 0.0)
     if jobs is not None:
         check_count("--jobs", jobs, 1)
-    aims = aims_of(several(scenarios), several(integrators), timestep)
+    _refuse_ignored(offline, installer, bisect, jobs)
+    aims = aims_of(several(scenarios, "scenarios"), several(integrators, "integrators"), timestep)
     if out is not None:
-        make_folder(Path(out))
+        make_folder(path_of(out))
     try:
         fetching = None if offline else installer_named(installer)
     except InstallError as error:
         raise UsageError(f"--installer {installer}: {error}.") from error
-    environments = Environments(Path(cache or default_cache()), product, fetching)
-    wanted, pythons = requested_releases(several(releases), environments.releases)
+    environments = Environments(path_of(cache or default_cache()), product, fetching)
+    wanted, pythons = requested_releases(
+        several(releases),
+        environments.releases,
+        environments.cached() if offline else None,
+    )
     gallery = Gallery(product, aims, environments.place, pythons, setup, timeout, via)
     with reporting(progress) as report:
         named = [version for version in wanted if version not in pythons]
@@ -112,6 +116,18 @@ def versions(
     if out is not None:
         result.save(out)
     return result
+
+
+def _refuse_ignored(offline: bool, installer: str, bisect: str | None, jobs: int | None) -> None:
+    """Raise UsageError for an argument that would be ignored beside another."""
+    if offline and installer != "auto":
+        raise UsageError(
+            f"--installer {installer}: nothing is installed with --offline; leave one of them out."
+        )
+    if bisect is not None and jobs is not None:
+        raise UsageError(
+            f"--jobs {jobs}: --bisect measures one version after another; leave one of them out."
+        )
 
 
 def _ask(space: Space, product: Product, ask: Callable[[str], bool] | None) -> None:

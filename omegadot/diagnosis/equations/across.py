@@ -3,20 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
 
-from omegadot.diagnosis.equations.equation_form import Form, same_form
+from omegadot.diagnosis.equations.at_states import where_of, where_wrong
+from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.held import Held, Scene, Scenes
-from omegadot.diagnosis.equations.search import Candidate, levels
-from omegadot.diagnosis.wording.conditions import LEAST, only_where
-from omegadot.diagnosis.wording.features import in_common
+from omegadot.diagnosis.equations.search import levels
+from omegadot.diagnosis.equations.worded import conditional, worded
 
-QUICK = 3  # levels of one scenario that are quick, and more basic than what another has shown
+PLAIN = 2  # levels of one scenario without limits: they fit all states, or those that are wrong
+QUICK = 3  # levels that are quick, and more basic than what another scenario has shown
 MOST_DEEP = 5  # scenarios that are searched to the end; the rest have what these have
-MOST_NAMED = 3  # causes between which a scenario does not decide
+
+
+@dataclass(frozen=True)
+class _Level:
+    """What holds on every scenario; what does by other numbers on each; what holds on some."""
+
+    strong: Sequence[Held] = ()
+    weak: Sequence[Held] = ()
+    partial: Sequence[Held] = ()
+
+
+NONE = _Level()
 
 
 class _Search:
@@ -38,14 +51,13 @@ class Across:
 
     def __init__(self) -> None:
         self._all = Scenes()
-        # by integrator and scenario: each cause alone explains the runs; whether they are decisive
-        self.of_runs: dict[str, dict[str, tuple[tuple[str, ...], bool]]] = {}
-        # by integrator and scenario, whether a run fails
-        self.fails: dict[str, dict[str, bool]] = {}
-        # by integrator, what shows where two answers to one request differ
-        self.again: dict[str, str] = {}
         self._accepted: list[list[Candidate]] = []
-        self._weak: list[Candidate] = []
+        self._weak: dict[str, list[Held]] = {}
+        self._quick: dict[tuple[str, str, int], _Level] = {}
+        self._nested: dict[str, Across] = {}
+        self._explains: dict[tuple[str, str], set[str]] = {}
+        self._partly: dict[str, list[tuple[Held, str]]] = {}
+        self._conditions: dict[tuple[tuple[str, ...], str], str] = {}
         self._texts: dict[tuple[str, str], str] = {}
         self._chosen: dict[tuple[str, str], Candidate] = {}
         self._searches: dict[tuple[str, str], _Search] = {}
@@ -60,10 +72,17 @@ class Across:
         self.cause(name, source)
         return self._chosen.get((name, source))
 
+    def explained(self, name: str, source: str) -> set[str]:
+        """The scenarios that `chosen` explains."""
+        self.cause(name, source)
+        return self._explains.get((name, source), set()) | {name}
+
     def add(self, scene: Scene) -> None:
         """One more scenario; what was found before may not hold any more."""
         self.scenes[scene.name] = scene
-        self._accepted, self._weak, self._texts, self._chosen = [], [], {}, {}
+        self._accepted, self._texts, self._chosen = [], {}, {}
+        self._weak, self._quick, self._nested = {}, {}, {}
+        self._conditions, self._partly, self._explains = {}, {}, {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -76,51 +95,98 @@ class Across:
         scene = self.scenes[name]
         if not scene.evidence[source].clear:
             return ""
-        conditional, weak = list[Held](), ""
-        weakest: Candidate | None = None
+        text = self._shared(scene, source, PLAIN)
+        text = text or conditional(self._quick_of(scene, source, PLAIN).partial)
+        if text:
+            return text
+        text = self._at_some_states(scene, source) or self._shared(scene, source, QUICK)
+        if text:
+            return text
+        quick = self._quick_of(scene, source, QUICK)
+        self._search_elsewhere(name, source)
+        text = self._known_elsewhere(scene, source)
+        known = (t for one, t in self._partly.get(source, ()) if scene.name in one.names)
+        text = text or next(known, "")
+        if text:
+            return text
+        weak, partial = quick.weak, list(quick.partial)
         for number, level in enumerate(self._search(scene, source)):
-            if number == QUICK:
-                self._search_elsewhere(name, source)
-                text = self._known_elsewhere(scene, source)
-                if text:
-                    return text
-            held = [self._all.held(one, scene, source) for one in _distinct(level)]
-            whole = [one for one in held if one.holds]
-            strong = [one for one in whole if one.strong]
-            least = min((len(one.against) for one in strong), default=0)
-            strong = [one for one in strong if len(one.against) == least]
-            text = self._worded(strong, source)
+            if number < QUICK:
+                continue
+            found = self._held(level, scene, source)
+            text = self._text_of(found.strong, source)
             if text:
-                self._accepted.append([one.candidate for one in strong])
-                self._chosen[name, source] = strong[0].candidate
+                self._accepted.append([one.candidate for one in found.strong])
+                self._chosen[name, source] = found.strong[0].candidate
                 return text
-            if whole and not weak:
-                weak = self._worded(whole, source)
-                weakest = whole[0].candidate
-            conditional += [one for one in held if not one.contradicted]
-            if number == 0:
-                text = self._conditional(conditional)
-                if text:
-                    return text
-        if not weak:
-            weakest, weak = self._weak_elsewhere(scene, source)
-        elif weakest is not None and weakest.numbers is not None:
-            self._weak.append(weakest)
-        if weak and weakest is not None:
-            self._chosen[name, source] = weakest
-            return weak
-        return self._at_some_states(scene, source) or self._conditional(conditional)
+            weak = weak or found.weak
+            partial += found.partial
+        text = self._weak_cause(scene, source, weak) or self._where_wrong(scene, source)
+        if not text:
+            text = conditional(partial)
+            named = [one for one in partial if text and conditional([one]) == text]
+            self._partly.setdefault(source, []).extend((one, text) for one in named[:1])
+        return text
 
-    def _weak_elsewhere(self, scene: Scene, source: str) -> tuple[Candidate | None, str]:
-        """What was found on another scenario by numbers that are others on each."""
+    def _held(self, level: Sequence[Candidate], scene: Scene, source: str) -> _Level:
+        """What fits one scenario, held against all others."""
+        held = [self._all.held(one, scene, source) for one in _distinct(level)]
+        whole = [one for one in held if one.holds]
+        strong = [one for one in whole if one.strong]
+        least = min((len(one.against) for one in strong), default=0)
+        strong = [one for one in strong if len(one.against) == least]
+        partial = [one for one in held if not one.contradicted]
+        return _Level(strong, [] if strong else whole, partial)
+
+    def _quick_of(self, scene: Scene, source: str, depth: int) -> _Level:
+        """The first of the quick levels of a scenario on which something holds everywhere."""
+        key = (scene.name, source, depth)
+        if key not in self._quick:
+            before = self._quick_of(scene, source, PLAIN) if depth > PLAIN else NONE
+            weak, partial, strong = before.weak, [*before.partial], before.strong
+            for level in islice(self._search(scene, source), PLAIN * (depth > PLAIN), depth):
+                if strong or conditional(partial):
+                    break
+                found = self._held(level, scene, source)
+                weak, partial, strong = weak or found.weak, [*partial, *found.partial], found.strong
+            self._quick[key] = _Level(strong, weak, partial)
+        return self._quick[key]
+
+    def _shared(self, scene: Scene, source: str, depth: int) -> str:
+        """Of all that holds everywhere, on whichever scenario it was found: what explains the most.
+
+        Between two that fit one scenario those decide that distinguish them.
+        """
+        best = self.best(scene, source, depth)
+        text = self._text_of(best, source)
+        if text:
+            self._chosen[scene.name, source] = best[0].candidate
+            self._explains[scene.name, source] = best[0].names
+        return text
+
+    def best(self, scene: Scene, source: str, depth: int) -> list[Held]:
+        """Of what holds everywhere and explains this scenario, what explains the most."""
+        wrong = [s for s in self.scenes.values() if source in s.evidence]
+        wrong = [s for s in wrong if s.evidence[source].clear]
+        found = [one for s in wrong for one in self._quick_of(s, source, depth).strong]
+        here = [one for one in found if scene.name in one.names]
+        most = max((len(one.shown) for one in here), default=0)
+        return list({o.candidate.key: o for o in here[::-1] if len(o.shown) == most}.values())[::-1]
+
+    def _weak_cause(self, scene: Scene, source: str, weak: Sequence[Held]) -> str:
+        """What fits by numbers that are others on each scenario, with those of the first."""
         evidence = scene.evidence[source]
-        for one in self._weak:
-            fitted = _fitting(one, evidence)
-            held = self._all.held(fitted, scene, source) if fitted else None
-            text = self._worded([held], source) if held and held.holds else ""
-            if text:
-                return fitted, text
-        return None, ""
+        for one in self._weak.setdefault(source, []):
+            fitted = _fitting(one.candidate, evidence)
+            if fitted and scene.name in one.names:
+                self._chosen[scene.name, source] = fitted
+                return self._text_of([one], source)
+        text = self._text_of(weak, source)
+        if text:
+            self._chosen[scene.name, source] = weak[0].candidate
+            if weak[0].candidate.numbers is not None:
+                self._weak[source].append(weak[0])
+        return text
 
     def _search_elsewhere(self, name: str, source: str) -> None:
         """For a scenario that is not searched to the end: the causes of those that are."""
@@ -137,7 +203,7 @@ class Across:
             fits = [one for one in (_fitting(one, evidence) for one in group) if one]
             held = [self._all.held(one, scene, source) for one in fits]
             whole = [one for one in held if one.holds and one.strong]
-            text = self._worded(whole, source)
+            text = self._text_of(whole, source)
             if text:
                 self._chosen[scene.name, source] = whole[0].candidate
                 return text
@@ -148,66 +214,55 @@ class Across:
         key = (scene.name, source)
         if key not in self._searches:
             deep = len(self._searches) < MOST_DEEP
-            self._searches[key] = _Search(levels(scene.evidence[source], deep))
+            self._searches[key] = _Search(
+                levels(scene.evidence[source], deep, self._all.tried(scene, source))
+            )
         return self._searches[key].levels()
 
     def _at_some_states(self, scene: Scene, source: str) -> str:
-        """Where the equation holds at some states: what fits the others, and which these are."""
-        evidence = scene.evidence[source]
-        wrong = np.flatnonzero(~evidence.sound)
-        every = [e for one in self.scenes.values() if (e := one.evidence.get(source))]
-        parts = [(e.system, e.states, e.sound) for e in every]
-        # where nothing of the kind acts, every state is right, and shows nothing
-        shown = [part for part in parts if not np.all(part[2])]
-        mixed = sum(bool(np.any(right)) for _, _, right in shown)
-        if not len(wrong) or not mixed:
-            return ""
-        alone = [(evidence.system, evidence.states, evidence.sound)]
-        few = sum(not np.all(right) for _, _, right in parts) < 2
-        where = only_where(parts) or (only_where(shown) if mixed > 1 else "")
-        where = where or (only_where(alone) if few else "")
-        if not where:
-            return ""
-        text = f"the equation holds at some states, and is wrong only where {where}"
-        if len(wrong) >= LEAST:
-            there = evidence.at(wrong)
-            for level in islice(levels(there, deep=False), 2):
-                texts = list(dict.fromkeys(one.text(evidence.system) for one in level))
-                if 0 < len(texts) <= MOST_NAMED:
-                    return f"{text}; there, {' or '.join(texts)}"
-        return text
+        """A plain cause at the states at which the engine is wrong, where others are right.
 
-    def _worded(self, whole: Sequence[Held], source: str) -> str:
-        """Causes that hold everywhere; several where no scenario decides between them."""
-        texts, forms = list[str](), list[tuple[set[str], Form]]()
-        for held in whole:
-            one = held.candidate
-            system = held.shown[0].evidence[source].system
-            plain = one.reading is None and one.terms is None
-            form = one.form(system) if plain else None
-            if form is not None and any(
-                same_form(form, other) and one.parts == parts for parts, other in forms
-            ):
-                continue
-            forms += [(one.parts, form)] if form is not None else []
-            texts.append(held.law or one.text(system) + held.where())
-        texts = list(dict.fromkeys(texts))
-        if not texts or len(texts) > MOST_NAMED:
+        These are looked at of all scenarios together: few states of one fit much.
+        """
+        every = [s for s in self.scenes.values() if source in s.evidence]
+        every = [s for s in every if s.evidence[source].finite]
+        shown = [s for s in every if not np.all(s.evidence[source].sound)]
+        if not any(np.any(s.evidence[source].sound) for s in shown):
             return ""
-        return texts[0] if len(texts) == 1 else "either " + ", or ".join(texts)
+        if source not in self._nested:
+            self._nested[source] = Across()
+            for one in shown:
+                wrong = one.evidence[source].at(np.flatnonzero(~one.evidence[source].sound))
+                self._nested[source].add(replace(one, evidence={source: wrong}))
+        best = self._nested[source].best(scene, source, PLAIN)
+        where = {one.candidate.key: self._where_of(one.candidate, source) for one in best}
+        sorted_ = [one for one in best if where[one.candidate.key]]
+        text = self._text_of(sorted_ or best, source)
+        if not text:
+            return ""
+        condition = where[sorted_[0].candidate.key] if sorted_ else ""
+        return (
+            f"{text}: it is wrong only where {condition}"
+            if condition
+            else f"{text}, but not always"
+        )
 
-    def _conditional(self, held: Sequence[Held]) -> str:
-        """The first cause that holds on the scenarios of one kind alone."""
-        for one in held:
-            shown, against = (
-                [scene.features for scene in group] for group in (one.shown, one.against)
-            )
-            common = in_common(shown, against)
-            if common and len(common) <= 2:
-                evidence = next(iter(one.shown[0].evidence.values()))
-                text = one.candidate.text(evidence.system)
-                return f"{text}, but only where {' or where '.join(common)}"
-        return ""
+    def _text_of(self, whole: Sequence[Held], source: str) -> str:
+        pivoted = any(s.system.load.pivot is not None for s in self.scenes.values())
+        return worded(whole, source, pivoted)
+
+    def _evidence(self, source: str) -> list[Evidence]:
+        return [e for one in self.scenes.values() if (e := one.evidence.get(source))]
+
+    def _where_of(self, one: Candidate, source: str) -> str:
+        if (one.key, source) not in self._conditions:
+            self._conditions[one.key, source] = where_of(one, self._evidence(source))
+        return self._conditions[one.key, source]
+
+    def _where_wrong(self, scene: Scene, source: str) -> str:
+        """Where the equation holds at some states: at which it does not."""
+        where = where_wrong(scene.evidence[source], self._evidence(source))
+        return f"the equation holds at some states, and is wrong only where {where}" * bool(where)
 
 
 def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:

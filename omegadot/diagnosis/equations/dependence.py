@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.wording.digits import listed, number
 from omegadot.gates.bounds.scales import norm
-from omegadot.harness.scaled import STATES, TWICE
+from omegadot.harness.requests.scaled import STATES, TWICE
 from omegadot.reference_impl.system import Array
 
 CLEAN = 1e-4  # of an exponent
-CLEAR_OF_ROUNDING = 1e4
+CLEAR_OF_ROUNDING = 1.0 / CLEAN  # in bounds, which are of many more roundings than there are
 LEAST = 4  # states
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.equations.equation_form import form_of
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.wording.digits import number
-from omegadot.diagnosis.wording.features import Features, in_common
+from omegadot.diagnosis.wording.features import Features, in_common, ways_of
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import rotate_inverse
@@ -20,8 +20,7 @@ from omegadot.reference_impl.system import Array
 
 PARALLEL = 1e-6  # the sine of the angle up to which two directions are the same
 CLEAN = 1e-4  # of an exponent, where a power law is exact but for rounding
-CLEAR_OF_ROUNDING = 1e4
-WAYS = 50  # in which scenarios can be sorted at least
+CLEAR_OF_ROUNDING = 1.0 / CLEAN  # in bounds, which are of many more roundings than there are
 
 
 def description(evidence: Evidence) -> str:
@@ -99,7 +98,7 @@ def _power(x: Array, y: Array) -> float | None:
 
 def scenarios_in_common(failing: Sequence[Features], passing: Sequence[Features]) -> str:
     """What the scenarios that fail have in common and the others lack."""
-    if comb(len(failing) + len(passing), len(failing)) < WAYS:
+    if comb(len(failing) + len(passing), len(failing)) < ways_of(failing):
         return ""  # so few are sorted by chance
     common = in_common(failing, passing)
     if not common or len(common) > 2:

@@ -25,7 +25,8 @@ from omegadot.reference_impl.system import Acceleration, Array, State, System
 SLACK = 4.0
 # Nothing within a few bounds has a cause: the bounds are of sound engines, and not exact.
 BEYOND_ROUNDING = 16.0
-FAR_FROM_ROUNDING = 1e3
+DIGITS = 3  # of fitted numbers that are printed
+FAR_FROM_ROUNDING = SLACK * 10.0**DIGITS  # of which what a fit leaves is less than the last digit
 SCREENED = 10  # states at which every hypothesis is tried; only what fits there is tried at all
 LANES = 512
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.families import THREE_NUMBERS, Family
-from omegadot.diagnosis.equations.hypotheses import wrong_form
-from omegadot.diagnosis.equations.search import Candidate, possible
+from omegadot.diagnosis.equations.tried import Tried
 from omegadot.diagnosis.wording.features import Features, in_common
 from omegadot.diagnosis.wording.laws import law_of, power_laws
 from omegadot.reference_impl.system import Array, Body, System
@@ -65,6 +65,11 @@ class Held:
     law: str = ""
 
     @property
+    def names(self) -> set[str]:
+        """The scenarios on which it fits."""
+        return {scene.name for scene in self.shown}
+
+    @property
     def strong(self) -> bool:
         """Whether one rule gives its numbers on every scenario, and it is no chance of one mass."""
         if self.candidate.by_mass and len({float(s.system.body.mass) for s in self.shown}) < 2:
@@ -94,11 +99,20 @@ class Scenes:
 
     def __init__(self) -> None:
         self.by_name: dict[str, Scene] = {}
-        self._with_another: dict[tuple[tuple[str, ...], str, str], bool] = {}
+        self._with_another: dict[tuple[tuple[str, ...], str, str], frozenset[str]] = {}
+        self._tried: dict[tuple[str, str], Tried] = {}
+
+    def tried(self, scene: Scene, source: str) -> Tried:
+        """The hypotheses on one scenario, worked out once."""
+        key = (scene.name, source)
+        if key not in self._tried:
+            self._tried[key] = Tried(scene.evidence[source])
+        return self._tried[key]
 
     def held(self, one: Candidate, scene: Scene, source: str) -> Held:
         """A candidate against every other scenario with evidence of the same source."""
         held = Held(one, [scene])
+        besides: frozenset[str] | None = None  # each of which with this explains what is seen
         for other in self.by_name.values():
             evidence = other.evidence.get(source)
             if other is scene or evidence is None or not evidence.finite:
@@ -119,7 +133,9 @@ class Scenes:
             elif bool(np.all(evidence.sound)):
                 held.against.append(other)
             elif evidence.clear:
-                held.contradicted |= not self._explained(one, other, source)
+                more = self._explained(one, other, source)
+                besides = more if besides is None else besides & more
+                held.contradicted |= not besides
         family = one.family if not one.fixed else None
         if family is not None and (held.numbers or held.against):
             family = VECTORS.get(family.name, family)
@@ -135,7 +151,9 @@ class Scenes:
     def _power_law(self, one: Candidate, known: Sequence[tuple[Scene, Array]], source: str) -> str:
         """How a candidate's one number goes with the sizes of the scenarios."""
         scenes, numbers = [scene for scene, _ in known], np.array([p[0] for _, p in known])
-        text, right = one.text(scenes[-1].system), np.zeros(len(known))
+        largest = int(np.argmax(np.abs(numbers)))  # next to nothing a factor is worded otherwise
+        shown = replace(one, numbers=known[largest][1])
+        text, right = shown.text(scenes[largest].system), np.zeros(len(known))
         ways = [(text, right, np.ones(len(known)))]
         if one.family is not None:
             right = np.array([one.family.right(scene.system)[0] for scene in scenes])
@@ -171,11 +189,11 @@ class Scenes:
             held.numbers.append((other, there.numbers))
         held.shown.append(other)
 
-    def _explained(self, one: Candidate, other: Scene, source: str) -> bool:
-        """Whether a scenario shows this and one more thing that is wrong; worked out once."""
+    def _explained(self, one: Candidate, other: Scene, source: str) -> frozenset[str]:
+        """What one more thing that is wrong explains a scenario with this; worked out once."""
         key = (one.key, other.name, source)
         if key not in self._with_another:
-            self._with_another[key] = _with_another(one, other.evidence[source])
+            self._with_another[key] = self.tried(other, source).beside(one)
         return self._with_another[key]
 
     def _numbers(self, family: Family, source: str) -> list[tuple[Array, Array]]:
@@ -193,12 +211,3 @@ class Scenes:
             if one is not None and one.numbers is not None:
                 found.append((right, one.numbers))
         return found
-
-
-def _with_another(one: Candidate, evidence: Evidence) -> bool:
-    """Whether a scenario shows this and one more thing that is wrong."""
-    if one.reading is not None or one.terms is not None:
-        return False
-    known = [h for h in possible(evidence) if h.part not in one.parts]
-    made = [wrong_form((*one.fixed, h), evidence.system) for h in known]
-    return bool(evidence.fitting(made))

@@ -6,7 +6,7 @@ import numpy as np
 
 from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING, SLACK, Evidence
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.body_motion import attitude_motion
+from omegadot.reference_impl.one_body.body_motion import attitude_motion
 from omegadot.reference_impl.schemes import SCHEMES
 
 

@@ -80,9 +80,12 @@ def equation_causes(across: Across, name: str, source: str) -> list[str]:
     single = _single(evidence)
     if single and evidence.eps <= EPS:
         return [single]
-    text = place_cause(evidence) or across.cause(name, source)
+    text = place_cause(evidence)
+    if not text and source in (FORWARD, ALONG) and np.any(found.angular):
+        text = _constant(across, source)
+    text = text or across.cause(name, source)
     if not text and source in (FORWARD, ALONG):
-        text = _constant(across, source) or difference_quotient(evidence)
+        text = difference_quotient(evidence)
     return [text] if text else known_difference(across, name, source)
 
 

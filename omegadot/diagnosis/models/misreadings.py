@@ -66,6 +66,9 @@ OF_ANY_STATE = (
         _turned("linear_velocity", rotate),
     ),
 )
+IN_BODY_AXES = Misreading(
+    "the position looks like body axes: it matches after R", _turned("position", rotate)
+)
 NOT_UNIT = Misreading(
     "the quaternion is not of unit length: it matches once normalised",
     changed("orientation", normalize),
@@ -110,4 +113,4 @@ def misreadings(system: System) -> tuple[Misreading, ...]:
             ),
         ),
     )
-    return (*OF_ANY_STATE, *of_origin, NOT_UNIT, *by_inertia)
+    return (*OF_ANY_STATE, IN_BODY_AXES, *of_origin, NOT_UNIT, *by_inertia)

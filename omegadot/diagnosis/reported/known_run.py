@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.wording.digits import listed
-from omegadot.gates.bounds.scales import EPS, norm
+from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION, norm
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State
 
-CLEAR, CLEAR_OF_SINGLE = 1e4, 64.0  # times rounding
 CLEAN = 0.05  # of an exponent
+# Times rounding: that of one step then changes the exponent of a halved error by half as much.
+CLEAR = 2.0 * ROUNDINGS_PER_EVALUATION / (CLEAN * np.log(2.0))
 LEAST = 4  # samples that show how an error grows
 EARLY = 0.05  # of the vector itself, up to which its error is that of single steps added up
 CHANNELS = {
@@ -28,18 +30,51 @@ CHANNELS = {
 AXES = {"omega": "the body", "attitude": "the body", "position": "the world"}
 
 
-def known_of_runs(truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]) -> str:
-    """``omega is off in z of the body alone, by an error that goes as step^1 and as time^1``.
+@dataclass(frozen=True)
+class Known:
+    """What is off in a scenario's runs. step and time: exponents, None where there are none."""
 
-    Of the first channel that is off clear of rounding: attitude follows omega, and place both.
-    """
+    channel: str
+    axes: frozenset[str]
+    step: float | None
+    time: float | None
+
+    def with_others(self, others: Iterable[Known]) -> Known:
+        """One mistake shows in several channels: the most basic, with what holds wherever it is."""
+        every = [self, *others]
+        first = next(c for c in CHANNELS if any(one.channel == c for one in every))
+        same = [one for one in every if one.channel == first]
+        step, time = ({getattr(one, k) for one in same} for k in ("step", "time"))
+        return Known(
+            first,
+            frozenset().union(*(one.axes for one in same)),
+            step.pop() if len(step) == 1 else None,
+            time.pop() if len(time) == 1 else None,
+        )
+
+    @property
+    def text(self) -> str:
+        """``omega is off in z of the body alone, by an error that goes as step^1 and time^1``."""
+        plain = self.channel in ("omega", "attitude")
+        text = f"{self.channel if plain else f'the {self.channel}'} is off"
+        if len(self.axes) < 3:
+            where = AXES.get(self.channel, "the world")
+            text += f" in {' and '.join(sorted(self.axes))} of {where} alone"
+        powers = {"step": self.step, "time": self.time}
+        goes = [f"as {k}^{p:g}" for k, p in powers.items() if p]
+        text += f", by an error that goes {listed(goes)}" if goes else ""
+        return text + (", whatever the step" if self.step == 0.0 else "")
+
+
+def known_of_runs(truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]) -> Known | None:
+    """Of the first channel that is off beyond rounding: attitude follows omega, and place both."""
     failed = {row.channel for run in runs for row in run.rows if row.verdict == "fail"}
     errors = [found for run in runs if (found := _errors(truth, result, run)) is not None]
     for channel in (c for c, names in CHANNELS.items() if failed & names):
         shown = [(run, e[channel]) for run, e in errors if np.any(e[channel].clear)]
         if shown:
-            return _worded(channel, shown)
-    return ""
+            return _known(channel, shown)
+    return None
 
 
 class _Error:
@@ -47,9 +82,9 @@ class _Error:
 
     def __init__(self, vectors: Array, size: float, time: Array, eps: float) -> None:
         self.vectors, self.size, self.time = vectors, size, time
-        self.lengths, clear = norm(vectors), CLEAR if eps <= EPS else CLEAR_OF_SINGLE
+        self.lengths = norm(vectors)
         self.clear: NDArray[np.bool_] = np.isfinite(self.lengths) & (
-            self.lengths > clear * eps * size * np.sqrt(1.0 + np.arange(len(time)))
+            self.lengths > CLEAR * eps * size * np.sqrt(1.0 + np.arange(len(time)))
         )
 
 
@@ -81,19 +116,13 @@ def _largest(vectors: Array) -> float:
     return float(np.max(norm(vectors)))
 
 
-def _worded(channel: str, shown: Sequence[tuple[JudgedRun, _Error]]) -> str:
-    text = f"{channel if channel in ('omega', 'attitude') else f'the {channel}'} is off"
+def _known(channel: str, shown: Sequence[tuple[JudgedRun, _Error]]) -> Known:
     _, first = shown[0]
     early = first.clear & (first.lengths <= EARLY * first.size)
     used = early if early.any() else first.clear
     off = np.abs(first.vectors[used])
-    axes = [a for k, a in enumerate("xyz") if np.any(off[:, k] > 1e-6 * np.max(off))]
-    if len(axes) < 3:
-        text += f" in {' and '.join(axes)} of {AXES.get(channel, 'the world')} alone"
-    powers = {"step": _of_step(shown), "time": _of_time(first)}
-    goes = [f"as {k}^{p:g}" for k, p in powers.items() if p]
-    text += f", by an error that goes {listed(goes)}" if goes else ""
-    return text + (", whatever the step" if powers["step"] == 0.0 else "")
+    axes = frozenset(a for k, a in enumerate("xyz") if np.any(off[:, k] > 1e-6 * np.max(off)))
+    return Known(channel, axes, _of_step(shown), _of_time(first))
 
 
 def _near(powers: Array) -> float | None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -12,8 +14,8 @@ from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
-from omegadot.reference_impl.body_motion import body_motion
+from omegadot.harness.judging.judged_run import JudgedRun
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.stepping import step_body
@@ -104,6 +106,29 @@ class ReportedRun:
         how = (*plan, self.integrator.coordinates, replace(exact, acceleration=acceleration))
         return step_body(scheme or self.declared, wanted, initial or self.case.initial, *how)[1]
 
+    @cached_property
+    def beginning(self) -> ReportedRun:
+        """Up to the first sample at which it is not the reference's: what this rules out is out."""
+        count = len(self.time)
+        for k in range(1, count):
+            here = slice(k, k + 1)
+            if not self.agrees(self.state[here], self.own[here], here):
+                return self.until(k + 1)
+        return self
+
+    def until(self, count: int) -> ReportedRun:
+        """Its first samples."""
+        if count >= len(self.time):
+            return self
+        steps = int(self.sweep.sample_steps[count - 1])
+        first = {name: getattr(self, name)[:count] for name in ("time", "state", "own", "growth")}
+        return replace(self, sweep=replace(self.sweep, steps=steps), **first)
+
+    def is_made(self, made: Callable[[ReportedRun], State], slack: float = 1.0) -> bool:
+        """Whether this is how the run is made: in its beginning, then in the whole of it."""
+        parts = [self.beginning] if self.beginning is not self else []
+        return all(one.agrees(one.state, made(one), slack=slack) for one in (*parts, self))
+
     def stepped_on(self, states: State) -> State:
         """Where the declared scheme leads from each of (m,) states to the next sample."""
         plan = (self.sweep.timestep, self.sweep.every, self.sweep.every)
@@ -187,18 +212,10 @@ def _until_it_shows(reported: ReportedRun) -> ReportedRun:
     Causes are tried by stepping again: a short trajectory is quicker, and followed more surely
     where the motion magnifies what is not quite right yet.
     """
-    numbers, bounds = reported.sweep.sample_steps, reported.bounds
+    bounds = reported.bounds
     distances = {
         c: reported.truth.yardstick.distance(c, reported.state, reported.own) for c in CHANNELS
     }
     apart = np.any([~(distances[c] <= DISTINCT * bounds[c]) for c in CHANNELS], axis=0)
-    first = int(np.argmax(apart)) if apart.any() else len(numbers)
-    count = min(max(2 * first, LEAST_SAMPLES), len(numbers))
-    return replace(
-        reported,
-        sweep=replace(reported.sweep, steps=int(numbers[count - 1])),
-        time=reported.time[:count],
-        state=reported.state[:count],
-        own=reported.own[:count],
-        growth=reported.growth[:count],
-    )
+    first = int(np.argmax(apart)) if apart.any() else len(apart)
+    return reported.until(min(max(2 * first, LEAST_SAMPLES), len(apart)))

@@ -70,7 +70,8 @@ def misread(reported: ReportedRun) -> list[str]:
             found.append("the quaternion's scalar part is reported without its sign")
     for one in OF_ANY_STATE if not found else ():
         start = one.right(reported.case.initial)
-        if reported.agrees(one.right(reported.state), reported.stepped(initial=start)):
+        runs = (reported.beginning, reported)
+        if all(run.agrees(one.right(run.state), run.stepped(initial=start)) for run in runs):
             found.append(f"on the way in and on the way out, {one.statement}")
     kinds = {kind_of(text): text for text in reversed(found)}
     plain = [text for text in found if "axes of" not in text and text in kinds.values()]
@@ -93,6 +94,9 @@ def _late(reported: ReportedRun) -> str:
     early = every[np.minimum(steps + 1, steps[-1])]
     if reported.agrees(reported.state[before], early[before], before):
         return "every sample is the state one step after: the run is logged one step early"
+    inner = slice(1, -1)  # the first is the state given
+    if n > 3 and reported.agrees(reported.state[inner], early[inner], inner):
+        return "every sample after the first is the state one step after: logged one step early"
     behind = {
         "sample": np.maximum(steps - reported.sweep.every, 0),
         "step": np.maximum(steps - 1, 0),

@@ -20,7 +20,7 @@ from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.states.equation import BOUND
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import rotate, turn_in_body
 from omegadot.reference_impl.system import State
@@ -130,19 +130,32 @@ def intervals(reported: ReportedRun) -> str:
     if len(sound) < 3 or not len(wrong) or not sound.any():
         return ""
     time, first, last = reported.time, int(wrong[0]), int(wrong[-1])
-    if len(wrong) == 1 and first == 0:
-        return f"only the first steps are wrong: from t = {time[1]:.4g} s on, the run is sound"
+    together = len(wrong) == last - first + 1
+    if together and first == 0 and 2 * len(wrong) <= len(sound):
+        return (
+            f"only the first steps are wrong: from t = {time[last + 1]:.4g} s on, the run is sound"
+        )
     if len(wrong) == 1 and first + 1 < len(sound):
         between = f"between t = {time[first]:.4g} s and {time[first + 1]:.4g} s"
         return f"the run jumps once, {between}: before and after it is sound"
-    if len(wrong) <= 2 and last - first <= 1 and last + 1 < len(sound):
+    if len(wrong) == 2 and together and last + 1 < len(sound) and _goes_on(reported, first):
         pairs = (values[last] == values[last - 1] for values in vars(reported.state).values())
-        twice = last > 0 and all(bool(np.all(pair)) for pair in pairs)
+        twice = all(bool(np.all(pair)) for pair in pairs)
         what = "is the one before, reported twice" if twice else "alone does not belong to the run"
         return f"the sample at t = {time[last]:.4g} s {what}"
+    if len(wrong) == 1:
+        return f"only the steps after t = {time[first]:.4g} s, the last of the run, are wrong"
     if first > 0 and len(wrong) == len(sound) - first:
         return f"the run is sound until t = {time[first]:.4g} s, and every step after it is wrong"
     if np.count_nonzero(np.diff(sound.astype(int))) < LEAST_CHANGES:
         return ""  # what changes once goes with the time as well as with anything that grows
     where = only_where([(reported.case.system, reported.state[: len(sound)], sound)])
     return f"steps are wrong only where {where}" if where else ""
+
+
+def _goes_on(reported: ReportedRun, sample: int) -> bool:
+    """Whether a sample leads to the second after it, past the one between them."""
+    start = reported.state[sample : sample + 1]
+    end = reported.stepped_on(reported.stepped_on(start))
+    after = slice(sample + 2, sample + 3)
+    return reported.agrees(reported.state[after], end, after, slack=SLACK)

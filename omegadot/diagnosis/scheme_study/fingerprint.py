@@ -13,10 +13,10 @@ from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
 from omegadot.diagnosis.scheme_study.subject import Stepper
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import SchemeKey
-from omegadot.harness.judge import is_finite
-from omegadot.reference_impl.companion import CompanionRun, Steps, companion
+from omegadot.harness.judging.judged_run import is_finite
 from omegadot.reference_impl.coordinates import Coordinates, distinct
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.solutions.companion import CompanionRun, Steps, companion
 from omegadot.reference_impl.system import State
 
 # Angles r a step. At 0.2 rad the schemes of order 4 differ most among each other. Below 1e-3 rad an

@@ -20,9 +20,9 @@ from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
 from omegadot.diagnosis.scheme_study.subject import Stepper
 from omegadot.gates.bounds.measures import Yardstick
 from omegadot.gates.errors.measured_run import CHANNELS
-from omegadot.harness.judge import is_finite
-from omegadot.reference_impl.growth import growth_along
-from omegadot.reference_impl.series import solve_series
+from omegadot.harness.judging.judged_run import is_finite
+from omegadot.reference_impl.solutions.growth import growth_along
+from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.system import State
 
 STARTS = 5  # exact states along the trajectory that a step is taken from

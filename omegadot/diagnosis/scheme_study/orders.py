@@ -11,7 +11,7 @@ from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
 from omegadot.diagnosis.scheme_study.subject import Stepper
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.errors.orders import ORDER_TOLERANCE
-from omegadot.harness.judge import is_finite
+from omegadot.harness.judging.judged_run import is_finite
 
 COARSEST = 0.4  # rad a step: an error of order 4 then has decades to go before it meets rounding
 SAMPLES = 10  # the steps of the coarsest run, all of them kept: 4 rad in all

@@ -13,10 +13,10 @@ from functools import cache
 import numpy as np
 
 from omegadot.gates.bounds.measures import Yardstick
-from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import normalize
-from omegadot.reference_impl.series import solve_series
+from omegadot.reference_impl.solutions.growth import growth_along
+from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.system import Array, Body, Load, State, System
 
 

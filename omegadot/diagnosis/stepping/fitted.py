@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from omegadot.diagnosis.reported.clock import GRIDS
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.growth import changes
 from omegadot.reference_impl.rotations import rotation_between
+from omegadot.reference_impl.solutions.growth import changes
 from omegadot.reference_impl.system import Array, State
 
 MOST_TRIES = 8
@@ -24,27 +25,45 @@ STILL = 1e-6  # a factor of the step that leaves nothing of it
 
 
 def search(
-    reported: ReportedRun, stepped: Callable[[float], State], delta: float, start: float = 0.0
+    reported: ReportedRun,
+    stepped: Callable[[ReportedRun, float], State],
+    delta: float,
+    start: float = 0.0,
 ) -> float | None:
     """The number with which a run comes to the reported one, by Gauss-Newton; None if none does.
 
-    delta: a small change of the number, of which one per cent is still distinguished from rounding.
+    It is looked for in the run's beginning first. stepped: a run by this number.  delta: a small
+    change of the number, of which one per cent is still distinguished from rounding.
     """
-    rate, found = reported.truth.yardstick.rate, start
+    if reported.beginning is not reported:
+        found = _search(reported.beginning, stepped, delta, start)
+        if found is None:
+            return None
+        start = found
+    return _search(reported, stepped, delta, start)
+
+
+def _search(
+    reported: ReportedRun,
+    stepped: Callable[[ReportedRun, float], State],
+    delta: float,
+    found: float,
+) -> float | None:
+    rate = reported.truth.yardstick.rate
 
     def apart(state: State) -> Array:
         return np.ravel(changes(state, reported.state, rate))
 
     before = np.inf
     for _ in range(MOST_TRIES):
-        here = stepped(found)
+        here = stepped(reported, found)
         if reported.agrees(reported.state, here, slack=SLACK):
             return found
         left = float(norm(apart(here)))
         if not left < CONVERGES * before:
             return None
         before = left
-        slope = (apart(here) - apart(stepped(found + delta))) / delta
+        slope = (apart(here) - apart(stepped(reported, found + delta))) / delta
         size = float(slope @ slope)
         if not size > 0.0 or not np.isfinite(size):
             return None
@@ -58,10 +77,13 @@ def longer(reported: ReportedRun) -> str:
     """Every step is too long or too short by a part."""
     h = reported.sweep.timestep
     part = search(
-        reported, lambda k: reported.stepped(timestep=h * (1.0 + k)), 1e-6, _turned(reported)
+        reported, lambda run, k: run.stepped(timestep=h * (1.0 + k)), 1e-6, _turned(reported)
     )
     if part is None or part == 0.0 or abs(1.0 + part) < STILL:
         return ""
+    single = float(np.float32(h))
+    if single != h and reported.is_made(partial(ReportedRun.stepped, timestep=single), SLACK):
+        return "the step is kept in single precision"
     text = f"steps are {100 * abs(part):.4g} % too {'long' if part > 0 else 'short'}"
     return f"{text}{_grid(h, h * (1.0 + part))}"
 
@@ -90,9 +112,9 @@ def damped(reported: ReportedRun) -> str:
     """A damping that was not requested."""
     system, yardstick = reported.case.system, reported.truth.yardstick
 
-    def stepped(damping: float) -> State:
+    def stepped(run: ReportedRun, damping: float) -> State:
         more = replace(system.load, damping=system.load.damping + damping)
-        return reported.stepped(system=replace(system, load=more))
+        return run.stepped(system=replace(system, load=more))
 
     scale = yardstick.scale.smallest / float(reported.time[-1])  # takes a run's time to act
     found = search(reported, stepped, 1e-6 * scale)

@@ -7,13 +7,13 @@ from typing import Literal
 
 import numpy as np
 
+from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
-from omegadot.diagnosis.equations.search import Candidate
 from omegadot.diagnosis.stepping.restep import on_rows
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, common_factor
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through
@@ -24,26 +24,26 @@ RADIANS, MOST_STEPS = 0.1, 80  # of a step here; over the whole beginning
 Followed = Literal["wrong", "right", "between"]
 BETWEEN = 0.2  # by how much the distances to both may add up to another than their own
 NEAR, FAR = 0.3, 0.7  # of the distance of the two solutions
+GROWS, CLEAR = 3.0, 0.05  # of the part of that distance which a run that leaves a solution has left
 SEEN = 1e-4  # relative: what the steps here leave
 
 
 @dataclass(frozen=True)
 class Beginning:
-    """The first samples of a run, and the exact solution there. times: (n,) s."""
+    """The first samples of a run of a system, and the exact solution there. times: (n,) s."""
 
+    system: System
     times: Array
     reported: State
     exact: State
 
 
-def follows(
-    system: System, beginning: Beginning, candidate: Candidate, eps: float
-) -> Followed | None:
+def follows(beginning: Beginning, candidate: Candidate, eps: float) -> Followed | None:
     """Which equation a run follows, or whether it lies between the two; None where it is open.
 
     A scheme's own error is small against the distance of the two where the answer is given.
     """
-    times = beginning.times
+    system, times = beginning.system, beginning.times
     if len(times) < 3:
         return None
     rate = float(np.max(norm(beginning.exact.angular_velocity)))
@@ -67,13 +67,14 @@ def follows(
             float(np.median(norm(came - x)[used] / apart[used])) for x in (far, near)
         )
         answer: Followed | None = None
+        # a scheme's own error is as large a part of the distance at every sample
+        parts = (norm(came - far) / apart)[used]
         if to_wrong < NEAR:
-            answer = "wrong"
+            leaves = len(parts) > 2 and parts[-1] > GROWS * max(parts[0], parts[1])
+            answer = "between" if leaves and parts[-1] > CLEAR else "wrong"
         elif to_right < NEAR and to_wrong > FAR:
             answer = "right"
         elif abs(to_wrong + to_right - 1.0) < BETWEEN:
-            # a scheme's own error is as large a part of the distance at every sample
-            parts = (norm(came - far) / apart)[used]
             answer = "between" if parts[0] < NEAR and parts[-1] > FAR else None
         found[float(np.max(apart)) / size] = answer
     return found[max(found)] if found else None

@@ -7,17 +7,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
 from omegadot.diagnosis.models.misreadings import Misreading, misreadings
 from omegadot.diagnosis.stepping.follows import Beginning
-from omegadot.diagnosis.stepping.vanishing_steps import LEFT, VanishingSteps, stays
+from omegadot.diagnosis.stepping.vanishing_steps import AMPLIFIED, LEFT, VanishingSteps, stays
 from omegadot.diagnosis.wording.conditions import only_where
 from omegadot.diagnosis.wording.digits import factor, limits
-from omegadot.gates.bounds.scales import norm
+from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION, norm
 from omegadot.reference_impl.rotations import attitude_angle, quaternion_product
 from omegadot.reference_impl.system import Array
 
-SLIGHT = 1e5  # times rounding, of which the extrapolation makes more
+SLIGHT = BEYOND_ROUNDING * AMPLIFIED * ROUNDINGS_PER_EVALUATION  # times the rounding of a number
 CLOSE = 1e-2  # relative: a change that is in proportion
 QUANTITIES = (
     ("angular_velocity", "omega", "rad/s"),
@@ -84,6 +85,12 @@ def slight_jump_cause(steps: VanishingSteps) -> str:
         allowed = SLIGHT * steps.eps * (size + rate + norm(before.linear_velocity))
         seen = norm(off) > allowed
         if np.count_nonzero(seen) < len(seen) // 2 or not np.all(np.isfinite(off)):
+            continue
+        # the two shortest steps alone must show it, to second order: where steps are not smooth,
+        # the limit of five is another
+        short, moved = getattr(steps.start, name), norm(getattr(steps.moved, name))
+        left = moved**2 / np.where(size > 0.0, size, np.inf) + allowed
+        if not np.all(norm(short - now) <= CLOSE * norm(off) + left):
             continue
         k = float(np.sum(off * was) / np.sum(was * was))
         if np.all(norm(off - k * was) <= CLOSE * abs(k) * size + allowed):

@@ -58,8 +58,8 @@ def _limit(
     if not 0.0 < greatest < float(np.max(size(getattr(reported.own, field)[1:]))):
         return None
 
-    def stepped(more: float) -> State:
-        return reported.stepped(with_end(reported.declared, end(greatest * (1.0 + more))))
+    def stepped(run: ReportedRun, more: float) -> State:
+        return run.stepped(with_end(run.declared, end(greatest * (1.0 + more))))
 
     more = search(reported, stepped, 1e-6)
     return None if more is None else greatest * (1.0 + more)
@@ -90,8 +90,8 @@ def turn_held(reported: ReportedRun) -> str:
     if not 0.0 < greatest < np.pi / every:
         return ""
 
-    def stepped(more: float) -> State:
-        return reported.stepped(with_end(reported.declared, turn_within(greatest * (1.0 + more))))
+    def stepped(run: ReportedRun, more: float) -> State:
+        return run.stepped(with_end(run.declared, turn_within(greatest * (1.0 + more))))
 
     more = search(reported, stepped, 1e-6)
     return (

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from omegadot.diagnosis.equations.operators.operands import gyroscopic
 from omegadot.diagnosis.wording.digits import factor, listed
-from omegadot.gates.bounds.scales import norm
+from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION, norm
 from omegadot.gates.steps.probe import Probe
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
@@ -19,8 +20,9 @@ from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, State, System
 
-CLEAR = 1e3  # times rounding
 WHOLE = 0.2  # how near an exponent lies to the whole number that it is taken for
+# Times rounding: that of one step then changes the exponent of a halved error by half as much.
+CLEAR = 2.0 * ROUNDINGS_PER_EVALUATION / (WHOLE * np.log(2.0))
 LEAST = 3  # states that show it
 PARTS = 4  # of each step, in which the motion itself is stepped
 HALVINGS = 4  # of the longest steps, with which the error is clear of rounding
@@ -52,29 +54,56 @@ NAMED = {
 }
 
 
+@dataclass(frozen=True)
+class OrderLost:
+    """Which channels are of a lower order than declared: (order, declared). by: what makes it."""
+
+    orders: Mapping[str, tuple[int, int]]
+    by: tuple[str, ...] = ()
+
+    def with_others(self, others: Iterable[OrderLost]) -> OrderLost:
+        """One mistake shows in the channels that a scenario has: all of them over a run.
+
+        Of a channel the lowest order counts; what some scenarios have no term for, others show.
+        """
+        orders, by = dict(self.orders), dict.fromkeys(self.by)
+        for other in others:
+            by |= dict.fromkeys(other.by)
+            for channel, one in other.orders.items():
+                orders[channel] = min(one, orders.get(channel, one))
+        return OrderLost(orders, tuple(by))
+
+    @property
+    def text(self) -> str:
+        """``the error of one step goes as step^2 in omega: that is of order 1, where 2 is ..``."""
+        named = dict[tuple[int, int], list[str]]()
+        for channel in (c for c in OF_CHANNEL if c in self.orders):
+            named.setdefault(self.orders[channel], []).append(NAMED.get(channel, channel))
+        texts = [
+            f"the error of one step goes as step^{order + 1} in {listed(names)}: that is of order "
+            f"{order}, where {due} is declared"
+            for (order, due), names in named.items()
+        ]
+        return "; ".join([*texts, *self.by])
+
+
 def order_lost(
     system: System, probe: Probe, stepped: State, eps: float, declared: Mapping[str, int | None]
-) -> str:
-    """``a step's error goes as its length^2 in omega: it is of order 1, where 2 is declared``.
+) -> OrderLost | None:
+    """The orders that single steps have lost; None where no channel's is clear and too low.
 
-    "" where no channel's order is clear and below the declared one. stepped: (m, k, ...), the ends
-    of the probe's steps (m, k).
+    stepped: (m, k, ...), the ends of the probe's steps (m, k).
     """
-    lost, by = dict[tuple[int, int], list[str]](), list[str]()
+    lost, by = dict[str, tuple[int, int]](), list[str]()
     for channel, (order, part) in _orders(system, probe, stepped, eps).items():
         due = declared.get(channel)
         if due is not None and order < due:
-            lost.setdefault((order, due), []).append(NAMED.get(channel, channel))
+            lost[channel] = order, due
             if part is not None:
                 by.append(_moves(channel, part))
             elif channel == "omega" and order == 1:
                 by += _held_terms(system, probe, stepped)
-    texts = [
-        f"the error of one step goes as step^{order + 1} in {listed(names)}: that is of order "
-        f"{order}, where {due} is declared"
-        for (order, due), names in lost.items()
-    ]
-    return "; ".join([*texts, *by])
+    return OrderLost(lost, tuple(by)) if lost else None
 
 
 def _moves(channel: str, part: float) -> str:

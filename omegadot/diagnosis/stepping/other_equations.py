@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from omegadot.diagnosis.equations.equation_form import Form, accelerations
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.fitted import SLACK
-from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State
 
@@ -39,22 +41,22 @@ def other_equations(reported: ReportedRun) -> list[str]:
         kept.append(change)
     if not forms:
         return []
-    lanes = Form(*(np.stack(part) for part in zip(*(vars(f).values() for f in forms), strict=True)))
-    stepped = _in_lanes(reported, lanes, len(forms))
-    fits = [
-        text
-        for k, text in enumerate(found)
-        if reported.agrees(reported.state, stepped[:, k], slack=SLACK)
-    ]
-    return [f"in the steps, {text}" for text in fits]
+    for run in (reported.beginning, reported):  # the beginning rules most of them out
+        stepped = _in_lanes(run, forms)
+        fits = [k for k in range(len(forms)) if run.agrees(run.state, stepped[:, k], slack=SLACK)]
+        found, forms = [found[k] for k in fits], [forms[k] for k in fits]
+        if not forms or run is reported:
+            break
+    return [f"in the steps, {text}" for text in found]
 
 
-def _in_lanes(reported: ReportedRun, lanes: Form, count: int) -> State:
+def _in_lanes(reported: ReportedRun, forms: Sequence[Form]) -> State:
     """(n, lanes, ...): the declared scheme over each of these equations."""
+    lanes = Form(*(np.stack(part) for part in zip(*(vars(f).values() for f in forms), strict=True)))
     system, sweep = reported.case.system, reported.sweep
     coordinates = reported.integrator.coordinates
     motion = motion_over(system, coordinates, lambda state: accelerations(lanes, state))
-    start = State(*(np.stack([f] * count) for f in vars(reported.case.initial).values()))
+    start = State(*(np.stack([f] * len(forms)) for f in vars(reported.case.initial).values()))
     plan = (sweep.timestep, sweep.steps, sweep.every, coordinates, motion)
     with np.errstate(all="ignore"):
         return step_body(reported.declared, system, start, *plan)[1]

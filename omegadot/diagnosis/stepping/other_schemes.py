@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from omegadot.diagnosis.stepping.step_ends import (
 )
 from omegadot.reference_impl.coordinates import PHRASES, canonical, distinct
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.system import State, System
 
 ENDS: dict[str, End] = {
     "the attitude's change in body axes is multiplied from the left": left_multiplied,
@@ -42,7 +44,7 @@ def other_schemes(reported: ReportedRun) -> list[str]:
             same = name == reported.integrator.scheme
             if way not in scheme.coordinates or (same and way == own):
                 continue  # what is declared: this is not what is wrong
-            if not reported.agrees(reported.state, other.stepped(scheme)):
+            if not other.is_made(partial(ReportedRun.stepped, scheme=scheme)):
                 continue
             if same:
                 return [f"it steps {PHRASES[way]}, which is not what is declared"]
@@ -53,14 +55,14 @@ def other_schemes(reported: ReportedRun) -> list[str]:
     return []
 
 
+def _ended(end: End, run: ReportedRun, system: System | None = None) -> State:
+    return run.stepped(with_end(run.declared, end), system)
+
+
 def other_ends(reported: ReportedRun) -> list[str]:
     """Ends of every step that make the run out of the declared scheme's."""
     ends = ENDS | kept_ends(reported.case.system)
-    return [
-        text
-        for text, end in ends.items()
-        if reported.agrees(reported.state, reported.stepped(with_end(reported.declared, end)))
-    ]
+    return [text for text, end in ends.items() if reported.is_made(partial(_ended, end))]
 
 
 def slips_of(reported: ReportedRun, name: str) -> list[str]:
@@ -72,7 +74,7 @@ def slips_of(reported: ReportedRun, name: str) -> list[str]:
         f"it is stepped by {name}, but {text}"
         for text, scheme in slipped(name).items()
         if reported.integrator.coordinates in scheme.coordinates
-        and reported.agrees(reported.state, reported.stepped(scheme))
+        and reported.is_made(partial(ReportedRun.stepped, scheme=scheme))
     ]
 
 
@@ -88,7 +90,5 @@ def slips(reported: ReportedRun) -> list[str]:
     return [
         f"the damping is split off each step: it acts {text}"
         for text, end in damping_ends(system).items()
-        if reported.agrees(
-            reported.state, reported.stepped(with_end(reported.declared, end), undamped)
-        )
+        if reported.is_made(partial(_ended, end, system=undamped))
     ]

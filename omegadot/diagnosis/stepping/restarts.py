@@ -9,7 +9,7 @@ from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.system import Array, State
 
 

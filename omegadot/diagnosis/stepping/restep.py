@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import Coordinates
 from omegadot.reference_impl.motion import AccelerationOf
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, Array, State, System

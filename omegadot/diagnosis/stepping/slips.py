@@ -26,17 +26,23 @@ def _runge_kutta(
     rows: Rows = CLASSIC,
     weights: Sequence[float] = WEIGHTS,
     held: str = "",
+    loads_of: Sequence[int] = (),
     rate: Rate = lambda motion, q, v: motion.acceleration(motion.normalize(q), v),
 ) -> Step:
-    """Four stages on the quaternion's own equation. held: what keeps its value of the start."""
+    """Four stages on the quaternion's own equation. held: what keeps its value of the start.
+
+    loads_of: of each stage, the one at whose attitude it takes the loads.
+    """
 
     def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
         q_dot, v_dot = list[Array](), list[Array]()
-        for row in rows:
+        places = list[Array]()
+        for stage, row in enumerate(rows):
             at_q, at_v = q, v
             for a, one, two in zip(row, q_dot, v_dot, strict=True):
                 at_q, at_v = at_q + (a * h) * one, at_v + (a * h) * two
-            place = q if held == "attitude" else at_q
+            places.append(at_q)
+            place = places[loads_of[stage]] if loads_of else q if held == "attitude" else at_q
             q_dot.append(motion.coordinate_rate(at_q, at_v))
             if held == "omega-dot" and v_dot:
                 v_dot.append(v_dot[0])
@@ -98,6 +104,15 @@ RUNGE_KUTTA: dict[str, Step] = {
         weights=(1.0, 0.0, 0.0, 0.0)
     ),
     "the loads are held at the attitude of the step's start": _runge_kutta(held="attitude"),
+    "its fourth stage takes the loads at the attitude of its third": _runge_kutta(
+        loads_of=(0, 1, 2, 2)
+    ),
+    "its third stage takes the loads at the attitude of its second": _runge_kutta(
+        loads_of=(0, 1, 1, 3)
+    ),
+    "each stage takes the loads at the attitude of the stage before": _runge_kutta(
+        loads_of=(0, 0, 1, 2)
+    ),
     "its stages take the loads at a quaternion that is not made unit": _runge_kutta(
         rate=_by_square
     ),
@@ -167,7 +182,7 @@ def _by_series(order: int) -> Step:
     return step
 
 
-# What says less comes first: on many bodies the velocity of translation is constant.
+# What states less comes first: on many bodies the velocity of translation is constant.
 EULER: dict[str, Step] = {
     "the attitude moves by the omega of the step's start": _old_omega,
     "the position moves by the velocity of the step's start": _old_velocity,

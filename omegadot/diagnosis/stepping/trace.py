@@ -21,8 +21,8 @@ from omegadot.diagnosis.equations.equation_form import (
 from omegadot.diagnosis.equations.families import ONE_NUMBER, Family
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.rotations import attitude_angle, normalize
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.stepping import step_through

@@ -12,7 +12,7 @@ from omegadot.diagnosis.stepping.limits import asleep, clipped, held, speed, sti
 from omegadot.diagnosis.stepping.other_equations import other_equations
 from omegadot.diagnosis.stepping.other_schemes import other_ends, other_schemes, slips
 from omegadot.gates.bounds.scales import norm
-from omegadot.harness.judge import is_finite
+from omegadot.harness.judging.judged_run import is_finite
 
 MOST_STEPS = 5000  # causes are tried by stepping again, and a step takes about 0.1 ms
 LEAST_SAMPLES = 4  # of fewer many mistakes make the same

@@ -10,7 +10,7 @@ import numpy as np
 
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.system import State, System
 
 # How unlikely chance must be to sort the scenarios so: one in so many ways to sort them.
@@ -54,6 +54,7 @@ def features_of(system: System, initial: State) -> Features:
         "the scalar part of the first quaternion is negative": bool(initial.orientation[0] < 0.0),
         "the body moves at the start": bool(np.any(initial.linear_velocity)),
     }
+    arm = float(norm(lever(system))) if pivoted else 0.0
     mass, moments = float(body.mass), np.linalg.eigvalsh(tensor)
     sizes = {
         "the mass": (mass, "kg"),
@@ -64,12 +65,17 @@ def features_of(system: System, initial: State) -> Features:
             "kg m^2",
         ),
         "the least moment of inertia": (float(moments[0]), "kg m^2"),
+        "the largest moment of inertia": (float(moments[-1]), "kg m^2"),
+        "the largest number on the inertia's diagonal": (float(np.max(np.diag(tensor))), "kg m^2"),
         "the ratio of the largest moment of inertia to the least": (
             float(moments[-1] / moments[0]),
             "",
         ),
         "|omega| at the start": (float(norm(initial.angular_velocity)), "rad/s"),
         "the speed at the start": (float(norm(initial.linear_velocity)), "m/s"),
+        "the distance from the pivot to the centre of mass": (arm, "m"),
+        "the weight": (mass * float(norm(gravity)), "N"),
+        "the largest torque of the weight": (mass * float(norm(gravity)) * arm, "N m"),
         "the size of gravity": (float(norm(gravity)), "m/s^2"),
         "the damping": (float(load.damping), "N m s/rad"),
         "the size of the torque": (
@@ -78,6 +84,14 @@ def features_of(system: System, initial: State) -> Features:
         ),
     }
     return Features(kinds, sizes)
+
+
+def ways_of(scenarios: Sequence[Features]) -> int:
+    """In how many ways scenarios must be sorted so that by chance one condition in 20 runs does.
+
+    Every kind, or its opposite, and every size, above or below a limit, is one.
+    """
+    return 20 * sum(2 * len(one.kinds) + 2 * len(one.sizes) for one in scenarios[:1])
 
 
 def in_common(shown: Sequence[Features], others: Sequence[Features]) -> list[str]:

@@ -15,6 +15,7 @@ FACTS = (
     "does not belong to the run",
     "reported twice",
     "only the first steps are wrong",
+    "the last of the run, are wrong",
     "are wrong only where",
     "the steps depend on how many went before",
     "samples came back",
@@ -32,7 +33,7 @@ SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
 
 def kind_of(text: str) -> str:
     """A cause without its numbers, and without where it shows."""
-    for end in (", but only where", ", at steps of", ", on "):
+    for end in (", but only where", ": it is wrong only where", ", at steps of", ", on "):
         text = text.partition(end)[0]
     same = text.replace("too short", "too long").partition(": rounded to")[0]
     return NUMBER.sub("#", same)
@@ -72,6 +73,20 @@ def agreed(here: Sequence[str], over_cases: Mapping[str, tuple[Sequence[str], bo
     # of several slips in one scheme the first states the least
     plain = list({text.partition(", but ")[0]: text for text in reversed(best)}.values())[::-1]
     return plain if len(plain) <= MOST_NAMED else []
+
+
+def over_run(text: str, by_scenario: Mapping[str, Sequence[str]]) -> str:
+    """A cause with the numbers of the first scenario that shows its kind, where they are others.
+
+    One mistake has one sentence.
+    """
+    kind = kind_of(text)
+    alike = {n: t for n, texts in by_scenario.items() for t in texts if kind_of(t) == kind}
+    if len(set(alike.values())) < 2:
+        return text
+    first, shown = next(iter(alike.items()))
+    others = sum(one != shown for one in alike.values())
+    return f"{shown} ({first}; other numbers on {others} more)"
 
 
 def either(texts: Sequence[str]) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import permutations, product
+from itertools import combinations, permutations, product
 
 import numpy as np
 
@@ -99,35 +99,53 @@ def _order(requested: Array, acting: Array, size: Array) -> str:
 def power_laws(
     text: str, scenarios: Sequence[Features], numbers: Array
 ) -> Iterator[tuple[str, Array]]:
-    """A cause with one number, (n,) on so many scenarios, as a power of one of their sizes.
+    """A cause with one number, (n,) on so many scenarios, as powers of one or two of their sizes.
 
     Yields texts with the numbers that they come to, which have to be tried.
     """
     if len(numbers) < LEAST_POINTS or np.any(numbers * numbers[0] <= 0.0):
         return
-    for name, (_, unit) in scenarios[0].sizes.items():
+    logs = dict[str, Array]()
+    for name in scenarios[0].sizes:
         x = np.array([one.sizes[name][0] for one in scenarios])
-        if np.any(x <= 0.0) or np.ptp(np.log(x)) < LEAST_SPAN:
+        if np.all(x > 0.0) and np.ptp(np.log(x)) >= LEAST_SPAN:
+            logs[name] = np.log(x)
+    wanted = np.log(np.abs(numbers))
+    pairs = combinations(logs, 2) if len(numbers) > LEAST_POINTS + 1 else ()
+    for names in (*((one,) for one in logs), *pairs):
+        lines = np.stack([*(logs[name] for name in names), np.ones(len(numbers))], axis=-1)
+        found = np.linalg.lstsq(lines, wanted, rcond=None)[0]
+        powers = np.round(2.0 * found[:-1]) / 2.0
+        rest = wanted - lines[:, :-1] @ powers
+        if not np.all(powers) or np.median(np.abs(rest - np.median(rest))) > LOOSE:
             continue
-        slope, start = np.polyfit(np.log(x), np.log(np.abs(numbers)), 1)
-        left = np.log(np.abs(numbers)) - slope * np.log(x) - start
-        near = round(2.0 * float(slope)) / 2.0
-        if np.median(np.abs(left)) > LOOSE or abs(near) < 0.5:
-            continue
-        size = float(np.sign(numbers[0]) * np.exp(np.median(np.log(np.abs(numbers) / x**near))))
+        size = float(np.sign(numbers[0]) * np.exp(np.median(rest)))
         if abs(abs(size) - 1.0) < CLEAN:
             size = float(np.sign(size))
-        yield _worded(text, name, unit, near, size), size * x**near
+        units = [scenarios[0].sizes[name][1] for name in names]
+        sizes = list(zip(names, units, powers.tolist(), strict=True))
+        yield _worded(text, sizes, size), size * np.exp(lines[:, :-1] @ powers)
 
 
-def _worded(text: str, name: str, unit: str, power: float, size: float) -> str:
+def _worded(text: str, sizes: Sequence[tuple[str, str, float]], size: float) -> str:
     what, scaled, _ = text.partition(" is scaled by ")
     times = "" if abs(size - 1.0) < CLEAN else f"{number(float(f'{size:.6g}'))} times "
-    if scaled and name.endswith(what) and power == -1.0:
-        return f"{name} is {number(size)} {unit}, whatever was requested"
-    if scaled and not times and abs(power) == 1.0:
-        return f"{what} is {'multiplied' if power > 0 else 'divided'} by {name}"
-    shown = f"{times}{name}" if power == 1.0 else f"{times}{name}^{number(power)}"
+    name, unit, power = sizes[0]
+    if len(sizes) == 1:
+        if scaled and name.endswith(what) and power == -1.0:
+            return f"{name} is {number(size)} {unit}, whatever was requested"
+        if scaled and power == -1.0 and times:
+            return f"{what} is scaled so that {name} comes to {number(size)} {unit}"
+        if scaled and not times and abs(power) == 1.0:
+            return f"{what} is {'multiplied' if power > 0 else 'divided'} by {name}"
+    above = [_power(n, p) for n, _, p in sizes if p > 0.0]
+    below = [_power(n, -p) for n, _, p in sizes if p < 0.0]
+    shown = f"{times}{' times '.join(above) or '1'}"
+    shown = " over ".join([shown.replace(" times 1", ""), *below])
     if scaled:
         return f"{what} is scaled by a factor that goes as {shown}"
     return f"{NUMBER.sub('c', text, count=1)}, where c is {shown}"
+
+
+def _power(name: str, power: float) -> str:
+    return name if power == 1.0 else f"{name}^{number(power)}"

@@ -62,5 +62,5 @@ def like_schemes(truth: Truth, sweep: Sweep, state: State) -> dict[SchemeKey, Li
             faster = yardstick.faster(own.state)
             bounds = yardstick.round_off(timestep, sweep.sample_steps, own.growth, faster)
             distances = {c: yardstick.distance(c, state, own.state) for c in CHANNELS}
-            found[key] = likeness(distances, bounds)
+            found[key] = likeness(distances, {c: 2.0 * bounds[c] for c in CHANNELS})
     return found

@@ -139,6 +139,7 @@ class Yardstick:
         times = np.where(np.isfinite(times), times, np.inf)
         return np.maximum.accumulate(np.maximum(times, 1.0))
 
+    @np.errstate(over="ignore", invalid="ignore")  # a motion may be where squares overflow
     def round_off(
         self,
         timestep: float | Array,
@@ -176,13 +177,14 @@ class Yardstick:
         self, theta: Array, speed: Array, reach: Array, swift: Array | float | None = None
     ) -> dict[str, Array]:
         """(n,) per invariant: how far it is off where omega and attitude are off by theta, the
-        velocity by speed in m/s and the position by reach in m, to first order.
+        velocity by speed in m/s and the position by reach in m, to second order: of a motion that
+        blows up the squares are all there is, and of a body at rest.
 
         swift: m/s, the body's own greatest speed, if it is not that of the exact motion.
         """
-        own = self.speed if swift is None else swift
+        own = (self.speed if swift is None else swift) + speed
         mass, spin = self.scale.mass, self.scale.largest * self.rate
-        turning = 2.0 * spin * theta  # |I d_omega| + |d_theta x I omega|
+        turning = 2.0 * spin * theta * (1.0 + theta)  # |I d_omega| + |d_theta x I omega|, squares
         moving = mass * own * speed + mass * self.gravity * reach
         lever = mass * (self.scale.lever * speed + own * reach)
         pivoted = 0.0 if self.system.load.pivot is None else lever

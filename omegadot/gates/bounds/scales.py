@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.loads import torque
+from omegadot.reference_impl.loads import gravity_torque
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
@@ -71,15 +71,18 @@ def body_scale(system: System) -> BodyScale:
 def torque_size(system: System, state: State, acceleration: Acceleration) -> Array:
     """(...) N m: the terms of equation (8) added up by size, with what cancels among them.
 
-    ``J (|omega|^2 + |omega_dot|) + |tau| + m L (|g| + |a|)``, J the largest inertia and L the lever
-    of `body_scale`; for a free body also ``m |v| (|v| + L |omega|)``: the spatial bias force of an
-    engine holds ``v x m v``, which vanishes on paper and leaves its rounding; and
-    ``m |x| |a - g|``: a lever that is the difference of two places in the world is off by a
-    rounding of x, and the force ``m (a - g)`` acts on it.
+    ``J (|omega|^2 + |omega_dot|) + sum |tau_i| + m L (|g| + |a|)``, J the largest inertia, L the
+    lever of `body_scale`, and tau_i the weight's torque, damping and each applied torque: at its
+    terminal rate they cancel, and leave the roundings of each. For a free body also
+    ``m |v| (|v| + L |omega|)``: the spatial bias force of an engine holds ``v x m v``, which
+    vanishes on paper and leaves its rounding; and ``m |x| |a - g|``: a lever that is the difference
+    of two places in the world is off by a rounding of x, and the force ``m (a - g)`` acts on it.
     """
     scale, load = body_scale(system), system.load
     rate = norm(state.angular_velocity)
-    size = scale.largest * (rate**2 + norm(acceleration.angular)) + norm(torque(system, state))
+    size = scale.largest * (rate**2 + norm(acceleration.angular)) + load.damping * rate
+    size = size + norm(load.torque_body) + norm(load.torque_world)
+    size = size + norm(gravity_torque(system, state))
     size = size + scale.mass * scale.lever * (norm(load.gravity) + norm(acceleration.linear))
     if load.pivot is None:
         speed = norm(state.linear_velocity)

@@ -36,7 +36,8 @@ class MeasuredRun:
     """One engine's run, measured. All arrays are (n,) at the sample times, by channel.
 
     gained: whether the energy is larger (1) than the exact one or smaller (-1), where it is known.
-    single: whether the engine works in single precision.
+    single: whether the engine works in single precision.  of_momentum: what rounding may grow to
+    where the scheme is not known, and may step the angular momentum.
     """
 
     sweep: Sweep
@@ -46,6 +47,12 @@ class MeasuredRun:
     floor: dict[str, Array] = field(default_factory=dict)
     gained: Array | None = field(default=None, kw_only=True)
     single: bool = field(default=False, kw_only=True)
+    of_momentum: dict[str, Array] = field(default_factory=dict, kw_only=True)
+
+    @property
+    def beside_scheme(self) -> dict[str, Array]:
+        """How far rounding may take it from its scheme's run: each of the two may be off."""
+        return {channel: 2.0 * bound for channel, bound in self.round_off.items()}
 
     @property
     def saturating_error(self) -> Array:
@@ -71,7 +78,9 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
 
     growth = own.growth if own else truth.growth[rows]
     faster = yardstick.faster(own.state) if own else 1.0
-    bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth, faster)
+    how = (sweep.timestep, sweep.sample_steps, growth, faster)
+    bounds = yardstick.round_off(*how)
+    momentum = yardstick.of_momentum().round_off(*how) if own is None else bounds
     return MeasuredRun(
         sweep=sweep,
         error=apart(exact),
@@ -80,6 +89,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
         floor={channel: values[rows] for channel, values in truth.floor.items()},
         gained=gained,
         single=yardstick.eps > EPS,
+        of_momentum={channel: _sizes(bound) for channel, bound in momentum.items()},
     )
 
 
@@ -92,7 +102,8 @@ def errors_of(run: MeasuredRun, channel: str, *, left: bool = False) -> Errors |
     if left and not run.against_scheme:
         return None
     size = run.against_scheme[channel] if left else run.error[channel]
-    bound = np.maximum(run.round_off[channel], run.floor.get(channel, 0.0))
+    rounding = run.beside_scheme if left else run.round_off
+    bound = np.maximum(rounding[channel], run.floor.get(channel, 0.0))
     largest, saturates = run.saturating_error, channel in SATURATING
     gained = run.gained if channel == "energy" and not left else None
     signed = None if gained is None else size * gained
@@ -120,7 +131,7 @@ def evidence_of(
             own = next(one for one in known if one.timestep == measured.sweep.timestep)
             excess = max(excess, excess_of(own, known, declared + part))
     bound, floor = measured.round_off[channel], measured.floor.get(channel)
-    more = (excess, finer >= FEWEST_STEPS, highest)
+    more = (excess, finer >= FEWEST_STEPS, highest, measured.of_momentum.get(channel))
     return Evidence(measured.error[channel], bound, left, tuple(orders), floor, *more)
 
 

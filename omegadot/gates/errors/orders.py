@@ -142,7 +142,7 @@ def _of_two_terms(sweep: Sequence[Errors], horizon: float) -> ObservedOrder | No
     the error at no step, which a scheme of an order above zero has not. The order is the power of
     its first coefficient that makes a tenth of the finest error or more: with less, the slope of a
     halving would be lower by the tolerance at most. None where that is the constant or the last
-    coefficient, after which others may follow.
+    coefficient, after which others may follow, and where it may be rounding of the errors.
     """
     finest = sorted(sweep, key=lambda one: one.timestep)[:4]
     if len(finest) < 4 or any(one.signed is None for one in finest):
@@ -153,10 +153,12 @@ def _of_two_terms(sweep: Sequence[Errors], horizon: float) -> ObservedOrder | No
         return None
     errors = np.array([one.signed[:samples] for one in finest if one.signed is not None])
     ratios = np.array([one.timestep / finest[0].timestep for one in finest])
-    coefficients = np.linalg.solve(np.vander(ratios, increasing=True), errors)
-    shares = np.max(np.abs(coefficients), axis=1) / np.max(np.abs(errors[0]))
-    first = int(np.argmax(shares >= 1.0 - 0.5**ORDER_TOLERANCE))
-    return ObservedOrder(float(first), True) if 0 < first < 3 else None
+    powers = np.linalg.inv(np.vander(ratios, increasing=True))
+    sizes = np.max(np.abs(powers @ errors), axis=1)
+    rounding = np.abs(powers) @ np.array([np.max(one.bound[:samples]) for one in finest])
+    first = int(np.argmax(sizes >= (1.0 - 0.5**ORDER_TOLERANCE) * np.max(np.abs(errors[0]))))
+    known = 0 < first < 3 and sizes[first] > rounding[first]
+    return ObservedOrder(float(first), True) if known else None
 
 
 def _vanishes(sweep: Sequence[Errors]) -> bool:

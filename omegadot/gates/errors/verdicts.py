@@ -63,6 +63,7 @@ class Evidence:
     excess: how many times larger the error is than those at finer steps let it be.
     settled: there are so many finer steps that more would not change that.
     highest: the order that rounding leaves open at most, where that is known.
+    of_momentum: (n,), what rounding may grow to where the angular momentum may be what is stepped.
     """
 
     error: Array
@@ -73,6 +74,17 @@ class Evidence:
     excess: float = 0.0
     settled: bool = True
     highest: float = np.inf
+    of_momentum: Array | None = None
+
+    @property
+    def equals_scheme(self) -> bool:
+        """Whether rounding alone, of either, tells the run from the reference's of its scheme."""
+        return self.left is not None and bool(np.all(self.left <= 2.0 * self.round_off))
+
+    @property
+    def may_be_rounding(self) -> bool:
+        """Whether an unknown scheme may have made the error by rounding the angular momentum."""
+        return self.of_momentum is not None and bool(np.all(self.error <= self.of_momentum))
 
 
 def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Finding:
@@ -90,7 +102,7 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
     if np.all(evidence.error <= evidence.round_off) and bounded.all():
         return Finding("round-off", "within round-off")
     known = bool(np.all(np.isfinite(evidence.error[bounded])))
-    if known and evidence.left is not None and np.all(evidence.left <= evidence.round_off):
+    if known and evidence.left is not None and evidence.equals_scheme:
         largest = float(np.max(evidence.left[bounded]))
         until = "" if bounded.all() else ", until the scheme blows up"
         return Finding("explained", f"explained by {scheme}, to {largest:.1e}{until}")
@@ -121,6 +133,7 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
         shown = [order for order in seen if not order.resolved and not order.hidden]
         # Clear errors that do not even begin to shrink as they should.
         falls = any(o.value < declared - 0.5 and o.rise <= ORDER_TOLERANCE for o in shown)
+        falls = falls and not evidence.may_be_rounding
         return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
     if lowest.value < least:
         if lowest.value + lowest.rise >= least or not is_whole(lowest.value):

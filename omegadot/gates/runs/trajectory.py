@@ -49,6 +49,7 @@ def rows(measured: MeasuredRun, findings: dict[str, Finding]) -> list[Row]:
         found.append(Row(GATE, channel, "error_end", end, unit))
         if channel in measured.against_scheme:
             left = float(np.max(measured.against_scheme[channel]))
+            bound = float(np.max(measured.beside_scheme[channel]))
             found.append(Row(GATE, channel, "unexplained_max", left, unit, bound))
     return found
 

@@ -55,11 +55,13 @@ class Limit:
 
     bound: (r, m), how far the extrapolants differ, and what rounding makes of it. Where they
     converge, the difference of two is the error of the worse.
+    jump: (m,), by how much the quantity changes in steps that vanish; zero where that vanishes too.
     """
 
     found: Array
     expected: Array
     bound: Array
+    jump: Array | None = None
 
     def shares(self, factor: float = 1.0) -> Array:
         """(m,): the distance from `factor` times the equation's rate, in parts of its bound."""
@@ -68,6 +70,17 @@ class Limit:
             shares = np.where(apart == 0.0, 0.0, apart / self.bound)
         least: Array = np.min(np.where(np.isnan(shares), np.inf, shares), axis=0)
         return least
+
+    def jumps(self, unit: str) -> str:
+        """By how much the quantity changes in steps that vanish, in its unit; "" if it does not.
+
+        unit: of the rate.
+        """
+        place = int(np.argmax(self.shares()))
+        if self.jump is None or self.jump[place] == 0.0:
+            return ""
+        own = unit.replace("/s^2", "/s") if unit.endswith("/s^2") else unit.removesuffix("/s")
+        return f"{self.jump[place]:.1e} {own}"
 
     def off(self, unit: str) -> str:
         """How far it is from the equation's at the worst of the states, relative or in its unit."""
@@ -178,4 +191,7 @@ def _limit(
         rounded = rounding * np.sum(_WEIGHTS / h[:, steps], axis=-1)
         found.append(best)
         bounds.append(norm(best - worse) + norm(worse - worst) + rounded + per_rate * _AMPLIFIED)
-    return Limit(np.array(found), expected, np.array(bounds))
+    left = norm(extrapolated(change[:, ranges[0]]))
+    jumps = left > 0.5 * norm(change[:, ranges[0].start])  # of the longest of these steps
+    jumps &= left > rounding * _AMPLIFIED
+    return Limit(np.array(found), expected, np.array(bounds), np.where(jumps, left, 0.0))

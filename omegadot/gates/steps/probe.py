@@ -8,7 +8,7 @@ import numpy as np
 
 from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.states.equation import EvaluationStates
-from omegadot.reference_impl.body_motion import attitude_motion
+from omegadot.reference_impl.one_body.body_motion import attitude_motion
 from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian
 from omegadot.reference_impl.system import Array, State, System
 

@@ -16,7 +16,7 @@ from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
-from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.system import Array, State
 
 GATE = "scheme"

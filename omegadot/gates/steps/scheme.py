@@ -60,7 +60,7 @@ def order_rows(
         if shown is VANISHED:
             verdict, note = "info", "the error falls into rounding"
         elif shown.resolved:
-            explained = left is not None and bool(np.all(left <= measured.round_off[channel]))
+            explained = left is not None and bool(np.all(left <= measured.beside_scheme[channel]))
             verdict, note = _held_to(shown, limit, explained)
         bound = None if limit is None else float(limit)
         found.append(Row(GATE, channel, "observed_order", shown.value, "1", bound, verdict, note))
@@ -115,7 +115,7 @@ def match_row(
     For an engine that declares none, the row names the schemes that it equals.
     """
     if measured.against_scheme:
-        found = likeness(measured.against_scheme, measured.round_off)
+        found = likeness(measured.against_scheme, measured.beside_scheme)
         row = _declared_row(truth, integrator, measured, state, found)
         if row.verdict == "fail" and _left_is_of_higher_order(measured, measured_runs, integrator):
             note = f"equals {integrator.scheme} but for terms that vanish faster than its error"
@@ -142,7 +142,7 @@ def _left_is_of_higher_order(
     """Whether, in every channel, what is left of the scheme is rounding or of a higher order."""
     for channel in CHANNELS:
         evidence = evidence_of(measured, measured_runs, channel, integrator.orders.get(channel))
-        if evidence.left is None or np.all(evidence.left <= evidence.round_off):
+        if evidence.left is None or evidence.equals_scheme:
             continue
         left, declared = evidence.orders[-1], integrator.orders.get(channel)
         if left is None or declared is None or not left.resolved or evidence.excess > 1.0:

@@ -68,4 +68,6 @@ def _note(limit: Limit, factor: float | None, digits: int, unit: str) -> str:
     if factor is not None:
         off = f"{100 * abs(factor - 1.0):.{digits}g} %"
         return f"steps are {off} too {'long' if factor > 1 else 'short'}"
+    if jump := limit.jumps(unit):
+        return f"as the step vanishes, it still changes by {jump}"
     return f"as the step vanishes, its rate is not the equation's: {limit.off(unit)}"

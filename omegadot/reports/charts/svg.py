@@ -14,7 +14,8 @@ from omegadot.reference_impl.system import Array
 from omegadot.reports.charts.packing import FLOOR_DECADE
 from omegadot.reports.text.numbers import plain
 
-WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 440, 240, 46, 8, 8, 34
+# To the right there is room for half of the last label.
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 440, 240, 46, 16, 8, 34
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 # Half a px: a point that is no farther from the line between its neighbours is left out.
 _FLAT = 0.5

@@ -11,6 +11,7 @@ from omegadot.reports.summary.headline import step_notes
 from omegadot.reports.text.numbers import grouped, listed, plain, quantity, times
 
 Row = Mapping[str, Any]
+MOST_DIGITS = 17  # of a double
 NAMES = {
     "attitude": "attitude error",
     "omega": "omega error",
@@ -99,13 +100,22 @@ def _nothing(rows: Sequence[Row]) -> str:
     return f"nothing qualifies. The nearest is {_label(near)}: {missed_text(near['missed'][0])}."
 
 
+def _written(values: Sequence[float], unit: str) -> Iterator[tuple[str, ...]]:
+    for digits in range(2, MOST_DIGITS):
+        yield tuple(quantity(value, unit, digits) for value in values)
+
+
 def missed_text(missed: Row) -> str:
     """One requirement that is missed, and by how much."""
     name = NAMES[missed["requirement"]]
     if missed["found"] is None or missed["factor"] is None:
         return f"{name} not finite"
-    limit = quantity(missed["limit"], missed["unit"])
-    found = quantity(missed["found"], missed["unit"])
+    pair = [missed["limit"], missed["found"]]
+    # As many digits as it takes to see that they differ.
+    limit, found = next(
+        (texts for texts in _written(pair, missed["unit"]) if texts[0] != texts[1]),
+        tuple(quantity(value, missed["unit"]) for value in pair),
+    )
     wanted = "at least" if missed["requirement"] == "real-time-factor" else "at most"
     return f"{name} {found}, required {wanted} {limit} (off by {grouped(missed['factor'])}x)"
 

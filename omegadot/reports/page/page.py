@@ -26,7 +26,7 @@ from omegadot.reports.summary import matrix
 from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
 from omegadot.reports.summary.headline import headline, remarks, step_notes, truth
 from omegadot.reports.summary.provenance import Sources, command_of, provenance_payload, sources_for
-from omegadot.reports.summary.summary import STATUSES, summarise
+from omegadot.reports.summary.summary import STATUSES, counts, summarise
 
 _JUDGED_SHOWN = 50
 
@@ -70,7 +70,7 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         choice=choice,
         headline=record.run.get("headline") or headline(summary),
         remarks=remarks(summary) + truth(summary),
-        counts=[(status, summary.runs[status]) for status in STATUSES if summary.runs[status]],
+        counts=counts(summary),
         summary=summary,
         matrix=matrix.matrix(summary),
         numbers=matrix.NUMBERS,

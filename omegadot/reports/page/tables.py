@@ -145,9 +145,10 @@ def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any, sources: Sources)
     # The worst comes last and stays: a failure, and there the largest value.
     size = pl.col("value").fill_nan(float("inf")).fill_null(float("inf"))
     ordered = metrics.sort(pl.col("verdict") == "fail", size, maintain_order=True)
-    cells: dict[tuple[tuple[str, ...], tuple[str, ...]], tuple[Any, ...]] = {}
+    place = {column: k for k, column in enumerate(columns)}
+    cells: dict[tuple[str, ...], list[Any]] = {names: [None] * len(columns) for names in numbers}
     for row in ordered.select(*heads, *keys, "value", "bound", "verdict").iter_rows():
-        cells[name(row[:-7]), row[-7:-3]] = row[-3:]
+        cells[name(row[:-7])][place[row[-7:-3]]] = row[-3:]
     titles = [": ".join(filter(None, (g, channel_name(c)))) for g, c, _, _ in columns]
     return Table(
         ("engine",),
@@ -157,7 +158,7 @@ def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any, sources: Sources)
             for gate, _, metric, unit in columns
         ),
         tuple(
-            Row(names, tuple(_value(cells.get((names, column))) for column in columns), number)
+            Row(names, tuple(map(_value, cells[names])), number)
             for names, number in numbers.items()
         ),
     )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import glob
-import itertools
 import json
 import os
 import re
@@ -23,6 +22,7 @@ from omegadot.reports.record import schema
 from omegadot.reports.record.run_json import dump_json, read_run
 from omegadot.reports.record.run_model import check_run
 from omegadot.reports.record.schema import Field, RecordError
+from omegadot.reports.record.whole_file import as_record_error
 
 RUN, PAGE = "run.json", "report.html"
 METRICS, TRAJECTORIES = "metrics.parquet", "trajectories.parquet"
@@ -47,9 +47,25 @@ def check_folder(folder: Path) -> None:
     It may be absent, empty, or hold an earlier record and nothing else; no other file is ever
     replaced. Call it before a long run, not after it.
     """
-    folder = _followed(folder)
-    if Path.cwd().is_relative_to(folder):
+    try:
+        here, folder = Path.cwd(), _followed(folder)
+    except FileNotFoundError as error:
+        raise RecordError(
+            "the current folder does not exist any more; change to another."
+        ) from error
+    if here.is_relative_to(folder):
         raise RecordError(f"{folder}: is the current directory or holds it; name a new folder.")
+    with as_record_error(folder):
+        _check_place(folder)
+
+
+def _check_place(folder: Path) -> None:
+    """That a record may be written there. Raises RecordError."""
+    if outer := next(filter(_is_record, folder.parents), None):
+        raise RecordError(
+            f"{folder}: lies in the record {outer}, which no run could then replace; "
+            "name a folder outside it."
+        )
     _try_to_write(folder)
     _recover(folder)
     if not folder.exists():
@@ -61,9 +77,8 @@ def check_folder(folder: Path) -> None:
     names = sorted(entry.name for entry in folder.iterdir())
     foreign = [name for name in names if name not in FILES]
     if foreign:
-        raise RecordError(
-            f"{folder}: holds {foreign[0]!r}, which is no part of a record; name a new folder."
-        )
+        what = "another record" if _is_record(folder / foreign[0]) else "no part of a record"
+        raise RecordError(f"{folder}: holds {foreign[0]!r}, which is {what}; name a new folder.")
     if names and RUN not in names:
         raise RecordError(f"{folder}: is not empty and holds no {RUN}; name a new folder.")
 
@@ -74,6 +89,10 @@ def _followed(folder: Path) -> Path:
     if os.path.islink(followed):  # False of a name that is too long, which is met as it is written
         raise RecordError(f"{folder}: is a symbolic link to itself; name a new folder.")
     return followed
+
+
+def _is_record(folder: Path) -> bool:
+    return all(os.path.isfile(folder / name) for name in (RUN, METRICS))
 
 
 def _try_to_write(folder: Path) -> None:
@@ -108,14 +127,6 @@ def _recover(folder: Path) -> None:
 
 def _age(path: Path) -> float:
     return time.time() - path.stat().st_ctime
-
-
-def unfinished_name(folder: Path) -> Path:
-    """Where the record of an interrupted run goes: beside an earlier record in `folder`."""
-    if not (folder / RUN).exists():
-        return folder
-    names = (f"{folder.name}-interrupted{'' if n == 1 else f'-{n}'}" for n in itertools.count(1))
-    return next(path for name in names if not (path := folder.with_name(name)).exists())
 
 
 def write_record(record: Record, folder: Path, page: str) -> None:
@@ -175,7 +186,9 @@ def _write_parquet(frame: pl.DataFrame, fields: Mapping[str, Field], path: Path)
 
 def read_record(folder: Path) -> Record:
     """Read a record back. Raises RecordError, one sentence, for whatever is wrong with it."""
-    if not folder.is_dir():
+    with as_record_error(folder):
+        is_folder = folder.is_dir()
+    if not is_folder:
         raise RecordError(f"{folder}: no such folder; give the folder of a run.")
     for name in (RUN, METRICS, TRAJECTORIES):
         if not (folder / name).is_file():

@@ -58,6 +58,10 @@ def dump_json(value: object) -> str:
 
 def plain(value: Any) -> Any:
     """What strict JSON can hold: null for what is not finite, lists for arrays and sets."""
+    if value is None or type(value) in (str, int, bool):  # most are, or a number
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
     if isinstance(value, Mapping):
         return {str(key): plain(entry) for key, entry in value.items()}
     if isinstance(value, set | frozenset):
@@ -66,6 +70,4 @@ def plain(value: Any) -> Any:
         return [plain(entry) for entry in value]
     if hasattr(value, "tolist"):  # a NumPy array or scalar
         return plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
     return value

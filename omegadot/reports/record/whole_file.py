@@ -5,10 +5,32 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
+from collections.abc import Iterator
 from pathlib import Path
 
 PAGE_MARK = "<title>omegadot"
 _BYTES_OF_A_MARK = 4096
+
+
+def path_of(given: str | os.PathLike[str]) -> Path:
+    """The path that a script gives. Raises RecordError for what is none, such as a number."""
+    from omegadot.reports.record.schema import RecordError
+
+    if isinstance(given, str | os.PathLike):
+        return Path(given)
+    raise RecordError(f"{given!r}: is no path; give a text or a pathlib.Path.")
+
+
+@contextlib.contextmanager
+def as_record_error(path: Path) -> Iterator[None]:
+    """An OSError inside, as of a name that is too long, is a RecordError of one sentence."""
+    from omegadot.reports.record.schema import RecordError
+
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise RecordError(f"{path}: cannot be used ({reason}); name another.") from error
 
 
 def make_folder(folder: Path) -> None:
@@ -32,7 +54,9 @@ def check_target(target: Path, mark: str) -> None:
     """
     from omegadot.reports.record.schema import RecordError
 
-    if target.is_dir():
+    with as_record_error(target):
+        is_folder = target.is_dir()
+    if is_folder:
         raise RecordError(f"{target}: is a folder; name a file.")
     if not os.path.lexists(target):
         return

@@ -11,7 +11,14 @@ import polars as pl
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import GATES
-from omegadot.reports.text.numbers import engine_name, magnitude, quantity, short, times
+from omegadot.reports.text.numbers import (
+    engine_name,
+    knob,
+    quantity,
+    short,
+    times,
+    times_its_bound,
+)
 
 UNKNOWN = "none is known"
 
@@ -32,17 +39,39 @@ def failures_of(record: Record) -> tuple[str, ...]:
     return tuple(sentences)
 
 
+def failing_cells(metrics: pl.DataFrame) -> dict[tuple[str, ...], str]:
+    """By scenario, engine, version and setup: the failing gate and its worst measure."""
+    found: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+    for row in metrics.filter(pl.col("verdict") == "fail").iter_rows(named=True):
+        key = (row["scenario"], row["engine"], row["engine_version"], row["setup"])
+        found.setdefault(key, []).append(row)
+    return {key: _in_cell(_worst_row(rows)) for key, rows in found.items()}
+
+
+def _in_cell(row: Mapping[str, Any]) -> str:
+    run = (row["integrator"], knob(row["timestep"], row["accuracy"]))
+    where = ", ".join(filter(None, run))
+    return f"{row['gate']} gate: {_measure(row)}" + (f" ({where})" if where else "")
+
+
 def _worst(rows: list[dict[str, Any]]) -> str:
+    row = _worst_row(rows)
+    by = f" {row['integrator']}" if row["integrator"] else ""
+    return f"the {row['gate']} gate fails on {row['scenario']}{by}, {_measure(row)}"
+
+
+def _worst_row(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """The worst measure of the first gate that fails; later gates fail for the same reason."""
     gate = min((row["gate"] for row in rows), key=GATES.index)
-    row = max((row for row in rows if row["gate"] == gate), key=_excess)
-    channel = row["channel"].replace("omega_dot", "omega-dot")
-    by = f" {row['integrator']}" if row["integrator"] else ""
-    text = f"the {gate} gate fails on {row['scenario']}{by}, {channel.replace('_', ' ')}"
+    return max((row for row in rows if row["gate"] == gate), key=_excess)
+
+
+def _measure(row: Mapping[str, Any]) -> str:
+    channel = row["channel"].replace("omega_dot", "omega-dot").replace("_", " ")
     # A share of a bound, or no number: the note states what is wrong.
     if row["note"] and (row["bound"] == 1.0 or not isfinite(row["value"] or 0.0)):
-        return f"{text}: {row['note']}"
-    text += f" {row['metric'].replace('_', ' ')} {quantity(row['value'], row['unit'])}"
+        return f"{channel}: {row['note']}"
+    text = f"{channel} {row['metric'].replace('_', ' ')} {quantity(row['value'], row['unit'])}"
     excess = _excess(row)
     if row["bound"] is not None and 1.0 < excess < float("inf"):
         text += f", {short(excess)} times its bound"
@@ -50,10 +79,8 @@ def _worst(rows: list[dict[str, Any]]) -> str:
 
 
 def _excess(row: Mapping[str, Any]) -> float:
-    """How many times its bound a measure is; orders, which are too low, come last."""
-    if row["metric"] == "observed_order":
-        return 0.0
-    return magnitude(row["value"]) / row["bound"] if row["bound"] else magnitude(row["value"])
+    """Orders, which are too low, come last."""
+    return 0.0 if row["metric"] == "observed_order" else times_its_bound(row["value"], row["bound"])
 
 
 def _extent(tasks: list[Mapping[str, Any]]) -> str:

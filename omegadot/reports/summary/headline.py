@@ -114,12 +114,14 @@ def _run(figure: Figure) -> str:
 
 def _remainder(summary: Summary) -> list[str]:
     message = []
-    declared = summary.runs.get("declared", 0)
+    runs = summary.runs + summary.yardsticks
+    declared = runs.get("declared", 0)
     if declared:
         message.append(f"{times(declared, 'declared exception')}.")
-    total = sum(summary.runs.values())
-    skipped = total - sum(summary.runs[status] for status in ("pass", "fail", "declared"))
+    total = sum(runs.values())
+    skipped = total - sum(runs[status] for status in ("pass", "fail", "declared"))
     if skipped:
-        runs = f"{skipped} of {times(total, 'run')}"
-        message.append(f"{runs} gave no verdict; the reasons are listed.")
+        message.append(
+            f"{skipped} of {times(total, 'run')} gave no verdict; the reasons are listed."
+        )
     return message

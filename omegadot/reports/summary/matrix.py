@@ -9,7 +9,7 @@ from typing import Any
 
 from omegadot.reports.summary.figures import Figure, Range
 from omegadot.reports.summary.provenance import Sources
-from omegadot.reports.summary.summary import STATUSES, Cell, Column, Summary
+from omegadot.reports.summary.summary import STATUSES, Cell, Column, Summary, text_of
 from omegadot.reports.text.numbers import knob, quantity, short
 
 MARKS = {"pass": "✓", "fail": "✗", "declared": "!", "absent": ""}
@@ -23,9 +23,11 @@ NUMBERS = {
 
 @dataclass(frozen=True)
 class Shown:
-    """One cell as text. mark and status: a sign and its name.  part: how many of its runs passed,
-    where not all did.  numbers: text by the keys of NUMBERS.  card: the number of its card among
-    `cards`.  rank: for sorting, the worst first.
+    """One cell as text.
+
+    mark and status: a sign and its name.  part: how many of its runs passed, where not all did.
+    numbers: text by the keys of NUMBERS.  card: the number of its card among `cards`.  rank: for
+    sorting, the worst first.  gate: the first that fails, if one does.
     """
 
     mark: str
@@ -34,6 +36,7 @@ class Shown:
     numbers: dict[str, str]
     card: int = 0
     rank: int = 0
+    gate: str = ""
 
 
 def origin_of(column: Column, figure: Figure | None = None) -> dict[str, Any]:
@@ -52,7 +55,8 @@ def shown(cell: Cell, card: int = 0) -> Shown:
         "attitude": _span(cell.attitude),
     }
     rank = STATUSES.index(cell.status)
-    return Shown(MARKS.get(cell.status, "–"), text(cell.status), part, numbers, card, rank)
+    gate = cell.failed.partition(" gate:")[0]
+    return Shown(MARKS.get(cell.status, "–"), text_of(cell.status), part, numbers, card, rank, gate)
 
 
 def matrix(summary: Summary) -> list[tuple[str, list[Shown]]]:
@@ -67,6 +71,7 @@ def matrix(summary: Summary) -> list[tuple[str, list[Shown]]]:
 def lines(summary: Summary, scenario: str, sources: Sources) -> list[dict[str, Any]]:
     """A scenario's row of the matrix, spelt out: one line an engine.
 
+    failed: the failing gate with its number, if one fails.
     numbers: (value, the run behind it) of the worst residual, then best and worst of the drift and
     best and worst of the attitude error.
     """
@@ -77,8 +82,8 @@ def lines(summary: Summary, scenario: str, sources: Sources) -> list[dict[str, A
         figures = [cell.residual, *(figure for pair in ends for figure in pair)]
         numbers = [named(figure) for figure in figures]
         source = sources.number(origin_of(column))
-        line = {"engine": column.name, "shown": shown(cell), "numbers": numbers, "source": source}
-        found.append(line)
+        line = {"engine": column.name, "shown": shown(cell), "failed": cell.failed}
+        found.append({**line, "numbers": numbers, "source": source})
     return found
 
 
@@ -98,13 +103,6 @@ def named(figure: Figure | None) -> tuple[str, str]:
     return quantity(figure.value, figure.unit), ", ".join(filter(None, run))
 
 
-def text(status: str) -> str:
-    """A status in plain English."""
-    return {"not-judged": "not judged", "not-installed": "not installed", "absent": "not run"}.get(
-        status, status
-    )
-
-
 def cards(summary: Summary, sources: Sources, anchors: Mapping[str, str]) -> list[list[Any]]:
     """The card of each cell: ``[address, verdict, part, [[what, value, source], ...]]``.
 
@@ -118,7 +116,8 @@ def cards(summary: Summary, sources: Sources, anchors: Mapping[str, str]) -> lis
             for what, figure in _figures(cell)
         ]
         whole = sources.number(origin_of(column))
-        found.append([anchors[name], text(cell.status), shown(cell).part, numbers, whole])
+        part = cell.failed or shown(cell).part
+        found.append([anchors[name], text_of(cell.status), part, numbers, whole])
     return found
 
 

@@ -15,8 +15,9 @@ import polars as pl
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.run_json import impossible_bodies
-from omegadot.reports.summary.failures import failures_of
+from omegadot.reports.summary.failures import failing_cells, failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
+from omegadot.reports.text.numbers import times
 
 # From the worst to the best. A skip is never a pass, and neither is a run that was not judged.
 STATUSES = (
@@ -62,6 +63,7 @@ class Cell:
     status: the worst over its runs, of STATUSES.  runs: how many runs have which status.
     residual: the worst omega-dot residual at identical states.  drift and attitude: the range over
     the integrators, at the finest step, of the angular-momentum drift and the attitude error.
+    failed: the failing gate with its worst measure, if one fails.
     """
 
     status: str
@@ -69,6 +71,7 @@ class Cell:
     residual: Figure | None
     drift: Range | None
     attitude: Range | None
+    failed: str = ""
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,8 @@ class Missing:
 class Summary:
     """The record at a glance.
 
+    runs: by status, how many.  yardsticks: those of the exact solution and the reference, where
+    others ran.
     failures: a sentence on each failing engine.
     truths: by kind of exact solution, the number of scenarios.  notes: a sentence on each body
     whose inertia is impossible, each process that ended by itself, each engine without integrators.
@@ -99,6 +104,7 @@ class Summary:
     columns: tuple[Column, ...]
     cells: Mapping[tuple[str, Column], Cell]
     runs: Counter[str]
+    yardsticks: Counter[str]
     missing: tuple[Missing, ...]
     failures: tuple[str, ...]
     truths: Counter[str]
@@ -124,8 +130,7 @@ def summarise(record: Record) -> Summary:
     """The matrix of scenarios and engines, the counts, and what did not run."""
     tasks = record.run["tasks"]
     singles = {e["name"] for e in record.run["engines"] if e.get("precision") == "float32"}
-    failures = record.metrics.filter(pl.col("verdict") == "fail")
-    failed = set(failures.select("scenario", "engine", "engine_version", "setup").rows())
+    failed = failing_cells(record.metrics)
     failing = {key[1:] for key in failed}
     failing |= {column_of(task) for task in tasks if task_status(task) == "fail"}
     columns = _columns(tasks, singles, failing)
@@ -139,17 +144,45 @@ def summarise(record: Record) -> Summary:
     for scenario, column in product(scenarios, columns):
         key = (scenario, column.engine, column.version, column.setup)
         own = statuses.get(key, []), figures.get(key, {})
-        cells[scenario, column] = _cell(key in failed, *own)
+        cells[scenario, column] = _cell(failed.get(key, ""), *own)
     return Summary(
         bool(record.run.get("complete", True)),
         scenarios,
         columns,
         cells,
-        Counter(task_status(task) for task in tasks),
+        *_counted(tasks),
         _missing(record.run),
         failures_of(record),
         _truths(record.trajectories),
         (*impossible_bodies(record.run["scenarios"]), *_ended(record.run), *_unstepped(record.run)),
+    )
+
+
+def _counted(tasks: Iterable[Mapping[str, Any]]) -> tuple[Counter[str], Counter[str]]:
+    """How many runs have which status: the engines', and the yardsticks' where others ran."""
+    engines, yardsticks = Counter[str](), Counter[str]()
+    for task in tasks:
+        own = yardsticks if task["engine"] in YARDSTICKS else engines
+        own[task_status(task)] += 1
+    return (engines, yardsticks) if engines else (yardsticks, engines)
+
+
+def counts(summary: Summary) -> list[str]:
+    """How many runs have which status, in words: the engines', and apart the yardsticks'."""
+    found = []
+    for runs, whose in ((summary.runs, ""), (summary.yardsticks, " of exact and reference")):
+        if total := sum(runs.values()):
+            parts = ", ".join(
+                f"{runs[status]} {text_of(status)}" for status in STATUSES if runs[status]
+            )
+            found.append(f"{times(total, 'run')}{whose}: {parts}")
+    return found
+
+
+def text_of(status: str) -> str:
+    """A status in plain English."""
+    return {"not-judged": "not judged", "not-installed": "not installed", "absent": "not run"}.get(
+        status, status
     )
 
 
@@ -197,7 +230,7 @@ def _columns(
     return tuple(columns)
 
 
-def _cell(failed: bool, statuses: list[str], figures: dict[str, list[Figure]]) -> Cell:
+def _cell(failed: str, statuses: list[str], figures: dict[str, list[Figure]]) -> Cell:
     # A row's verdict counts even where its task has none: no failure gets lost.
     return Cell(
         "fail" if failed else worst(statuses),
@@ -205,6 +238,7 @@ def _cell(failed: bool, statuses: list[str], figures: dict[str, list[Figure]]) -
         max(figures.get("omega_dot", []), key=size, default=None),
         range_of(figures.get("angular_momentum", [])),
         range_of(figures.get("attitude", [])),
+        failed,
     )
 
 

@@ -6,7 +6,7 @@ from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.provenance import command_of
-from omegadot.reports.summary.summary import STATUSES, Cell, Summary, summarise, task_status
+from omegadot.reports.summary.summary import STATUSES, Cell, Summary, counts, summarise, task_status
 from omegadot.reports.text.markdown_text import COMMENT, code, escape, folded, table
 from omegadot.reports.text.numbers import first, times
 
@@ -32,11 +32,7 @@ def markdown_of(record: Record) -> str:
 
 
 def _counts(summary: Summary) -> str:
-    total = sum(summary.runs.values())
-    if not total:
-        return "No run was made."
-    counts = [f"{summary.runs[status]} {status}" for status in STATUSES if summary.runs[status]]
-    return f"{times(total, 'run')}: {', '.join(counts)}."
+    return "".join(f"{line}. " for line in counts(summary)).rstrip() or "No run was made."
 
 
 def _matrix(summary: Summary, room: int) -> list[str]:

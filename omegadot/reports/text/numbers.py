@@ -23,6 +23,12 @@ def magnitude(value: float | None) -> float:
     return math.inf if value is None or math.isnan(value) else abs(value)
 
 
+def times_its_bound(value: float | None, bound: float | None) -> float:
+    """How many times its bound a value is; infinite where it is not finite or nothing is due."""
+    size = magnitude(value)
+    return size / bound if bound and math.isfinite(size) else math.inf
+
+
 def plain(value: float | None) -> str:
     """A setting as its author would write it: 0.005, not 5e-3; – where there is none."""
     return "–" if value is None else f"{value:.6g}"

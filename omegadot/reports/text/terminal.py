@@ -11,7 +11,7 @@ from omegadot.reports.record.record import Record
 from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.headline import headline, remarks, truth
-from omegadot.reports.summary.summary import Cell, Missing, Summary, summarise
+from omegadot.reports.summary.summary import Cell, Missing, Summary, counts, summarise
 from omegadot.reports.text.numbers import first, short, times
 from omegadot.reports.text.text_grid import plain_console
 
@@ -23,9 +23,9 @@ _SIGNS = {"pass": "every gate holds", "fail": "a gate fails", "declared": "decla
 _WITH_NUMBERS = ("pass", "fail", "declared", "not-judged")
 # The heading of each number, and what it stands for.
 _NUMBERS = (
-    ("resid", "resid: omega-dot residual, relative."),
-    ("mom.", "mom.: angular-momentum drift, relative."),
-    ("att.", "att.: attitude error in rad."),
+    ("residual", "residual: of omega-dot at identical states, relative."),
+    ("drift", "drift: of the angular momentum, relative."),
+    ("attitude", "attitude: its error in rad."),
 )
 
 
@@ -48,7 +48,7 @@ def print_summary(record: Record, console: Console | None = None) -> None:
         console.print(Text(f"{sentence(cluster)} {extent(cluster)}"))
     for missing in summary.missing:
         console.print(Text(_missing_line(missing), style=_NOT_RUN))
-    console.print(Text(_counts(summary)))
+    console.print(Text("; ".join(counts(summary)) or "No run was made."))
     console.print(Text(headline(summary), style="bold"))
     for line in summary.failures:
         console.print(Text(line, _STYLES["fail"]))
@@ -76,7 +76,9 @@ def _table(summary: Summary, shown: int, console: Console) -> Table:
         # Where space is short the scenarios' names give way, not the verdicts.
         table.add_column(Text(column.label), no_wrap=True, overflow="ellipsis", min_width=width)
         columns.append(texts)
-    if shown:
+    if shown == 1:  # one head for all: so it takes no room
+        table.add_row("omega-dot residual", *("" for _ in columns), style="dim")
+    elif shown:
         table.add_row("", *(texts[0] for texts in columns), style="dim")
     for place, scenario in enumerate(summary.scenarios, 1):
         table.add_row(Text(scenario), *(texts[place] for texts in columns))
@@ -86,7 +88,7 @@ def _table(summary: Summary, shown: int, console: Console) -> Table:
 def _column(cells: list[Cell], shown: int, console: Console) -> list[Text]:
     """An engine's cells below the headings of their numbers, aligned."""
     numbers = [_terse(cell)[:shown] for cell in cells]
-    heads = [head for head, _ in _NUMBERS[:shown]]
+    heads = [head for head, _ in _NUMBERS[:shown]] if shown > 1 else [""] * shown
     widths = [max(map(len, column)) for column in zip(heads, *numbers, strict=True)]
     aligned = [f"{head:<{width}}" for head, width in zip(heads, widths, strict=True)]
     texts = [Text(" ".join([" ", *aligned]).rstrip())]
@@ -159,9 +161,3 @@ def _missing_line(missing: Missing) -> str:
     if missing.runs:
         line += f", {times(missing.runs, 'run')} on {first(missing.scenarios, 4)}"
     return line + (f": {missing.reason}" if missing.reason else "")
-
-
-def _counts(summary: Summary) -> str:
-    total = sum(summary.runs.values())
-    parts = ", ".join(f"{count} {status}" for status, count in summary.runs.most_common())
-    return f"{times(total, 'run')}: {parts}" if parts else "No run was made."

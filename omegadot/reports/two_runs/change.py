@@ -11,6 +11,17 @@ from omegadot.reports.page.tables import channel_name
 from omegadot.reports.text.numbers import engine_name, plain, quantity, short
 from omegadot.reports.two_runs.sides import RunKey
 
+# Verdicts and outcomes as a sentence has them.
+_WORDS = {
+    "pass": "passes",
+    "fail": "fails",
+    "info": "not judged",
+    "declared": "fails as declared",
+    "ok": "ran to its end",
+    "not-installed": "not installed",
+    "timeout": "timed out",
+}
+
 
 @dataclass(frozen=True)
 class Measure:
@@ -63,10 +74,10 @@ class Change:
 
     @property
     def what(self) -> str:
-        """The gate and the figure: trajectory: attitude error_max."""
-        name = " ".join(filter(None, (channel_name(self.channel), self.metric)))
+        """The gate and the figure: trajectory: attitude error max."""
+        name = " ".join(filter(None, (channel_name(self.channel), self.metric.replace("_", " "))))
         if self.channel == "model" or self.channel == self.metric:
-            name = self.metric
+            name = self.metric.replace("_", " ")
         return ": ".join(filter(None, (self.gate, name))) or "outcome"
 
 
@@ -89,7 +100,8 @@ def _times(factor: float) -> str:
 
 def from_to(change: Change) -> str:
     """What it was and is: verdicts or outcomes where they differ, and the figures."""
-    message = f"{change.was} → {change.now}" if change.was != change.now else ""
+    was, now = (_WORDS.get(term, term) for term in (change.was, change.now))
+    message = f"{was} → {now}" if was != now else ""
     measure = change.measure
     if measure is None:
         return message

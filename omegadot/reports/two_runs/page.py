@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from operator import attrgetter
 from typing import Any
+
+from packaging.version import InvalidVersion, Version
 
 from omegadot.reports.page.templating import asset, environment
 from omegadot.reports.summary import matrix
@@ -69,6 +70,14 @@ def _facts(side: Side) -> dict[str, str]:
     }
 
 
+def _rising(column: Column) -> tuple[Version, str]:
+    """By version as releases are ordered, 3.10 after 3.9; what is no version comes first."""
+    try:
+        return Version(column.version), column.version
+    except InvalidVersion:
+        return Version("0.dev0"), column.version
+
+
 def _columns(summaries: Iterable[Summary], versioned: set[str]) -> list[Pair]:
     """The engines of both records, each paired with itself; several versions of one kept apart."""
 
@@ -78,7 +87,7 @@ def _columns(summaries: Iterable[Summary], versioned: set[str]) -> list[Pair]:
 
     both = [summary.columns for summary in summaries]
     # An engine that did not start has no version, and is no column of its own.
-    then, today = ({key(c): c for c in sorted(own, key=attrgetter("version"))} for own in both)
+    then, today = ({key(c): c for c in sorted(own, key=_rising)} for own in both)
     found = []
     for place in dict.fromkeys(key(column) for own in both for column in own):
         pair = then.get(place), today.get(place)

@@ -12,6 +12,7 @@ from omegadot.reports.two_runs.sides import Side, definition_of, of_both
 
 _OF_AN_ENGINE = ("version", "precision", "conventions", "switched_off", "features")
 NONE = "–"
+_PACKAGE_VERSION, _ENGINE_VERSION = "version of ", " version"
 
 Facts = dict[str, Any]
 
@@ -33,7 +34,15 @@ def differences(was: Side, now: Side) -> list[Difference]:
         for what in dict.fromkeys((*one, *other))
         if one.get(what) != other.get(what)
     ]
-    return list(dict.fromkeys(found))
+    engines = [d for d in found if d.what.endswith(_ENGINE_VERSION)]
+    return [d for d in dict.fromkeys(found) if not any(_is_package_of(d, own) for own in engines)]
+
+
+def _is_package_of(one: Difference, engine: Difference) -> bool:
+    """Whether it is the version of an engine's package, such as pin, which the engine shows too."""
+    package, name = one.what.removeprefix(_PACKAGE_VERSION), engine.what.split()[0]
+    alike = name.startswith(package) or package.startswith(name)
+    return alike and one.what != package and (one.was, one.now) == (engine.was, engine.now)
 
 
 def _text(value: Any) -> str:
@@ -52,7 +61,7 @@ def _facts(*sides: Side) -> Iterator[list[Facts]]:
         for s in sides
     ]
     yield [_flat(run.get("machine"), "machine ") for run in runs]
-    yield [_flat(run.get("versions"), "version of ") for run in runs]
+    yield [_flat(run.get("versions"), _PACKAGE_VERSION) for run in runs]
     for name, *entries in of_both(*(run["engines"] for run in runs)):
         if all(entry.get("installed") is not False for entry in entries):
             yield from _of_an_engine(name, entries)

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from omegadot.adapters.protocol import Adapter, Trajectory, UnsupportedError
-from omegadot.reference_impl.companion import Steps, companion
-from omegadot.reference_impl.exact_solution import exact_solution
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.solutions.companion import Steps, companion
+from omegadot.reference_impl.solutions.exact_solution import exact_solution
 from omegadot.reference_impl.stepping import stack
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.engine_end.checked import (

@@ -8,6 +8,7 @@ on. After running out of memory it states so and leaves, for what is left of it 
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import signal
@@ -22,11 +23,11 @@ from typing import Any, BinaryIO, cast
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import OURS, AdapterError, build_adapter
 from omegadot.workers.engine_end.checked import description_of
+from omegadot.workers.engine_end.command import PR_SET_PDEATHSIG, CommandAdapter
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
 
-_PR_SET_PDEATHSIG = 1  # linux/prctl.h
 _SECONDS_TO_LOOK = 0.5
 # Given back when memory runs out, so that there is some to report it.
 _reserve = [bytearray(1 << 22)]
@@ -71,7 +72,7 @@ def answered(call: Callable[[], Any]) -> tuple[bytes, bool]:
 def _built(target: str, setup: Setup, via: str) -> tuple[Adapter | None, bytes]:
     """The adapter, with the frame that holds its description; None where it cannot be built."""
     try:
-        adapter = build_adapter(target, setup, via)
+        adapter = build_adapter(target, setup, via, CommandAdapter)
     except (AdapterError, ImportError) as error:
         missing = {"outcome": "not-installed", "reason": one_line(_text_of(error))}
         return None, encode_frame(missing)
@@ -120,7 +121,7 @@ def _end_with_parent() -> None:
     other threads run.
     """
     if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     elif os.name == "posix":
         threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
 
@@ -138,7 +139,8 @@ def main() -> None:
     """
     _end_with_parent()
     if sys.argv[1] not in OURS.values():
-        sys.path.append(os.getcwd())
+        with contextlib.suppress(FileNotFoundError):  # a folder that was removed holds no module
+            sys.path.append(os.getcwd())
     setup = cast(Setup, sys.argv[2] if len(sys.argv) > 2 else "physics")
     memory = os.environ.get(MEMORY_VARIABLE)
     if memory:

@@ -2,32 +2,23 @@
 
 No stream can then block another, whatever the worker does: it may flood standard error, stop
 reading its requests, write what is no answer, or leave children behind that hold its pipes open.
-
-A worker's family is ended with it: whatever it started, even what left its process group. A child
-that has made itself a session of its own is out of the group's reach; it is found by a mark in the
-environment that it has inherited.
+A worker's family is ended with it.
 """
 
 from __future__ import annotations
 
 import contextlib
-import os
 import queue
-import signal
 import subprocess
 import threading
 from dataclasses import dataclass
 from typing import Any
 
-import psutil
-
+from omegadot.workers.harness_end.family import GUARD, end_family
 from omegadot.workers.wire import encode_frame, one_line, read_frame
 
 STDERR_BYTES_KEPT = 4000
 SECONDS_TO_DRAIN = 1.0
-VARIABLE = "OMEGADOT_WORKER_MARKS"
-# A family that starts new members while it is ended is searched again, so many times.
-MOST_SEARCHES = 8
 
 
 @dataclass(frozen=True)
@@ -38,10 +29,14 @@ class Lost:
 
 
 class Pipes:
-    """The streams of one process, from its start to its end. mark: what its family bears."""
+    """The streams of one process, from its start to its end. mark: what its family bears.
+
+    ended_here: whether it lived until the harness ended it, which is no death.
+    """
 
     def __init__(self, process: subprocess.Popen[bytes], mark: str) -> None:
         self.process, self._mark = process, mark
+        self.ended_here = False
         self._tail = b""
         self._requests: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
         self.answers: queue.Queue[dict[str, Any] | Lost] = queue.Queue()
@@ -105,41 +100,14 @@ class Pipes:
 
     def end(self) -> None:
         """End the process and everything it started, at once."""
-        end_family(self.process, self._mark)
+        end_family(self.process.pid, self._mark)
         self.process.wait()
 
     def _watch(self) -> None:
         """See the process's end even where a child of it still holds the pipe open."""
         self.process.wait()
-        end_family(self.process, self._mark)
+        end_family(self.process.pid, self._mark)
+        GUARD.forget(self.process.pid)
         self.close_requests()
         self._collector.join(SECONDS_TO_DRAIN)
         self.answers.put(Lost())
-
-
-def marked(environment: dict[str, str], mark: str) -> dict[str, str]:
-    """The environment with one more mark; a worker's own workers bear both."""
-    return {**environment, VARIABLE: f"{environment.get(VARIABLE, '')}:{mark}"}
-
-
-def end_family(process: subprocess.Popen[bytes], mark: str) -> None:
-    """Kill the process, its group, and every process of this user that bears the mark."""
-    with contextlib.suppress(OSError):
-        if psutil.POSIX:
-            os.killpg(process.pid, signal.SIGKILL)
-        else:
-            process.kill()
-    for _ in range(MOST_SEARCHES):
-        if not _kill_marked(mark):
-            return
-
-
-def _kill_marked(mark: str) -> int:
-    """How many were killed; psutil kills none that has taken over the number of another."""
-    killed = 0
-    for process in psutil.process_iter():
-        with contextlib.suppress(psutil.Error, OSError):  # it has ended, or is another user's
-            if mark in process.environ().get(VARIABLE, ""):
-                process.kill()
-                killed += 1
-    return killed

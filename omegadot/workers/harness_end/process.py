@@ -17,7 +17,8 @@ from typing import Any
 import psutil
 
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE
-from omegadot.workers.harness_end.pipes import Lost, Pipes, marked
+from omegadot.workers.harness_end.family import GUARD, marked
+from omegadot.workers.harness_end.pipes import Lost, Pipes
 from omegadot.workers.machine import memory_of_machine
 from omegadot.workers.wire import one_line
 
@@ -102,14 +103,17 @@ class WorkerProcess:
         return answer
 
     def _opened(self, mark: str) -> subprocess.Popen[bytes]:
-        return subprocess.Popen(
+        GUARD.begin()
+        process = subprocess.Popen(
             self._command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
-            env=marked(_worker_environment(self._memory), mark),
+            env=marked(marked(_worker_environment(self._memory), GUARD.mark), mark),
             start_new_session=True,  # Ctrl-C is the harness's to handle
         )
+        GUARD.watch(process.pid)
+        return process
 
     def request(self, operation: str, **fields: Any) -> Answer:
         """Put one request and wait for its answer, a death, or the time limit."""
@@ -149,7 +153,8 @@ class WorkerProcess:
         self._pipes = None
         text = pipes.last_output()
         found = f"{how}; its last output: {text}" if text else how
-        self.deaths.append(found)
+        if not pipes.ended_here:
+            self.deaths.append(found)
         return found
 
     def finish(self) -> None:
@@ -169,6 +174,7 @@ class WorkerProcess:
         """End the process and everything it started, at once."""
         pipes, self._pipes = self._pipes, None
         if pipes is not None:
+            pipes.ended_here = pipes.process.poll() is None
             pipes.end()
 
 

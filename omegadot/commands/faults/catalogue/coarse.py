@@ -15,10 +15,10 @@ from omegadot.commands.faults.fault import fault, fault_by
 from omegadot.commands.faults.features import LONG_STEP
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import damping_torque
 from omegadot.reference_impl.motion import AccelerationOf
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.rotations import normalize, quaternion_product, rotation_between
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.symmetric import apply, inverse

@@ -12,8 +12,8 @@ from omegadot.commands.faults.catalogue.load import extra_torque, other_load, pu
 from omegadot.commands.faults.fault import Spoiled, fault, fault_by
 from omegadot.commands.faults.restepped import Restepped
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.body_motion import motion_over
 from omegadot.reference_impl.loads import applied_torque, gravity_torque, torque
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 

@@ -10,7 +10,6 @@ import os
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -24,10 +23,14 @@ from omegadot.commands.score.score import case_given
 from omegadot.commands.score.settings import GivenColumns, settings_of
 from omegadot.commands.score.table import Table, TraceError, bare, find_column
 from omegadot.gates.case import Case
+from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.system import Array
+from omegadot.reports.record.whole_file import path_of
 from omegadot.scenarios import ScenarioLike
 
 MOST_SAMPLES = 60
+# Settings of a map that change the numbers of a trace and are not sought.
+_CHANGING = {"omega-bias", "world-rate", "world-origin"}
 BETTER = 10.0
 KINDS = {"q": "quaternion", "e": "Euler angles", "r": "matrix", "w": "omega"}
 # Below this a misfit is rounding, of a median over a chain of them.
@@ -65,9 +68,13 @@ def detect(
     alone are tried, and as the group that they are named for.
     Raises UsageError, TraceError (a UsageError) and ScenarioError.
     """
-    case, table = case_given(scenario), read_table(Path(trace))
+    case, table = case_given(scenario), read_table(path_of(trace))
     own = {"rate": rate, "from": from_time, "to": to_time}
-    assigned, settings = settings_of(columns, Path(map_file) if map_file else None, own)
+    assigned, settings = settings_of(columns, path_of(map_file) if map_file else None, own)
+    for key in _CHANGING & settings.keys():
+        raise UsageError(
+            f"--map {map_file}: {key} is nothing that a search for conventions takes; leave it out."
+        )
     declared = {key: settings[key] for key in own if key in settings}
     column, names = _looked_at(table, assigned, "rate" in declared)
     clocks = clocks_of(table, column, declared, case.scenario.run.duration)

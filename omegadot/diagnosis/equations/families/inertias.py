@@ -94,12 +94,25 @@ def _of_momentum_balance(evidence: Evidence) -> Array | None:
 
 
 def scale_of_inertia(evidence: Evidence) -> Array | None:
-    """The factor of the inertia about the centre of mass, (1,), from the momentum balance."""
-    found, own = _of_momentum_balance(evidence), np.trace(evidence.system.body.inertia)
-    if found is None:
+    """The factor of the inertia about the centre of mass, (1,), from the momentum balance.
+
+    ``k (I omega-dot + omega x I omega) = torque - (J omega-dot + omega x J omega)``, with J what
+    the parallel-axis theorem adds.
+    """
+    system, states = evidence.system, evidence.states
+    w, rate = states.angular_velocity, evidence.found.angular
+    own = np.asarray(system.body.inertia, dtype=float)
+    added = np.asarray(moving_inertia(system), dtype=float) - own
+    size = (norm(rate) + norm(w) ** 2)[:, None]
+    size = np.where(size > 0.0, size, np.inf)  # at rest nothing shows
+    line, rest = (
+        np.ravel((apply(one, rate) + cross(w, apply(one, w))) / size) for one in (own, added)
+    )
+    whole = float(line @ line)
+    right = np.ravel(torque(system, states) / size) - rest
+    if not (whole > 0.0 and np.isfinite(whole) and np.any(right)):
         return None
-    about = np.trace(moving_inertia(evidence.system)) - own
-    return np.array([float((np.trace(_tensor(found)) - about) / own)])
+    return np.array([float(line @ right) / whole])
 
 
 def _inertia_family(name: str, where: str, parts: tuple[str, ...]) -> Family:

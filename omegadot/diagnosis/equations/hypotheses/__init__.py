@@ -11,6 +11,7 @@ from omegadot.diagnosis.equations.hypotheses.damping import damping_hypotheses
 from omegadot.diagnosis.equations.hypotheses.gravity import gravity_hypotheses
 from omegadot.diagnosis.equations.hypotheses.hypothesis import Hypothesis, wrong_form
 from omegadot.diagnosis.equations.hypotheses.inertia import inertia_hypotheses, spin_hypotheses
+from omegadot.diagnosis.equations.hypotheses.levers import lever_hypotheses
 from omegadot.diagnosis.equations.hypotheses.pivot import pivot_hypotheses
 from omegadot.diagnosis.equations.hypotheses.torque import torque_hypotheses
 from omegadot.reference_impl.system import System
@@ -22,6 +23,7 @@ FIXED: tuple[Hypothesis, ...] = (
     *damping_hypotheses(),
     *torque_hypotheses(),
     *pivot_hypotheses(),
+    *lever_hypotheses(),
     *center_hypotheses(),
     *report_hypotheses(),
     *precision_hypotheses(),

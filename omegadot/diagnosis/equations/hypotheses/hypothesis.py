@@ -38,18 +38,26 @@ class Hypothesis:
         return any(what in self.text for what in UNLIKELY)
 
 
-def wrong_form(hypotheses: Sequence[Hypothesis], system: System) -> Form | None:
-    """The equation with all of these in it; None where it has no meaning for this system."""
+def wrong_form(
+    hypotheses: Sequence[Hypothesis], system: System, right: Form | None = None
+) -> Form | None:
+    """The equation with all of these in it; None where it has no meaning for this system.
+
+    right: the right equation of the system, where it is known already.
+    """
+    right = right or form_of(system)
+    other = system
     try:
         with np.errstate(all="ignore"):  # two at once may divide by what one has made zero
             for one in hypotheses:
-                system = one.system(system)
-            form = form_of(system)
+                other = one.system(other)
+            form = right if other is system else form_of(other)
             for one in hypotheses:
-                form = one.form(form, system)
+                form = one.form(form, other)
     except (ValueError, np.linalg.LinAlgError, ZeroDivisionError):
         return None
-    if not all(np.all(np.isfinite(part)) for part in vars(form).values()):
+    pairs = zip(vars(form).values(), vars(right).values(), strict=True)
+    if not all(one is own or np.isfinite(one).all() for one, own in pairs):
         return None
     return form
 

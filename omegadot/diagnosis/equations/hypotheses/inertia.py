@@ -18,7 +18,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     own_inertia,
 )
 from omegadot.diagnosis.models.tensors import other_tensors
-from omegadot.reference_impl.inertia import parallel_axis
+from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
 from omegadot.reference_impl.system import Array, System
 
 
@@ -51,7 +51,7 @@ def spin_hypotheses() -> Iterator[Hypothesis]:
 def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
     """Of one system: its tensor, in the solve, in the gyroscopic term or in both."""
     own, names = own_inertia(system), other_tensors(system)
-    about = form_of(system).spin - own
+    about = _about(system)
     for text, tensor in names.items():
         if not np.linalg.eigvalsh(tensor)[0] > 0.0 or np.array_equal(tensor, own):
             continue
@@ -110,6 +110,16 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
             lambda f, s: _both(own_inertia(s) + diagonal(_about(s))),
         )
         yield of_form(
+            "the parallel-axis theorem has its products with the wrong sign",
+            "inertia",
+            lambda f, s: _both(own_inertia(s) + 2.0 * diagonal(_about(s)) - _about(s)),
+        )
+        yield of_form(
+            "the parallel-axis theorem has the square of each axis's own component on the diagonal",
+            "inertia",
+            lambda f, s: _both(own_inertia(s) + _own_squares(s)),
+        )
+        yield of_form(
             "the parallel-axis theorem is taken with a mass of 1 kg",
             "inertia",
             lambda f, s: _both(own_inertia(s) + _about(s) / float(s.body.mass)),
@@ -133,7 +143,7 @@ def _named(system: System, text: str) -> dict[str, Any]:
 
 
 def _about(system: System) -> Array:
-    return form_of(system).spin - own_inertia(system)
+    return np.asarray(moving_inertia(system), dtype=float) - own_inertia(system)
 
 
 def _of_origin(system: System) -> Array:
@@ -144,6 +154,12 @@ def _of_origin(system: System) -> Array:
 def _squared(system: System) -> Array:
     r = form_of(system).offset
     return float(system.body.mass) * float(r @ r) * np.eye(3)
+
+
+def _own_squares(system: System) -> Array:
+    about = _about(system)
+    own = 0.5 * np.trace(about) - np.diag(about)  # m r_k^2
+    return np.asarray(about - diagonal(about) + np.diag(own))
 
 
 def _both(tensor: Array) -> dict[str, Any]:

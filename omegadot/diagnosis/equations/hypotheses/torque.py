@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from itertools import permutations
+from dataclasses import replace
+from itertools import permutations, product
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     AXES,
     Hypothesis,
     applied,
+    diagonal,
     given,
     moved,
     of_form,
@@ -52,6 +54,12 @@ def torque_hypotheses() -> Iterator[Hypothesis]:
             "torque_body": 0 * one.torque_body,
         },
     )
+    for handed, nearest, back in product(SIGNS, (False, True), (False, True)):
+        yield Hypothesis(
+            "the torque in body axes is taken along the principal axes of inertia",
+            "torque",
+            system=given(handed, nearest, back, _along_principal_axes),
+        )
     for frame in ("body", "world"):
         yield of_load(
             f"the torque in {frame} axes is missing",
@@ -127,3 +135,34 @@ def _about_origin(form: Form, system: System) -> dict[str, Any]:
 def _loads_scaled(form: Form, k: float) -> dict[str, Any]:
     parts = ("torque_body", "torque_world", "weight", "damping")
     return {name: k * getattr(form, name) for name in parts}
+
+
+def _right_handed(axes: Array) -> Array:
+    return np.asarray(axes * [1.0, 1.0, np.linalg.det(axes)])
+
+
+def _mostly_positive(axes: Array) -> Array:
+    largest = np.argmax(np.abs(axes), axis=0)
+    return np.asarray(axes * np.sign(axes[largest, range(3)]))
+
+
+# Neither signs nor order of principal axes are given by the tensor.
+SIGNS: tuple[Callable[[Array], Array], ...] = (
+    lambda axes: axes,
+    _right_handed,
+    _mostly_positive,
+    lambda axes: _right_handed(_mostly_positive(axes)),
+)
+
+
+def _along_principal_axes(
+    signs: Callable[[Array], Array], nearest: bool, back: bool, system: System
+) -> System:
+    """By ascending moments, or each axis the nearest to one of the body's."""
+    tensor = own_inertia(system)
+    if not np.any(tensor - diagonal(tensor)):
+        return system  # these are the body's axes
+    axes = np.linalg.eigh(tensor)[1]
+    axes = signs(axes[:, np.argmax(np.abs(axes), axis=1)] if nearest else axes)
+    turned = (axes.T if back else axes) @ system.load.torque_body
+    return replace(system, load=replace(system.load, torque_body=turned))

@@ -237,7 +237,7 @@ def _power(seen: Seen, of: Array) -> Array | None:
     if seen.came is None:
         return None
     size, due = norm(seen.came), norm(seen.due)
-    used = (of > 0.0) & (size > 1e3 * seen.bound) & (due > 0.0)
+    used = (of > 0.0) & (size * NOT_ZERO > seen.bound) & (due > 0.0)
     if np.count_nonzero(used) < 4 or np.ptp(np.log(of[used])) < 0.5:
         return None
     slope, start = np.polyfit(np.log(of[used]), np.log(size[used] / due[used]), 1)

@@ -47,6 +47,7 @@ function equationLayout(scenario, data) {
   };
   found.yaxis = { ...axisLook(), type: "category", automargin: true, showgrid: false, fixedrange: true };
   found.margin.l = 80;
+  found.margin.r = 24; // half of the last label
   found.shapes = zero ? [{ type: "line", yref: "paper", y0: 0, y1: 1, x0: 10 ** (low - 0.2), x1: 10 ** (low - 0.2), line: { color: colour("--soft"), width: 1, dash: "dot" } }] : [];
   return found;
 }

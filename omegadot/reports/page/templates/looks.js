@@ -37,7 +37,7 @@ function layout(axis, data) {
     annotations.push(levelName(axis.resolvable, "floor", "right", "bottom"));
   }
   return {
-    autosize: true, margin: { l: 58, r: 12, t: 12, b: 40 }, showlegend: false, hovermode: "closest",
+    autosize: true, margin: { l: 58, r: 18, t: 12, b: 40 }, showlegend: false, hovermode: "closest",
     dragmode: coarse.matches ? false : "zoom",
     paper_bgcolor: colour("--panel"), plot_bgcolor: colour("--panel"),
     font: { family: style.getPropertyValue("--sans"), size: 12, color: colour("--soft") },

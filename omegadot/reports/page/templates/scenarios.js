@@ -54,12 +54,22 @@ function turn(place, focus) {
   if (focus) tabs[panels.indexOf(node)].focus({ preventScroll: true });
 }
 
+// An address of no part of this page, such as an old link to a scenario, leads to a notice.
 function follow() {
-  const node = panels.find((panel) => `#${panel.id}` === location.hash);
+  const name = address(), node = panels.find((panel) => panel.id === name), notice = element("missing");
+  notice.hidden = !name || Boolean(node ?? element(name));
+  if (!notice.hidden) {
+    notice.textContent = `This report has no scenario “${name.replace(/^scenario-/, "")}”. Choose one above.`;
+    (element("tabs") ?? notice).scrollIntoView();
+  }
   if (!node) return false;
   show(node);
   node.scrollIntoView();
   return true;
+}
+
+function address() {
+  try { return decodeURIComponent(location.hash.slice(1)); } catch { return location.hash.slice(1); }
 }
 
 if (panels.length) {
@@ -101,13 +111,16 @@ if (controls) {
   new ResizeObserver(() => root.style.setProperty("--covered", `${controls.offsetHeight}px`)).observe(controls);
 }
 
-// Paper gets every scenario: its pictures, and of the one shown the charts as they are.
+// Paper gets every scenario: its pictures, and of the one shown the charts as they are if they were
+// zoomed or show other lines than at first.
 function print(on) {
   printing = on;
+  const changed = Boolean(root.dataset.changed || current?.range || current?.charts.some((chart) => chart.zoomed || chart.zoomedAcross));
+  current?.node.classList.toggle("changed", on && changed);
   root.classList.toggle("printing", on);
   for (const fold of document.querySelectorAll("header details, #settings details")) fold.open = on;
   for (const node of panels) if (node !== current.node) (on ? fill : clear)(node);
-  for (const chart of current?.charts ?? []) if (chart.data) draw(current, chart);
+  if (changed) for (const chart of current.charts) if (chart.data) draw(current, chart);
 }
 addEventListener("beforeprint", () => print(true));
 addEventListener("afterprint", () => print(false));

@@ -8,7 +8,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.states import equation, model
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.siblings import rows_of_siblings
+from omegadot.harness.requests.siblings import rows_of_siblings
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.wire import body_from
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from omegadot.gates.case import Case, Sweep
 from omegadot.harness.drive import Driver
-from omegadot.harness.judge import JudgedRun
+from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.workers.harness_end.process import Answer
 
 MOST_HALVINGS = 4

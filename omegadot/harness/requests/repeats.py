@@ -15,8 +15,8 @@ from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import CaseResult, Driver
-from omegadot.harness.scaled import request_scaled
-from omegadot.harness.siblings import request_siblings
+from omegadot.harness.requests.scaled import request_scaled
+from omegadot.harness.requests.siblings import request_siblings
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State
 from omegadot.scenarios import scenario

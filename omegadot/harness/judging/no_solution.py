@@ -15,7 +15,7 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Sweep
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
-from omegadot.harness.judge import is_finite
+from omegadot.harness.judging.judged_run import is_finite
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import rotate

@@ -9,8 +9,8 @@ from omegadot.gates.bounds.measures import Yardstick
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.truth import Companion, SchemeKey, Truth
 from omegadot.harness.drive import Driver
-from omegadot.reference_impl.companion import Steps
-from omegadot.reference_impl.growth import growth_along
+from omegadot.reference_impl.solutions.companion import Steps
+from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 

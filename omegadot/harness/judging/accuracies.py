@@ -10,7 +10,7 @@ from omegadot.gates.case import Sweep
 from omegadot.gates.steps import accuracy, accuracy_followed
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import (
+from omegadot.harness.judging.judged_run import (
     JudgedRun,
     diverged,
     failed,
@@ -19,8 +19,8 @@ from omegadot.harness.judge import (
     rows_of_run,
     why_of,
 )
-from omegadot.harness.repeats import rows_again
-from omegadot.harness.step_probes import rows_of_probes
+from omegadot.harness.requests.repeats import rows_again
+from omegadot.harness.requests.step_probes import rows_of_probes
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 

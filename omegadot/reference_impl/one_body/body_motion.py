@@ -15,12 +15,12 @@ from omegadot.reference_impl.arithmetic.components import (
     in_components,
     rotated,
 )
-from omegadot.reference_impl.body_configurations import ATTITUDE, SPATIAL, WORLD
 from omegadot.reference_impl.coordinates import Coordinates, acceleration_in, from_coordinates
 from omegadot.reference_impl.cross_product import skew
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import weight
 from omegadot.reference_impl.motion import AccelerationOf
+from omegadot.reference_impl.one_body.body_configurations import ATTITUDE, SPATIAL, WORLD
 from omegadot.reference_impl.schemes.jacobian import by_differences
 from omegadot.reference_impl.schemes.motion import Motion, Velocity
 from omegadot.reference_impl.symmetric import inverse

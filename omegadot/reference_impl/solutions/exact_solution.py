@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.reference_impl.closed_forms import Floor, closed_form_of, floor
-from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.series import solve_series
+from omegadot.reference_impl.solutions.growth import growth_along
+from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.system import Array, State, System
 
 EPS = float(np.finfo(float).eps)

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.reference_impl.coordinates import Coordinates
-from omegadot.reference_impl.growth import growth_along
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.stepping import kept_steps, step_body
 from omegadot.reference_impl.system import Array, State, System
 

@@ -16,7 +16,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.runs import cost, invariants, phase, trajectory
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge_engine import held
+from omegadot.harness.judging.engine import held
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 

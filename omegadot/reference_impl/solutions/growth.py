@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.reference_impl.body_motion import attitude_motion
+from omegadot.reference_impl.one_body.body_motion import attitude_motion
 from omegadot.reference_impl.rotations import rotation_between, turn_in_body
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian

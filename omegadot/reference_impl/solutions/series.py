@@ -26,7 +26,7 @@ from omegadot.reference_impl.arithmetic.precision import (
 )
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import normalize
-from omegadot.reference_impl.series_equations import Equations, G, Q, T, W, equations_of
+from omegadot.reference_impl.solutions.series_equations import Equations, G, Q, T, W, equations_of
 from omegadot.reference_impl.system import Array, State, System
 
 # Optimal is about -ln(eps)/2, 22 for 2^-63; a little more costs little and gives longer steps,

@@ -22,7 +22,8 @@ from omegadot.gates.steps import accuracy, scheme
 from omegadot.gates.steps.vanishing_step import UNDETERMINED
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
-from omegadot.harness.judge import (
+from omegadot.harness.judging.accuracies import judge_accuracies
+from omegadot.harness.judging.judged_run import (
     JudgedRun,
     diverged,
     failed,
@@ -31,10 +32,14 @@ from omegadot.harness.judge import (
     rows_of_run,
     why_of,
 )
-from omegadot.harness.judge_accuracies import judge_accuracies
-from omegadot.harness.no_solution import NO_ROOT, is_lost, reason_without_a_solution, unjudged_row
-from omegadot.harness.repeats import rows_again
-from omegadot.harness.step_probes import rows_of_probes
+from omegadot.harness.judging.no_solution import (
+    NO_ROOT,
+    is_lost,
+    reason_without_a_solution,
+    unjudged_row,
+)
+from omegadot.harness.requests.repeats import rows_again
+from omegadot.harness.requests.step_probes import rows_of_probes
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 

@@ -18,9 +18,14 @@ from math import sqrt
 import numpy as np
 
 from omegadot.reference_impl.arithmetic.components import formulas_of
-from omegadot.reference_impl.body_motion import body_motion
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
-from omegadot.reference_impl.euler_angles import Angles, angle_rates, angles_of, quaternion_of
+from omegadot.reference_impl.flight.euler_angles import (
+    Angles,
+    angle_rates,
+    angles_of,
+    quaternion_of,
+)
+from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Array, State, System

@@ -1,0 +1,63 @@
+"""Causes as text: those that hold everywhere, and those that hold on the scenarios of one kind."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from omegadot.diagnosis.equations.equation_form import same_form
+from omegadot.diagnosis.equations.held import Held
+from omegadot.diagnosis.equations.same_cause import same_cause
+from omegadot.diagnosis.wording.features import in_common
+
+MOST_NAMED = 3  # causes between which a scenario does not decide
+
+
+def worded(whole: Sequence[Held], source: str, pivoted: bool) -> str:
+    """Causes that hold everywhere; several where no scenario decides between them.
+
+    pivoted: whether a scenario of the run is.
+    """
+    kept = list[Held]()
+    for one in whole:
+        if not any(same_cause(one.candidate, other.candidate, pivoted) for other in kept):
+            kept.append(one)
+    if len(kept) > MOST_NAMED:  # the plainest of those that are one equation in this run
+        kept = [one for k, one in enumerate(kept) if not _like_any(one, kept[:k])]
+    texts = list(dict.fromkeys(one.law or _text_of(one, source) for one in kept))
+    if not texts or len(texts) > MOST_NAMED:
+        return ""
+    return texts[0] if len(texts) == 1 else "either " + ", or ".join(texts)
+
+
+def _text_of(held: Held, source: str) -> str:
+    """One cause; where its numbers are others on each scenario, those of the first."""
+    one = held.candidate
+    text = one.text(held.shown[0].evidence[source].system) + held.where()
+    if not held.numbers or one.numbers is None:
+        return text
+    return f"{text} ({held.shown[0].name}; other numbers on {len(held.numbers)} more)"
+
+
+def _like_any(one: Held, others: Sequence[Held]) -> bool:
+    """Whether it is the same equation as another on every scenario that shows it."""
+    plain = one.candidate.reading is None and one.candidate.terms is None
+
+    def like(other: Held) -> bool:
+        if not plain or other.candidate.reading or other.candidate.terms:
+            return False
+        pairs = [[x.candidate.form(s.system) for x in (one, other)] for s in one.shown]
+        return all(a is not None and b is not None and same_form(a, b) for a, b in pairs)
+
+    return any(map(like, others))
+
+
+def conditional(held: Sequence[Held]) -> str:
+    """The first cause that holds on the scenarios of one kind alone."""
+    for one in held:
+        shown, against = ([scene.features for scene in group] for group in (one.shown, one.against))
+        common = in_common(shown, against)
+        if common and len(common) <= 2:
+            evidence = next(iter(one.shown[0].evidence.values()))
+            text = one.law or one.candidate.text(evidence.system)
+            return f"{text}, but only where {' or where '.join(common)}"
+    return ""

@@ -1,0 +1,50 @@
+"""What is kept of one engine over the scenarios of a run: its equations, and of its integrators."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+
+from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.candidate import Candidate
+from omegadot.diagnosis.reported.known_run import Known
+from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
+from omegadot.diagnosis.stepping.order_lost import OrderLost
+
+
+@dataclass
+class OverScenarios:
+    """Of the runs of one integrator, by scenario.
+
+    causes: each alone explains the runs, and whether these are decisive.  fails: whether a run
+    does.  again: what shows where two answers to one request differ.  lost: orders.  seen: what is
+    off.  beginnings: of the failed runs.
+    """
+
+    causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
+    fails: dict[str, bool] = field(default_factory=dict)
+    again: str = ""
+    lost: dict[str, OrderLost] = field(default_factory=dict)
+    seen: dict[str, Known] = field(default_factory=dict)
+    beginnings: dict[str, Beginning] = field(default_factory=dict)
+    _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
+
+    def followed(self, one: Candidate, names: set[str], eps: float) -> set[Followed | None]:
+        """Which equation the failed runs follow where a cause fits the steps as they vanish.
+
+        One mistake is made in every run, or in the first steps of every run.
+        """
+        for name in names & self.beginnings.keys():
+            if (one.key, name) not in self._followed:
+                self._followed[one.key, name] = follows(self.beginnings[name], one, eps)
+        return {v for (key, name), v in self._followed.items() if key == one.key and name in names}
+
+
+@dataclass
+class EngineOverScenarios:
+    """Of one engine. across: the equations that its scenarios show.  integrators: by name."""
+
+    across: Across = field(default_factory=Across)
+    integrators: dict[str, OverScenarios] = field(
+        default_factory=lambda: defaultdict(OverScenarios)
+    )

@@ -1,0 +1,1 @@
+"""The gates, run by run: what was answered becomes rows and verdicts."""

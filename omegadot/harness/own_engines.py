@@ -1,0 +1,52 @@
+"""The engines that a name may stand for: those registered, and those of ``omegadot.toml``.
+
+The file stands in the current folder. Its table ``adapters`` names engines of one's own by what
+``--adapter`` takes::
+
+    [adapters]
+    toy = "toy_engine.py:ToyAdapter"
+    rapier = "node rapier_worker.js"
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from omegadot.adapters.registry import registered
+from omegadot.harness.engine_target import target_of
+from omegadot.harness.usage import UsageError
+from omegadot.scenarios.files import read_toml
+
+FILE = "omegadot.toml"
+ADAPTERS = "adapters"
+
+
+def known_engines() -> dict[str, str]:
+    """Targets by name; no name may stand for two.
+
+    Raises UsageError and ScenarioError where the file is not as it must be.
+    """
+    known = registered()
+    if not Path(FILE).exists():
+        return known
+    tables = read_toml(Path(FILE), FILE)
+    for key in tables:
+        if key != ADAPTERS:
+            raise UsageError(f"{FILE}: key {key!r} is unknown; write {ADAPTERS}.")
+    found = tables.get(ADAPTERS, {})
+    if not isinstance(found, dict):
+        raise UsageError(f'{FILE}: {ADAPTERS} is no table; write lines such as toy = "toy.py:Toy".')
+    for name, target in found.items():
+        where = f"{FILE}: {ADAPTERS}.{name}"
+        if not isinstance(target, str):
+            raise UsageError(
+                f"{where}: {target!r} is no text; give FILE.py:Class, module:Class or a program "
+                "with its arguments."
+            )
+        if name in known:
+            raise UsageError(f"{where}: there is an engine of this name; give another.")
+        try:
+            known[name] = target_of(target)
+        except UsageError as error:
+            raise UsageError(f"{where}: {error}") from None
+    return known

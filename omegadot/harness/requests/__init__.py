@@ -1,0 +1,1 @@
+"""Requests beyond the runs of the plan: truth, first steps, restarts, repetitions."""

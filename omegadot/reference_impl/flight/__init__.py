@@ -1,0 +1,1 @@
+"""What flight simulators step, for traces: Euler angles and multistep schemes."""

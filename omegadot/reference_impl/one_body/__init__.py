@@ -1,0 +1,1 @@
+"""One rigid body as a motion that schemes step."""

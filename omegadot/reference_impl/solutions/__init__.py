@@ -1,0 +1,1 @@
+"""The exact motion, and how far a small change of it grows."""

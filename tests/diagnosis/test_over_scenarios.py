@@ -1,0 +1,164 @@
+"""One mistake over the scenarios of a run: one cause, chosen by those that distinguish it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from test_causes import causes_over
+from wrong_equations import CASES, GRAVITY, PIVOT, case, gyroscopic, with_torque
+
+from omegadot.diagnosis.equations.candidate import Candidate
+from omegadot.diagnosis.equations.hypotheses import hypotheses
+from omegadot.diagnosis.equations.same_cause import same_cause
+from omegadot.diagnosis.reported.known_run import Known
+from omegadot.diagnosis.stepping.order_lost import OrderLost
+from omegadot.diagnosis.wording.kinds import over_run
+from omegadot.gates.case import Case
+from omegadot.reference_impl.inertia import parallel_axis
+from omegadot.reference_impl.loads import damping_torque, gravity_torque
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.system import Acceleration, Body, State, System
+
+TOPS = tuple(
+    case(f"top-{k}", {"gravity": GRAVITY, "pivot": [PIVOT[0], PIVOT[1], 0.1 * k]}, 1.0 + k)
+    for k in range(3)
+)
+
+
+def at_origin(one: Case) -> Case:
+    """With the centre of mass at the origin."""
+    body = replace(one.system.body, center_of_mass=np.zeros(3))
+    return replace(one, system=replace(one.system, bodies=(body,)))
+
+
+def by_body(change: Callable[[System], Body]) -> Callable[..., Acceleration]:
+    def found(system: System, states: State) -> Acceleration:
+        return forward_dynamics(replace(system, bodies=(change(system),)), states)
+
+    return found
+
+
+def about_origin(system: System, states: State) -> Acceleration:
+    """The parallel-axis theorem takes the distance from the origin: of another own inertia."""
+    body, pivot = system.body, system.load.pivot
+    if pivot is None:
+        return forward_dynamics(system, states)
+    lever = body.center_of_mass - pivot
+    more = parallel_axis(body.mass, body.center_of_mass) - parallel_axis(body.mass, lever)
+    other = replace(body, inertia=body.inertia + more)
+    return forward_dynamics(replace(system, bodies=(other,)), states)
+
+
+def test_scenarios_that_distinguish_two_causes_decide_on_the_others_too() -> None:
+    """A centre of mass at the origin alone shows as well the inertia about it."""
+    first = at_origin(TOPS[0])
+    (alone,) = causes_over(about_origin, (first,)).values()
+    assert "in the parallel-axis theorem, the centre of mass's distance from the origin" in alone
+    assert "the inertia about the centre of mass is taken" in alone
+    causes = causes_over(about_origin, (first, *TOPS[1:]))
+    assert len(causes) == 3
+    (text,) = set(causes.values())
+    assert text.startswith("in the parallel-axis theorem, the centre of mass's distance from the ")
+    assert "either" not in text
+
+
+def test_a_cause_at_few_states_is_found_over_all_scenarios() -> None:
+    """One state of a scenario fits many causes."""
+
+    def steady(system: System, states: State) -> Acceleration:
+        w = states.angular_velocity
+        along = ~np.any(w[:, :2], axis=-1, keepdims=True) & (w[:, 2:] != 0.0)
+        return with_torque(system, states, np.where(along, -gravity_torque(system, states), 0.0))
+
+    causes = causes_over(steady, (*TOPS, *CASES[:2]))
+    assert causes
+    found = "the torque of gravity is missing: it is wrong only where omega is along z alone"
+    assert set(causes.values()) == {found}
+
+
+def test_a_threshold_is_narrowed_by_all_scenarios() -> None:
+    def slow(system: System, states: State) -> Acceleration:
+        few = np.sum(states.angular_velocity**2, axis=-1, keepdims=True) < 4.0
+        return with_torque(system, states, np.where(few, gyroscopic(system, states), 0.0))
+
+    (text,) = set(causes_over(slow, CASES[:4]).values())
+    assert text.startswith(
+        "the gyroscopic term is missing: it is wrong only where |omega| is below"
+    )
+
+
+def test_a_limited_inertia_is_one_cause() -> None:
+    shapes = ([[1.0, 0.1, 0.2], [0.1, 1.6, -0.15], [0.2, -0.15, 2.1]], np.diag([1.0, 1.3, 1.1]))
+    large = tuple(
+        case(
+            f"large-{k}",
+            {"gravity": GRAVITY, "pivot": PIVOT, "damping": 4.0},
+            1.0 + 3.0 * k,
+            tensor.tolist(),
+        )
+        for k, tensor in enumerate(
+            size * np.asarray(shapes[k % 2]) for k, size in enumerate((1.0, 20.0, 500.0, 7000.0))
+        )
+    )
+
+    def limited(system: System) -> Body:
+        body = system.body
+        scale = min(1.0, 10.0 / float(np.max(np.diag(body.inertia))))
+        return replace(body, inertia=body.inertia * scale)
+
+    causes = causes_over(by_body(limited), large)
+    (text,) = set(causes.values())
+    assert "scaled so that the largest" in text
+    assert text.endswith("comes to 10 kg m^2")
+
+
+def test_two_wordings_of_one_cause_are_one() -> None:
+    def square(system: System, states: State) -> Acceleration:
+        w = states.angular_velocity
+        size = np.sqrt(np.sum(w * w, axis=-1, keepdims=True))
+        return with_torque(system, states, (size - 1.0) * damping_torque(system, states))
+
+    assert not any("either" in text for text in causes_over(square, CASES[2:5]).values())
+
+
+def test_causes_that_differ_on_a_pivot_alone_are_one_where_there_is_none() -> None:
+    known = {h.text.strip(): h for h in hypotheses(CASES[0].system)}
+    one, other = (
+        Candidate((known[text],))
+        for text in ("gravity is missing", "the torque of gravity is missing")
+    )
+    assert not same_cause(one, other, pivoted=True)
+    assert same_cause(one, one, pivoted=True)
+
+
+def test_a_torque_along_principal_axes_is_named() -> None:
+    def turned(system: System, states: State) -> Acceleration:
+        axes = np.linalg.eigh(system.body.inertia)[1]
+        axes = axes * [1.0, 1.0, np.linalg.det(axes)]
+        load = replace(system.load, torque_body=axes @ system.load.torque_body)
+        return forward_dynamics(replace(system, load=load), states)
+
+    (text,) = set(causes_over(turned, (CASES[3], CASES[5])).values())
+    assert text == "the torque in body axes is taken along the principal axes of inertia"
+
+
+def test_what_is_lost_in_several_channels_is_one_sentence() -> None:
+    free = OrderLost({"omega": (1, 2), "position": (1, 2)}, ("omega moves late",))
+    held = OrderLost({"omega": (1, 2), "attitude": (1, 2)})
+    assert free.with_others([held]).text == held.with_others([free]).text
+    assert "step^2 in omega, the attitude and the position" in held.with_others([free]).text
+
+
+def test_what_is_off_is_that_of_the_most_basic_channel() -> None:
+    late = Known("position", frozenset("z"), 1.0, 2.0)
+    first = Known("omega", frozenset("xz"), 1.0, None)
+    assert late.with_others([first]).text == first.with_others([late]).text
+    assert first.text.startswith("omega is off in x and z of the body alone")
+
+
+def test_numbers_of_other_scenarios_make_no_other_cause() -> None:
+    over = {"a": ["steps are 2 % too long"], "b": ["steps are 3 % too short"], "c": []}
+    assert over_run(over["a"][0], over) == over_run(over["b"][0], over)
+    assert over_run("the body sleeps", over) == "the body sleeps"

@@ -1,0 +1,201 @@
+"""Engines that a program serves: the frames from its end, and what is wrong with an answer."""
+
+import shlex
+import shutil
+import sys
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from omegadot.adapters import registry
+from omegadot.adapters.protocol import UnsupportedError
+from omegadot.commands.check.check import check
+from omegadot.harness.arguments import adapters_named, engine_choices
+from omegadot.harness.engine_target import file_of, target_of
+from omegadot.harness.own_engines import known_engines
+from omegadot.harness.usage import UsageError
+from omegadot.reference_impl.system import Body, State, System
+from omegadot.workers.engine_end.checked import AnswerError, description_of
+from omegadot.workers.engine_end.command import CommandAdapter, ProgramError
+from omegadot.workers.engine_end.operations import OPERATIONS
+from omegadot.workers.harness_end.process import WorkerProcess
+
+ROOT = Path(__file__).parents[2]
+WORKER = ROOT / "docs" / "examples" / "worker.js"
+# A program without NumPy that answers with what it finds in a table of its own.
+PROGRAM = """\
+import json, os, signal, struct, sys
+ANSWERS = {answers!r}
+while True:
+    length = sys.stdin.buffer.read(8)
+    if len(length) < 8: break
+    header = json.loads(sys.stdin.buffer.read(struct.unpack(">Q", length)[0]))
+    for shape in header["shapes"]:
+        count = 1
+        for n in shape: count *= n
+        sys.stdin.buffer.read(8 * count)
+    answer = ANSWERS[header["body"]["operation"]]
+    if isinstance(answer, int): os.kill(os.getpid(), answer)
+    text = answer if isinstance(answer, str) else json.dumps({{"body": answer, "shapes": []}})
+    frame = struct.pack(">Q", len(text)) + text.encode() if text[:1] == "{{" else text.encode()
+    sys.stdout.buffer.write(frame)
+    sys.stdout.buffer.flush()
+"""
+EULER = {"name": "euler", "scheme": None, "orders": {}}
+TOY = {"name": "toy", "version": "1", "integrators": [EULER], "features": ["forward_dynamics"]}
+SYSTEM = System((Body(np.array(1.0), np.zeros(3), np.eye(3)),))
+ONE = State(np.array([1.0, 0, 0, 0]), np.zeros(3), np.zeros(3), np.zeros(3))
+
+
+def ok(result: object) -> dict[str, object]:
+    return {"outcome": "ok", "result": result}
+
+
+def command_of(folder: Path, **answers: object) -> str:
+    """A program with these answers, which describes itself as TOY unless they do."""
+    file = folder / "program.py"
+    file.write_text(PROGRAM.format(answers={"describe": ok(TOY), **answers}), encoding="utf-8")
+    return shlex.join([sys.executable, "-S", str(file)])
+
+
+def test_the_worker_in_the_documents_is_the_one_that_runs() -> None:
+    page = (ROOT / "docs" / "worker-protocol.md").read_text(encoding="utf-8")
+    assert page.partition("```js\n")[2].partition("```")[0] == WORKER.read_text(encoding="utf-8")
+
+
+def test_a_worker_in_javascript_passes_every_gate() -> None:
+    assert shutil.which("node"), "Node.js is needed, Debian's nodejs"
+    found = check(f"js=node {WORKER}", scenarios=["full-tensor", "heavy-top"], shrink=False)
+    verdicts = {one.scenario: set[str]() for one in found.by_check}
+    for one, result in found.by_check.items():
+        verdicts[one.scenario].add(result.verdict)
+    assert verdicts == {"full-tensor": {"pass"}, "heavy-top": {"skip"}}
+    assert {one.engine for one in found.by_check} == {"js"}
+
+
+@pytest.mark.parametrize(
+    ("description", "reason"),
+    [
+        (None, "describe is no table of keys; answer with one"),
+        ({**TOY, "integrators": 3}, "describe: integrators is no list"),
+        ({**TOY, "colour": "red"}, "describe has no key 'colour'; give name, version"),
+        ({"name": "toy", "integrators": []}, "describe lacks a key; it needs more of version"),
+        ({**TOY, "integrators": [{**EULER, "order": 1}]}, "an integrator of describe has no key"),
+        ({**TOY, "name": 3}, "description.name is of type int"),
+    ],
+)
+def test_descriptions_are_checked(tmp_path: Path, description: object, reason: str) -> None:
+    with pytest.raises(AnswerError) as caught:
+        description_of(CommandAdapter(command_of(tmp_path, describe=ok(description))))
+    assert reason in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("found", "error", "reason"),
+    [
+        (ok({"angular": [[0, 0, 0]], "linear": [[0, 0]]}), AnswerError, "has the shape (1, 2)"),
+        (ok({"angular": [[0, 0, 0]], "linear": [[1], [2, 3]]}), AnswerError, "no array of numbers"),
+        (ok({"angular": "fast", "linear": [[0, 0, 0]]}), AnswerError, "angular is str"),
+        (ok([1, 2]), AnswerError, "forward is no table of keys"),
+        ({"outcome": "fine"}, AnswerError, "the outcome is 'fine'; give ok, unsupported or raised"),
+        ({"outcome": "unsupported"}, UnsupportedError, "has no operation forward"),
+        ({"outcome": "raised", "reason": "no\n\x1b[1m air"}, ProgramError, "no [1m air"),
+    ],
+)
+def test_answers_are_checked(
+    tmp_path: Path, found: object, error: type[Exception], reason: str
+) -> None:
+    adapter = CommandAdapter(command_of(tmp_path, forward=found))
+    with pytest.raises(error) as caught:
+        OPERATIONS["forward"](adapter, {"states": vars(ONE[None])})
+    assert reason in str(caught.value)
+
+
+def test_null_stands_for_what_is_not_finite(tmp_path: Path) -> None:
+    found = ok({"angular": [[None, 0, 1]], "linear": [[0, 0, 0]]})
+    adapter = CommandAdapter(command_of(tmp_path, forward=found))
+    answer = OPERATIONS["forward"](adapter, {"states": vars(ONE[None])})
+    np.testing.assert_array_equal(answer.angular, [[np.nan, 0.0, 1.0]])
+
+
+@pytest.mark.parametrize(
+    ("found", "reason"),
+    [
+        ("hello, world\n", "the answer to load is no frame"),
+        (11, "ended by signal 11 (SIGSEGV)"),
+        (9, "ended by signal 9 (SIGKILL)"),
+    ],
+)
+def test_a_worker_ends_as_its_program_does(tmp_path: Path, found: object, reason: str) -> None:
+    worker = WorkerProcess(target_of(command_of(tmp_path, load=found)), "physics", 20.0)
+    assert worker.start().ok
+    answer = worker.request("load", system=SYSTEM)
+    assert answer.outcome == "crashed"
+    assert reason in answer.reason
+
+
+def test_names_of_programs() -> None:
+    python = sys.executable
+    named = adapters_named([f"{python} -u my_worker.py --fast", f"bolt={python} -u my_worker.py"])
+    assert list(named) == ["my_worker", "bolt"]
+    assert file_of(named["bolt"]) == Path("my_worker.py")
+    assert [c.name for c in engine_choices([f"bolt={python} x.py"])] == ["bolt"]
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ("nosuchprogram worker.js", "there is no program nosuchprogram; install it"),
+        ("node 'worker.js", "No closing quotation; correct the quotes."),
+    ],
+)
+def test_programs_that_cannot_be_started(given: str, reason: str) -> None:
+    with pytest.raises(UsageError, match=reason):
+        target_of(given)
+
+
+def test_a_file_with_a_space_in_its_name_is_no_program(tmp_path: Path) -> None:
+    file = tmp_path / "my engine.py"
+    file.write_text("class Toy: ...\n", encoding="utf-8")
+    assert target_of(str(file)) == f"{file}:Toy"
+    assert target_of(f"{file}:Toy") == f"{file}:Toy"
+
+
+def test_engines_of_ones_own_have_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    lines = f'[adapters]\nbolt = "{sys.executable} -u bolt.py"\ntoy = "toy.py:Toy"\n'
+    Path("omegadot.toml").write_text(lines, encoding="utf-8")
+    Path("toy.py").write_text("class Toy: ...\n", encoding="utf-8")
+    found = known_engines()
+    assert found["bolt"] == f"command:{sys.executable} -u bolt.py"
+    assert found["toy"] == "toy.py:Toy"
+    assert [choice.target for choice in engine_choices(["toy"])] == ["toy.py:Toy"]
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("[adapter]\n", "omegadot.toml: key 'adapter' is unknown; write adapters."),
+        ("adapters = 3\n", "omegadot.toml: adapters is no table"),
+        ("[adapters]\ntoy = 3\n", "omegadot.toml: adapters.toy: 3 is no text"),
+        ('[adapters]\nmujoco = "toy.py:Toy"\n', "adapters.mujoco: there is an engine of this name"),
+        ('[adapters]\ntoy = "toy.py:Toy"\n', "adapters.toy: toy.py: no such adapter file"),
+    ],
+)
+def test_a_wrong_omegadot_toml_is_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, reason: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("omegadot.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(UsageError, match=reason):
+        known_engines()
+
+
+def test_an_entry_point_may_name_a_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "bolt_package.py").write_text("COMMAND = 'node bolt.js'\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    point = EntryPoint("bolt", "bolt_package:COMMAND", registry.ENTRY_POINT_GROUP)
+    monkeypatch.setattr(registry, "entry_points", lambda group: [point])
+    assert registry.factory_of(registry.registered()["bolt"]) == "node bolt.js"
