@@ -17,7 +17,7 @@ from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS, Declared, MeasuredRun, findings_of
 from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN
-from omegadot.harness.judging.runs import _finer_steps_decide, _undetermined
+from omegadot.harness.judging.runs import _finer_steps_decide, _left_open, _undetermined
 from omegadot.reference_impl.system import Array
 
 BOUND = 1e-12
@@ -66,3 +66,15 @@ def test_no_digit_of_the_inverse_leaves_an_overflow_unjudged(
     scale = SimpleNamespace(largest=1.0, smallest=least)
     truth: Any = SimpleNamespace(yardstick=SimpleNamespace(scale=scale, eps=eps))
     assert _undetermined(truth, {"omega": BLOWN_UP_UNSEEN})["omega"].kind == kind
+
+
+def test_what_refused_steps_would_decide_is_left_open() -> None:
+    """Errors that do not shrink at three steps fail; not where the engine refuses the fourth."""
+    runs = [measured(h, e) for h, e in zip((0.04, 0.02, 0.01), (1e-6, 0.9e-6, 0.7e-6), strict=True)]
+    findings = findings_of(runs[0], Declared(None, ORDERS), runs)
+    assert {one.kind for one in findings.values()} >= {"unsettled"}
+    left = _left_open(findings)
+    assert "unsettled" not in {one.kind for one in left.values()}
+    assert all(one.note.endswith("finer steps are refused") for one in left.values() if one.open)
+    sound = {channel: replace(one, kind="consistent") for channel, one in findings.items()}
+    assert _left_open(sound) == sound

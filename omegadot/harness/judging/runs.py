@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION
@@ -65,6 +66,7 @@ def _judge_steps(
     measured_runs = {s: one for s, one in measured_runs.items() if s not in lost}
     declared = Declared(integrator.scheme, orders_for(integrator, system))
     known = list(measured_runs.values())
+    refused = any(answer.outcome == "unsupported" for _, answer in finer)
     seen, grows = scheme.orders_seen(known), rounding_step.rows(known, declared, eps)
     for sweep, answer in answers:
         if sweep in lost:
@@ -79,6 +81,7 @@ def _judge_steps(
             continue
         state = states[sweep]
         findings = findings_of(measured, declared, known)
+        findings = _left_open(findings) if refused else findings
         if not is_finite(state):
             findings = _undetermined(truth, findings)
             yield diverged(integrator, sweep, answer, measured, findings, eps)
@@ -98,6 +101,16 @@ def _judge_steps(
         unresolved = not broken and _finer_steps_decide(findings, known)
         rows = [match, *orders, *grows, *probed, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
+
+
+def _left_open(findings: dict[str, Finding]) -> dict[str, Finding]:
+    """The findings of an engine that refuses the finer steps which would decide what is open."""
+    return {
+        channel: replace(one, kind="unresolved", note=f"{one.note}; finer steps are refused")
+        if one.kind == "unsettled"
+        else one
+        for channel, one in findings.items()
+    }
 
 
 def _undetermined(truth: Truth, findings: dict[str, Finding]) -> dict[str, Finding]:
