@@ -42,7 +42,7 @@ def several(given: T | Sequence[T] | None, name: str = "") -> list[T]:
 
 def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:
     """Targets by engine name, see `name_of`. Raises UsageError."""
-    found = {}
+    found: dict[str, str] = {}
     for adapter in extra:
         target = target_of(adapter)
         _, separator, name = target.rpartition(":")
@@ -51,7 +51,12 @@ def adapters_named(extra: Sequence[EngineLike]) -> dict[str, str]:
                 f"--adapter {target}: no class is named; give FILE.py:Class or module:Class, or a "
                 "program with its arguments."
             )
-        found[name_of(target)] = target
+        name = name_of(target)
+        if found.setdefault(name, target) != target:
+            raise UsageError(
+                f"--adapter: two engines are called {name}, {found[name]} and {target}; run them "
+                "apart, or give the class of one another name."
+            )
     return found
 
 

@@ -16,7 +16,7 @@ from omegadot.adapters.registry import (
     name_in_command,
     program_of,
 )
-from omegadot.harness.usage import UsageError
+from omegadot.harness.usage import UsageError, nearest
 
 EngineLike = str | type[object]
 """``NAME``, ``NAME:INTEGRATOR``, ``FILE.py``, ``FILE.py:Class``, ``module:Class``, a class, or the
@@ -95,6 +95,8 @@ def target_of(engine: EngineLike) -> str:
         raise UsageError(f"{file}: no such adapter file; check the path.")
     if not name or ".py:" in file:
         raise UsageError(f"{engine}: not one class of one file; give FILE.py:Class.")
+    if file.endswith(".py"):
+        _check_name_in(Path(file), name)
     return engine
 
 
@@ -123,19 +125,37 @@ def _where(module: str, name: str) -> str:
     return "a notebook or the script itself" if module == "__main__" else "another class"
 
 
-def _class_in(path: Path) -> str:
-    """The adapter in a file: the only class named ...Adapter, or the only class."""
+def _check_name_in(path: Path, name: str) -> None:
+    """Raise UsageError where a file plainly has no such class; one with errors is not judged."""
     try:
         body = ast.parse(path.read_text(encoding="utf-8")).body
+    except (OSError, SyntaxError, ValueError):
+        return
+    bound = {alias.asname or alias.name for node in body for alias in getattr(node, "names", ())}
+    names = [node.name for node in body if isinstance(node, ast.ClassDef)]
+    plain = all(isinstance(n, ast.ClassDef | ast.Import | ast.ImportFrom | ast.Expr) for n in body)
+    if plain and name not in names and not bound & {name, "*"}:
+        advice = nearest(name, names) if names else "it has none"
+        raise UsageError(f"{path}: there is no class {name}; {advice}.")
+
+
+def _class_in(path: Path) -> str:
+    """The adapter in a file: the only class named ...Adapter, or the only class."""
+    names = [node.name for node in _parsed(path) if isinstance(node, ast.ClassDef)]
+    named = [name for name in names if name.endswith("Adapter")] or names
+    if len(named) != 1:
+        found = ", ".join(named) or "no class"
+        raise UsageError(f"{path}: which class is the adapter? It has {found}; give FILE.py:Class.")
+    return named[0]
+
+
+def _parsed(path: Path) -> list[ast.stmt]:
+    """The statements of a file of Python. Raises UsageError where it is none."""
+    try:
+        return ast.parse(path.read_text(encoding="utf-8")).body
     except OSError:
         raise UsageError(f"{path}: no such adapter file; check the path.") from None
     except SyntaxError as error:
         raise UsageError(f"{path}, line {error.lineno}: {error.msg}; correct it.") from None
     except ValueError:  # a null byte, or no UTF-8
         raise UsageError(f"{path}: not a Python file; give FILE.py:Class.") from None
-    names = [node.name for node in body if isinstance(node, ast.ClassDef)]
-    named = [name for name in names if name.endswith("Adapter")] or names
-    if len(named) != 1:
-        found = ", ".join(named) or "no class"
-        raise UsageError(f"{path}: which class is the adapter? It has {found}; give FILE.py:Class.")
-    return named[0]

@@ -80,9 +80,13 @@ def read_frame(stream: BinaryIO) -> dict[str, Any]:
 
     Raises EOFError when the other side is gone, ValueError where what comes is no frame.
     """
-    (length,) = struct.unpack(">Q", _read_exactly(stream, 8))
+    start = _read_exactly(stream, 8)
+    (length,) = struct.unpack(">Q", start)
     if length > LONGEST_HEADER:
-        raise ValueError(f"a header of {length} bytes")
+        raise ValueError(
+            f"it begins with {start!r}, where a header's length is due; standard output is for "
+            "answers alone, print to standard error"
+        )
     header = json.loads(_read_exactly(stream, length))
     arrays = []
     for shape in header["shapes"]:

@@ -194,4 +194,4 @@ def test_a_failure_names_its_type_and_line(monkeypatch: pytest.MonkeyPatch) -> N
     assert raised(ValueError("no")).startswith("ValueError: no (test_checked_answers.py:")
     assert raised(KeyboardInterrupt()).startswith("KeyboardInterrupt (test_checked_answers.py:")
     monkeypatch.setenv("OMEGADOT_WORKER_MEMORY", str(2**31))
-    assert raised(MemoryError()).endswith("the limit is 2 GiB, --memory sets another")
+    assert raised(MemoryError()).endswith("the limit is 2 GiB, omegadot run --memory sets another")

@@ -123,7 +123,10 @@ def test_null_stands_for_what_is_not_finite(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("found", "reason"),
     [
-        ("hello, world\n", "the answer to load is no frame"),
+        (
+            "hello, world\n",
+            "is no frame: it begins with b'hello, w', where a header's length is due",
+        ),
         (11, "ended by signal 11 (SIGSEGV)"),
         (9, "ended by signal 9 (SIGKILL)"),
     ],
@@ -199,3 +202,31 @@ def test_an_entry_point_may_name_a_command(tmp_path: Path, monkeypatch: pytest.M
     point = EntryPoint("bolt", "bolt_package:COMMAND", registry.ENTRY_POINT_GROUP)
     monkeypatch.setattr(registry, "entry_points", lambda group: [point])
     assert registry.factory_of(registry.registered()["bolt"]) == "node bolt.js"
+
+
+def test_the_line_that_names_the_error_is_kept(tmp_path: Path) -> None:
+    """Node.js writes a stack, an empty line and its version after it."""
+    file = tmp_path / "worker.py"
+    lines = ["Error: no such module", "    at a", "    at b", "", "Node.js v20.20.2"]
+    file.write_text(f"import sys; sys.exit({chr(10).join(lines)!r})", encoding="utf-8")
+    answer = WorkerProcess(target_of(f"{sys.executable} {file}"), "physics", 20.0).start()
+    assert answer.outcome == "crashed"
+    assert "Error: no such module" in answer.reason
+
+
+def test_two_engines_of_one_name_are_refused(tmp_path: Path) -> None:
+    for name in ("old", "new"):
+        (tmp_path / f"{name}.py").write_text("class BoltAdapter: ...\n", encoding="utf-8")
+    both = [f"{tmp_path / name}.py" for name in ("old", "new")]
+    with pytest.raises(UsageError, match="two engines are called bolt"):
+        adapters_named(both)
+    assert list(adapters_named([both[0], both[0]])) == ["bolt"]
+
+
+def test_a_class_that_a_file_has_not_is_wrong_usage(tmp_path: Path) -> None:
+    file = tmp_path / "bolt.py"
+    file.write_text("import math\nclass BoltAdapter: ...\n", encoding="utf-8")
+    with pytest.raises(UsageError, match="there is no class Bolt; choose BoltAdapter"):
+        target_of(f"{file}:Bolt")
+    file.write_text("def made(): ...\nglobals()['Bolt'] = made\n", encoding="utf-8")
+    assert target_of(f"{file}:Bolt") == f"{file}:Bolt"

@@ -60,7 +60,7 @@ def test_a_slow_start_is_no_slow_answer() -> None:
         (b"", "ended with exit code 0"),
         (b"\0\0", "ended with exit code 0"),
         (b"\0" * 8, "its answer cannot be read"),
-        (b"welcome to the engine", "its answer cannot be read: a header of"),
+        (b"welcome to the engine", "its answer cannot be read: it begins with b'welcome '"),
         (encode_frame({"a": np.ones(9)})[:-8], "ended with exit code 0"),
     ],
 )

@@ -14,7 +14,8 @@ def check(
     engine: Annotated[
         str,
         typer.Argument(
-            metavar="ADAPTER", help="An engine's name, FILE.py, FILE.py:Class or module:Class."
+            metavar="ADAPTER",
+            help="An engine's name, FILE.py, FILE.py:Class, module:Class, or a program's command.",
         ),
     ],
     scenarios: Annotated[

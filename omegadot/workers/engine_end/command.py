@@ -39,6 +39,10 @@ class ProgramError(Exception):
     """What the program itself reports as an error."""
 
 
+class ProgramLostError(Exception):
+    """The program has written what is no answer: where the next one begins is not known."""
+
+
 def _fields_of(what: str, kind: Callable[..., T], found: Any) -> T:
     """A dataclass of an answer's keys. Raises AnswerError where one is missing or unknown."""
     if not isinstance(found, dict):
@@ -102,8 +106,8 @@ class CommandAdapter:
     def _ask(self, operation: str, **request: Any) -> Any:
         """What the program answers.
 
-        Raises UnsupportedError and ProgramError where it reports one; where it ends, or writes what
-        is no answer, this process ends as well.
+        Raises UnsupportedError and ProgramError where it reports one, ProgramLostError where it
+        writes what is no answer; where it ends, this process ends as well.
         """
         requests, answers = self._process.stdin, self._process.stdout
         assert requests is not None
@@ -115,8 +119,8 @@ class CommandAdapter:
         except (EOFError, OSError):
             self._leave()
         except Exception as error:  # what is no frame can fail to be read in many ways
-            print(f"the answer to {operation} is no frame: {error}", file=sys.stderr, flush=True)
-            self._leave()
+            self._process.kill()
+            raise ProgramLostError(f"the answer to {operation} is no frame: {error}") from error
         outcome, reason = answer.get("outcome"), one_line(str(answer.get("reason", "")))
         if outcome == "ok":
             return answer.get("result")

@@ -23,7 +23,7 @@ from typing import Any, BinaryIO, cast
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import OURS, AdapterError, build_adapter
 from omegadot.workers.engine_end.checked import description_of
-from omegadot.workers.engine_end.command import PR_SET_PDEATHSIG, CommandAdapter
+from omegadot.workers.engine_end.command import PR_SET_PDEATHSIG, CommandAdapter, ProgramLostError
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
@@ -51,7 +51,7 @@ def failure(error: BaseException) -> dict[str, Any]:
     reason = f"{type(error).__name__}: {texts}".rstrip(": ") + where
     limit = os.environ.get(MEMORY_VARIABLE)
     if isinstance(error, MemoryError) and limit:
-        reason += f"; the limit is {int(limit) / 2**30:.3g} GiB, --memory sets another"
+        reason += f"; the limit is {int(limit) / 2**30:.3g} GiB, omegadot run --memory sets another"
     return {"outcome": "raised", "reason": one_line(reason)}
 
 
@@ -65,8 +65,14 @@ def answered(call: Callable[[], Any]) -> tuple[bytes, bool]:
     except MemoryError as error:
         _reserve.clear()
         return encode_frame({**failure(error), "leaves": True}), False
+    except ProgramLostError as error:
+        return encode_frame(_lost(error)), False
     except BaseException as error:
         return encode_frame(failure(error)), True
+
+
+def _lost(error: ProgramLostError) -> dict[str, Any]:
+    return {"outcome": "crashed", "reason": one_line(_text_of(error)), "leaves": True}
 
 
 def _built(target: str, setup: Setup, via: str) -> tuple[Adapter | None, bytes]:
@@ -76,6 +82,8 @@ def _built(target: str, setup: Setup, via: str) -> tuple[Adapter | None, bytes]:
     except (AdapterError, ImportError) as error:
         missing = {"outcome": "not-installed", "reason": one_line(_text_of(error))}
         return None, encode_frame(missing)
+    except ProgramLostError as error:
+        return None, encode_frame(_lost(error))
     except BaseException as error:
         return None, encode_frame(failure(error))
     frame, _ = answered(lambda: description_of(adapter))

@@ -60,9 +60,14 @@ class Pipes:
         self._requests.put(None)
 
     def last_output(self) -> str:
-        """The last three lines that an ended process wrote to standard error."""
+        """Three lines of what an ended process wrote last to standard error: the last, with the
+        last that names an error.
+        """
         self._listener.join(SECONDS_TO_DRAIN)
-        lines = self._tail.decode(errors="replace").strip().splitlines()[-3:]
+        written = self._tail.decode(errors="replace").strip().splitlines()
+        lines, named = written[-3:], [line for line in written[:-3] if "Error" in line]
+        if named and not any("Error" in line for line in lines):
+            lines = [named[-1], *lines[-2:]]  # Node.js writes its version after it
         return one_line(" | ".join(line.strip() for line in lines), 400)
 
     def _feed(self) -> None:
