@@ -49,7 +49,7 @@ BROKEN = {
     "Exits": ("raised", "SystemExit: 0 (injected.py:"),
     "Interrupts": ("raised", "KeyboardInterrupt (injected.py:"),
     "Recurses": ("raised", "RecursionError: maximum recursion depth exceeded"),
-    "EatsMemory": ("raised", "the limit is 0.5 GiB, --memory sets another"),
+    "EatsMemory": ("raised", "the limit is 0.5 GiB, omegadot run --memory sets another"),
     "LongMessage": ("raised", "ValueError: no convergence, residuals: 0.1 0.1"),
     "OddMessage": ("raised", "[2J [/red] [bold <script>alert(1)</script> {{ x }} ok"),
     "Speechless": ("raised", "SilentError: it cannot be printed"),
