@@ -134,9 +134,8 @@ def _check_name_in(path: Path, name: str) -> None:
     bound = {alias.asname or alias.name for node in body for alias in getattr(node, "names", ())}
     names = [node.name for node in body if isinstance(node, ast.ClassDef)]
     plain = all(isinstance(n, ast.ClassDef | ast.Import | ast.ImportFrom | ast.Expr) for n in body)
-    if plain and name not in names and not bound & {name, "*"}:
-        advice = nearest(name, names) if names else "it has none"
-        raise UsageError(f"{path}: there is no class {name}; {advice}.")
+    if plain and names and name not in names and not bound & {name, "*"}:
+        raise UsageError(f"{path}: there is no class {name}; {nearest(name, names)}.")
 
 
 def _class_in(path: Path) -> str:
