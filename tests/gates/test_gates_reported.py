@@ -19,7 +19,7 @@ from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS, MeasuredRun
 from omegadot.gates.rows import Row
-from omegadot.gates.runs.trajectory import _length, _start
+from omegadot.gates.runs.trajectory import _length, _start, grain_of
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, State
 
@@ -159,3 +159,11 @@ def test_states_without_numbers_have_no_omega_dot_to_be_wrong(prepared: Prepared
 
     with np.errstate(over="ignore", invalid="ignore"):
         assert rows_of(prepared, Vast())["residual_in_run"].verdict == "pass"
+
+
+def test_multiples_of_one_step_are_no_single_precision() -> None:
+    """Caught: omega rounded to 2^-20 rad/s, which single precision holds without a loss."""
+    values = np.random.default_rng(5).normal(size=(40, 3))
+    singles = values.astype(np.float32).astype(float)
+    assert [grain_of(v) for v in (values, singles, np.zeros((4, 3)))] == [None, None, None]
+    assert grain_of(np.round(values * 2.0**20) / 2.0**20) == -20

@@ -6,6 +6,7 @@ import numpy as np
 
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.gates.bounds.scales import EPS
+from omegadot.gates.runs.trajectory import grain_of
 from omegadot.reference_impl.system import State
 
 MOST_DECIMALS = 11
@@ -21,8 +22,11 @@ MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
 def precision_reported(reported: ReportedRun) -> str:
     """Attitude or omega of every sample after the start are numbers of single precision.
 
-    Places are not looked at: they may follow, in double, from what is kept.
+    Places are not looked at: they may follow, in double, from what is kept. Numbers that are all
+    multiples of one step are rounded to it, whatever their size.
     """
+    if grain := _grain_reported(reported):
+        return grain
 
     def single(state: State, field: str) -> bool:
         kept = getattr(state, field)[1:]
@@ -40,6 +44,14 @@ def precision_reported(reported: ReportedRun) -> str:
         return f"the {what} is reported in single precision, and kept in double"
     single_is_due = reported.truth.yardstick.eps > EPS
     return f"the {what} is kept in single precision" if found and not single_is_due else ""
+
+
+def _grain_reported(reported: ReportedRun) -> str:
+    for field, what in (("angular_velocity", "omega"), ("orientation", "the attitude")):
+        came, own = (getattr(x, field)[1:] for x in (reported.state, reported.own))
+        if (grain := grain_of(came)) is not None and grain_of(own) != grain:
+            return f"{what} is rounded to multiples of 2^{grain} in the run"
+    return ""
 
 
 def decimals_reported(reported: ReportedRun) -> str:
