@@ -7,6 +7,7 @@ from synthetic_record import INTEGRATORS, build, metric, task, with_metrics
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import METRICS, OUTCOMES, TRAJECTORIES, empty
+from omegadot.reports.run_record import TaskResult
 from omegadot.reports.summary.headline import headline, remarks
 from omegadot.reports.summary.summary import STATUSES, summarise, task_status, worst
 from omegadot.reports.text.numbers import short
@@ -231,3 +232,11 @@ def test_integrators_that_do_as_well_make_no_spread():
     one = build(("sphere",), engines={"dart": INTEGRATORS["dart"]})
     assert remarks(summarise(one)) == []
     assert headline(summarise(one)).startswith("dart agrees")
+
+
+@pytest.mark.parametrize(("trajectory", "failed"), [("info", False), ("fail", True)])
+def test_a_run_that_diverges_fails_only_with_a_gate(trajectory: str, failed: bool) -> None:
+    """Caught: exit code 1 for a step at which every scheme of this kind blows up."""
+    gates = {"model": "pass", "equation": "pass", "trajectory": trajectory}
+    who = ("t-handle", "dart", "6.20", "physics", "semi-implicit", 0.2, None)
+    assert TaskResult(*who, "diverged", "", gates, "", None).failed is failed

@@ -34,7 +34,7 @@ class RunResult:
 
     @property
     def failures(self) -> tuple[TaskResult, ...]:
-        """The runs of which a gate fails, or that diverged."""
+        """The runs of which a gate fails."""
         return tuple(task for task in self.record.tasks if task.failed)
 
     @property
