@@ -174,6 +174,19 @@ def test_the_headline_of_a_failing_run(record):
     assert message == "1 of 2 engines fails a gate: dart, on sphere."
 
 
+def test_the_headline_names_which_engine_fails_on_which_scenario(record):
+    other = next(t for t in record.run["tasks"] if t["scenario"] != "sphere")
+    failed = change(record, first_of(record, "dart"), gates={"equation": "fail"})
+    mujoco = next(
+        n
+        for n, t in enumerate(failed.run["tasks"])
+        if (t["engine"], t["scenario"]) == ("mujoco", other["scenario"])
+    )
+    message = headline(summarise(change(failed, mujoco, gates={"equation": "fail"})))
+    where = f"mujoco (on {other['scenario']}) and dart (on sphere)"
+    assert message == f"2 of 2 engines fail a gate: {where}."
+
+
 def test_an_accuracy_is_that_of_engines_that_pass(record):
     """Caught: a range whose one end is what a failing engine did."""
     before = next(m for m in remarks(summarise(record)) if "attitude error" in m)

@@ -128,3 +128,11 @@ def test_a_shorter_interrupted_run_is_kept_out_of_the_way(  # type: ignore[no-un
     assert not read_record(result.folder).run["complete"]
     assert "interrupted after 2 tasks, this one after 1." in result.note
     assert result.note.endswith(f"This run's record is in {result.folder}.")
+
+
+def test_a_link_to_nothing_is_no_place_for_a_record(tmp_path: Path) -> None:
+    """Caught: folders made where the link leads to."""
+    (tmp_path / "link").symlink_to(tmp_path / "elsewhere" / "record")
+    with pytest.raises(RecordError, match="is a symbolic link to nothing"):
+        check_folder(tmp_path / "link")
+    assert not (tmp_path / "elsewhere").exists()

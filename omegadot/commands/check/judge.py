@@ -45,7 +45,7 @@ def sentence(row: Row) -> str:
         return f"{row.channel}: {row.note}"
     message = f"{row.channel}: {row.metric} is {short(row.value, 3)}{_unit(row)}"
     if row.bound is not None:
-        excess, bound = _excess(row), f"{short(row.bound)}{_unit(row)}"
+        excess, bound = times_its_bound(row.value, row.bound), f"{short(row.bound)}{_unit(row)}"
         times = f"{short(excess)} times " if math.isfinite(excess) else "above "
         message += f", {times}its bound of {bound}"
     return f"{message} ({row.note})" if row.note else message

@@ -88,6 +88,8 @@ def _followed(folder: Path) -> Path:
     followed = Path(os.path.realpath(folder))
     if os.path.islink(followed):  # False of a name that is too long, which is met as it is written
         raise RecordError(f"{folder}: is a symbolic link to itself; name a new folder.")
+    if os.path.islink(folder) and not os.path.lexists(followed):
+        raise RecordError(f"{folder}: is a symbolic link to nothing; name a new folder.")
     return followed
 
 

@@ -55,9 +55,14 @@ def _judged_engines(summary: Summary) -> dict[str, list[Cell]]:
 def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     failing = [name for name, cells in engines.items() if any(c.status == "fail" for c in cells)]
     if failing:
-        places = sorted({s for (s, c), cell in summary.cells.items() if cell.status == "fail"})
+        pairs = [(s, c.label) for (s, c), cell in summary.cells.items() if cell.status == "fail"]
+        places = sorted({scenario for scenario, _ in pairs})
         verb = "fails" if len(failing) == 1 else "fail"
         count = f"{len(failing)} of {times(len(engines), 'engine')}"
+        if 1 < len(failing) <= 3 and len(places) > 1 and len(pairs) <= 4:  # which on which
+            own = {name: [s for s, label in pairs if label == name] for name in failing}
+            each = [f"{name} (on {listed(sorted(own[name]))})" for name in failing]
+            return f"{count} {verb} a gate: {listed(each)}."
         where = listed(places) if len(places) <= 3 else f"{len(places)} of "
         where += times(len(summary.scenarios), "scenario") if len(places) > 3 else ""
         return f"{count} {verb} a gate: {listed(failing)}, on {where}."
