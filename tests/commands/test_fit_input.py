@@ -12,6 +12,8 @@ from score_line import run_score
 import omegadot
 from omegadot import scenario
 from omegadot.commands.fit.picture import residuals_of
+from omegadot.commands.score.columns import columns_of
+from omegadot.commands.score.table import Table, TraceError
 
 TIMES = np.linspace(0.0, 4.0, 61)
 QUICK = ("--no-bias", "--no-damping")
@@ -73,6 +75,23 @@ def test_omega_is_needed(tmp_path, capsys):
     result = run_fit(capsys, path)
     assert result.code == 2
     assert "no column is an angular velocity, which a fit needs" in result.err
+
+
+@pytest.mark.parametrize("name", ["gyro_{}", "angular_velocity.{}", "Omega_{} (rad/s)"])
+def test_omega_is_found_under_the_names_that_logs_give_it(name):
+    """Caught: a gyro's log that is read only after its columns are mapped by hand."""
+    names = ["time", *map(name.format, "xyz")]
+    found = columns_of(Table("log.csv", tuple(names), []), [], "wxyz", "ZYX")
+    assert [found[role] for role in ("t", "wx", "wy", "wz")] == names
+
+
+def test_of_two_sets_that_may_be_omega_none_is_taken():
+    """Caught: the raw rates fitted where the filtered ones were meant."""
+    names = ["time", *map("gyro_{}".format, "xyz"), *map("omega_{}".format, "xyz")]
+    with pytest.raises(TraceError, match="no column is an angular velocity"):
+        columns_of(Table("log.csv", tuple(names), []), [], "wxyz", "ZYX")
+    own = columns_of(Table("log.csv", (*names, "wx", "wy", "wz"), []), [], "wxyz", "ZYX")
+    assert own["wx"] == "wx"
 
 
 def test_the_scenario_scores_the_trace_that_it_was_fitted_to(tmp_path, capsys, trace):

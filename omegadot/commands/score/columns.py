@@ -25,6 +25,8 @@ QUATERNIONS = ("wxyz", "xyzw")
 # Found without being named. Not ax, ay, az: in most logs these are a linear acceleration.
 KNOWN = {r: r for group in ("t", "w", "q", "e", "r", "p", "v") for r in GROUPS[group]}
 KNOWN |= {"time": "t", **{name: name for name in TURNS}}
+# What logs call omega. Not gx, gy, gz: these may be gravity.
+_SETS = "gyro_{} gyro.{} w_{} omega{} omega_{} omega.{} angular_velocity_{} angular_velocity.{}"
 ROLES = (*GROUPS, *KNOWN, *GROUPS["a"])
 Columns = dict[str, str]
 """The name of a column by the role that it has."""
@@ -59,6 +61,14 @@ def _roles_of(argument: str, count: int, order: str, euler: str) -> tuple[str, .
     raise UsageError(f"--column {argument}: {count} given, {expected}.")
 
 
+def _omega_names(names: Sequence[str]) -> Columns:
+    """The role by the name of each column of omega; none where several sets may be omega."""
+    own = GROUPS["w"]
+    sets = [dict(zip(map(pattern.format, "xyz"), own, strict=True)) for pattern in _SETS.split()]
+    found = [one for one in sets if not one.keys().isdisjoint(names)]
+    return found[0] if len(found) == 1 and not set(own) & set(names) else {}
+
+
 def columns_of(
     table: Table,
     assigned: Sequence[tuple[str, Sequence[str]]],
@@ -90,8 +100,9 @@ def columns_of(
     named |= set("qer") if named & set("qer") else set()
     turns = len(set(euler.lower())) == 3
     alone = [bare(name) for name in table.names]
+    known = KNOWN | _omega_names(alone)
     for name in (n for n, short in zip(table.names, alone, strict=True) if alone.count(short) == 1):
-        role = KNOWN.get(bare(name), "")
+        role = known.get(bare(name), "")
         if role in TURNS:
             role = _turn_role(role, euler) if turns else ""
         if role and role[0] not in named and role not in {*found, *left_out}:
