@@ -33,6 +33,10 @@ CLOCKS = {
     "slow": (lambda t: 1.001 * t, "every time is too large, by 0.001 of it"),
     "single": (lambda t: t.astype(np.float32).astype(float), "kept in single precision"),
     "micro": (lambda t: np.floor(t * 1e6) / 1e6, "the times are whole microseconds"),
+    "huge": (
+        lambda t: np.append(t[:-1], 1e300),
+        f"the last time alone is off: 1e+300 s, where {SWEEP.times[-1]:.6g} s was due",
+    ),
     "last": (lambda t: np.append(t[:-1], t[-1] + 0.1), "the last time alone is off"),
     "missing": (lambda t: t[:-1], "the last sample is missing"),
     "right": (lambda t: t * (1.0 + EPS), ""),

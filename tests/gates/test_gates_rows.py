@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from omegadot import gates
+from omegadot.commands.check.judge import sentence
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS, MeasuredRun
@@ -113,6 +114,13 @@ def test_a_sample_too_few_or_too_many_fails(count: int) -> None:
     assert (row.gate, row.channel, row.metric, row.unit) == (
         "trajectory", "time", "sample_times", "s"
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(("last", "excess"), [(1e300, "above its bound"), (3.0, "e15 times its")])
+def test_a_time_that_is_off_is_never_zero_times_its_bound(last: float, excess: str) -> None:
+    """Caught: the key that orders sentences, printed as a ratio."""
+    row = trajectory.time_row(Sweep(0.5, 2, 1), np.array([0.0, 0.5, last]))
+    assert excess in sentence(row)
 
 
 def test_times_that_are_no_numbers_fail() -> None:

@@ -32,6 +32,7 @@ NOTE_BEFORE_FIGURE = ("restarted", "rate_at_no_step", "start", "precision", *rep
 
 
 def _excess(row: Row) -> float:
+    """For ordering alone: what a note states comes after what is measured."""
     return 0.0 if row.metric in NOTE_ALONE else times_its_bound(row.value, row.bound)
 
 
