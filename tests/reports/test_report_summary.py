@@ -5,9 +5,11 @@ from dataclasses import replace
 import pytest
 from synthetic_record import INTEGRATORS, build, metric, task, with_metrics
 
+from omegadot.reports.page.glance import _spread
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import METRICS, OUTCOMES, TRAJECTORIES, empty
 from omegadot.reports.run_record import TaskResult
+from omegadot.reports.summary.figures import Figure
 from omegadot.reports.summary.headline import headline, remarks
 from omegadot.reports.summary.summary import STATUSES, summarise, task_status, worst
 from omegadot.reports.text.numbers import short
@@ -185,6 +187,14 @@ def test_the_headline_names_which_engine_fails_on_which_scenario(record):
     message = headline(summarise(change(failed, mujoco, gates={"equation": "fail"})))
     where = f"mujoco (on {other['scenario']}) and dart (on sphere)"
     assert message == f"2 of 2 engines fail a gate: {where}."
+
+
+def test_a_failing_engine_shows_its_largest_error_beside_the_median():
+    """Caught: a failure whose row shows the small error of the scenarios that hold."""
+    errors = {"a": 1e-7, "b": 1e-7, "c": 3.1}
+    figures = [Figure(v, "rad", s, "dart", "error_max", "RK4") for s, v in errors.items()]
+    assert _spread(figures, failing=True)[2] == "RK4; largest 3.1 rad"
+    assert _spread(figures, failing=False)[2] == "RK4"
 
 
 def test_an_accuracy_is_that_of_engines_that_pass(record):

@@ -46,8 +46,8 @@ def _glance(
         "mark": MARKS.get(status, "–"),
         "runs": _runs(cells),
         "residual": _residual(cells),
-        "best": _spread([found.best for found in ranges]),
-        "worst": _spread([found.worst for found in ranges]),
+        "best": _spread([found.best for found in ranges], status == "fail"),
+        "worst": _spread([found.worst for found in ranges], status == "fail"),
         "error_source": _error_source(own),
         "cost": _cost(own),
         "source": sources.number(origin_of(column)),
@@ -67,8 +67,11 @@ def _residual(cells: Iterable[Cell]) -> Detailed:
     return short(largest.value), f"on {largest.scenario}{bound}"
 
 
-def _spread(figures: list[Figure]) -> Detailed:
-    """The median over the scenarios, and the largest with the run that gave it."""
+def _spread(figures: list[Figure], failing: bool) -> Detailed:
+    """The median over the scenarios, and the largest with the run that gave it.
+
+    The largest is never folded away where the engine fails: few failures do not move the median.
+    """
     if not figures:
         return "–", ""
     largest = max(figures, key=size)
@@ -76,8 +79,9 @@ def _spread(figures: list[Figure]) -> Detailed:
     middle = short(median(size(figure) for figure in figures))
     settings = (largest.integrator, knob(largest.timestep, largest.accuracy), largest.scenario)
     run = ", ".join(filter(None, settings))
-    details = f"usually {usual}; largest {short(largest.value)} rad ({run})"
-    return f"{middle} rad", details, usual or ""
+    most = f"largest {short(largest.value)} rad"
+    beside = [usual, most if failing and len(figures) > 1 else None]
+    return f"{middle} rad", f"usually {usual}; {most} ({run})", "; ".join(filter(None, beside))
 
 
 def _error_source(own: pl.DataFrame) -> Detailed:
