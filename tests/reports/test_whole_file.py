@@ -133,6 +133,7 @@ def test_a_shorter_interrupted_run_is_kept_out_of_the_way(  # type: ignore[no-un
 def test_a_link_to_nothing_is_no_place_for_a_record(tmp_path: Path) -> None:
     """Caught: folders made where the link leads to."""
     (tmp_path / "link").symlink_to(tmp_path / "elsewhere" / "record")
-    with pytest.raises(RecordError, match="is a symbolic link to nothing"):
-        check_folder(tmp_path / "link")
+    for folder in (tmp_path / "link", tmp_path / "link" / "run"):
+        with pytest.raises(RecordError, match="link: is a symbolic link to nothing"):
+            check_folder(folder)
     assert not (tmp_path / "elsewhere").exists()

@@ -88,8 +88,9 @@ def _followed(folder: Path) -> Path:
     followed = Path(os.path.realpath(folder))
     if os.path.islink(followed):  # False of a name that is too long, which is met as it is written
         raise RecordError(f"{folder}: is a symbolic link to itself; name a new folder.")
-    if os.path.islink(folder) and not os.path.lexists(followed):
-        raise RecordError(f"{folder}: is a symbolic link to nothing; name a new folder.")
+    for link in filter(os.path.islink, (folder, *folder.parents)):
+        if not os.path.exists(link):  # its folders would be made, wherever it leads
+            raise RecordError(f"{link}: is a symbolic link to nothing; name a new folder.")
     return followed
 
 
