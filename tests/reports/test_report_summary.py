@@ -189,6 +189,28 @@ def test_the_headline_names_which_engine_fails_on_which_scenario(record):
     assert message == f"2 of 2 engines fail a gate: {where}."
 
 
+def test_a_headline_pairs_each_failing_engine_with_its_own_scenarios():
+    """Caught: "dart and mujoco, on sphere and t-handle", of which each engine fails on one."""
+    names = [f"scenario-{k}" for k in range(5)]
+    record = build(names)
+
+    def failing(*pairs):
+        failed = record
+        for place, entry in enumerate(record.run["tasks"]):
+            if (entry["engine"], entry["scenario"]) in pairs:
+                failed = change(failed, place, gates={"equation": "fail"})
+        return headline(summarise(failed)).partition(" a gate: ")[2]
+
+    apart = failing(("dart", names[1]), ("mujoco", names[0]))
+    assert "dart (on scenario-1)" in apart
+    assert "mujoco (on scenario-0)" in apart
+    alike = failing(*((engine, names[0]) for engine in ("dart", "mujoco")))
+    assert alike.endswith(", on scenario-0.")
+    assert "(" not in alike
+    many = failing(("dart", names[0]), *(("mujoco", name) for name in names[:4]))
+    assert "scenario" not in many
+
+
 def test_a_failing_engine_shows_its_largest_error_beside_the_median():
     """Caught: a failure whose row shows the small error of the scenarios that hold."""
     errors = {"a": 1e-7, "b": 1e-7, "c": 3.1}

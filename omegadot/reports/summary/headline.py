@@ -9,6 +9,7 @@ from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.summary import YARDSTICKS, Cell, Summary
 from omegadot.reports.text.numbers import knob, listed, quantity, times
 
+_FEW = 3  # names in one sentence
 _MORE = "The errors over time differ more. "
 
 
@@ -55,17 +56,9 @@ def _judged_engines(summary: Summary) -> dict[str, list[Cell]]:
 def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     failing = [name for name, cells in engines.items() if any(c.status == "fail" for c in cells)]
     if failing:
-        pairs = [(s, c.label) for (s, c), cell in summary.cells.items() if cell.status == "fail"]
-        places = sorted({scenario for scenario, _ in pairs})
         verb = "fails" if len(failing) == 1 else "fail"
         count = f"{len(failing)} of {times(len(engines), 'engine')}"
-        if 1 < len(failing) <= 3 and len(places) > 1 and len(pairs) <= 4:  # which on which
-            own = {name: [s for s, label in pairs if label == name] for name in failing}
-            each = [f"{name} (on {listed(sorted(own[name]))})" for name in failing]
-            return f"{count} {verb} a gate: {listed(each)}."
-        where = listed(places) if len(places) <= 3 else f"{len(places)} of "
-        where += times(len(summary.scenarios), "scenario") if len(places) > 3 else ""
-        return f"{count} {verb} a gate: {listed(failing)}, on {where}."
+        return f"{count} {verb} a gate: {_failing(summary, failing)}."
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
     # A declared exception is a known failure: such an engine is not reported as agreeing.
@@ -86,6 +79,23 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
         f"omega-dot residual is {quantity(largest.value, largest.unit)} "
         f"({largest.engine} on {largest.scenario}).{apart}"
     )
+
+
+def _failing(summary: Summary, engines: list[str]) -> str:
+    """The failing engines, each with its own scenarios where they differ and are few."""
+    places: dict[str, list[str]] = {name: [] for name in engines}
+    for (scenario, column), cell in summary.cells.items():
+        if cell.status == "fail" and scenario not in places[column.label]:
+            places[column.label].append(scenario)
+    own = {name: sorted(found) for name, found in places.items()}
+    first = own[engines[0]]
+    if all(found == first for found in own.values()):
+        total = times(len(summary.scenarios), "scenario")
+        where = listed(first) if len(first) <= _FEW else f"{len(first)} of {total}"
+        return f"{listed(engines)}, on {where}"
+    if len(engines) > _FEW or any(len(found) > _FEW for found in own.values()):
+        return listed(engines)
+    return listed([f"{name} (on {listed(found)})" for name, found in own.items()])
 
 
 def _residual(cells: list[Cell]) -> Figure | None:
