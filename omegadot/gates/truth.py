@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -48,7 +49,8 @@ class Truth:
 
     source: "closed-form" or "series".  growth: (n,), of rounding along the exact trajectory.
     floor: (n,) per channel, how far a perfect answer in the yardstick's precision may be off: omega
-    relative to the yardstick's rate, attitude in rad.
+    relative to the yardstick's rate, attitude in rad.  step_others: adds the companions of every
+    scheme that a run which declares none may equal.
     """
 
     source: str
@@ -59,6 +61,7 @@ class Truth:
     floor: dict[str, Array]
     yardstick: Yardstick
     companions: dict[tuple[SchemeKey, float], Companion] = field(default_factory=dict)
+    step_others: Callable[[], None] = lambda: None
 
     def in_precision(self, precision: str) -> Truth:
         """What an engine is held against that computes in "float64" or "float32".
@@ -86,6 +89,11 @@ class Truth:
     def at(self, sweep: Sweep) -> State:
         """The exact states at the samples of one sweep."""
         return self.state[self.rows(sweep)]
+
+    def every_companion(self) -> Mapping[tuple[SchemeKey, float], Companion]:
+        """Of every scheme; they take long, and are stepped when they are first requested."""
+        self.step_others()
+        return self.companions
 
     def companion(self, integrator: Integrator, sweep: Sweep) -> Companion | None:
         """The run of the reference that an integrator's should equal, where there is one."""

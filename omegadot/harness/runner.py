@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
-from functools import partial
+from dataclasses import replace
+from functools import cache, partial
 
 import numpy as np
 
@@ -197,31 +198,39 @@ class Runner:
     def run_case(self, case: Case) -> JudgedCase:
         """One case by itself; the workers are started before and finished after by the caller.
 
-        Runs whose scheme is not declared are judged, and compared with none: see `add_schemes`.
+        A run whose scheme is not declared is compared with none. Where it fails, its cause may be
+        sought in the difference from the nearest scheme: they are stepped when that is requested.
         """
         pending = self._submit_case(case, self._declared(case))
-        return self._resolve(pending, self.judge(pending, {}))
+        judged = self._resolve(pending, self.judge(pending, {}))
+        truth = judged.truth
+        if truth is None:
+            return judged
+        return replace(judged, truth=replace(truth, step_others=self._others(judged, truth)))
 
-    def add_schemes(self, judged: JudgedCase) -> None:
-        """Have the reference step every scheme where a run fails that declares none.
+    def _others(self, judged: JudgedCase, truth: Truth) -> Callable[[], None]:
+        """Adds the companions of every scheme to a case's, where a run fails that declares none.
 
-        A cause is sought in the difference from the nearest. No verdict depends on them, and they
-        take longer than all else.
+        No verdict depends on them.
         """
-        case, truth = judged.case, judged.truth
-        failing = [
-            run.integrator
-            for engine in judged.engines
-            for run in engine.runs
-            if any(row.verdict == "fail" for row in run.rows)
-        ]
-        wanted = {key for one in failing for key in comparison_keys(one, case.system)}
-        if truth is not None:
+        case = judged.case
+
+        @cache
+        def add() -> None:
+            failing = [
+                run.integrator
+                for engine in judged.engines
+                for run in engine.runs
+                if any(row.verdict == "fail" for row in run.rows)
+            ]
+            wanted = {key for one in failing for key in comparison_keys(one, case.system)}
             keys = sorted(wanted - {key for key, _ in truth.companions}, key=str)
             if keys:
                 call = self._submit_companions(case, lambda: truth, keys, case.sweeps)
                 found: Companions = outcome_of(call)
                 truth.companions.update(found)
+
+        return add
 
     def execute(self) -> Outcome:
         """Run everything; Ctrl-C ends the workers and keeps what has come in."""

@@ -131,7 +131,6 @@ class Suite:
             warnings.simplefilter("ignore", RuntimeWarning)
             try:
                 judged = self._runner.run_case(case)
-                self._runner.add_schemes(judged)
             except BaseException:
                 self._runner.engines.stop()  # no one waits for what they are busy with
                 raise

@@ -164,7 +164,7 @@ def reported_run_guesses(
         return []
     time, state = answer.result["time"], State(**answer.result["state"])
     ranked = list[tuple[tuple[int, float], ReportedRun]]()
-    for (key, timestep), own in truth.companions.items():
+    for (key, timestep), own in truth.every_companion().items():
         if timestep != sweep.timestep:
             continue
         guess = replace(integrator, scheme=key.scheme, coordinates=key.coordinates)
