@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.reported.clock import clock_cause
 from omegadot.diagnosis.reported.field_causes import field_causes
+from omegadot.diagnosis.reported.guesses import reported_run_guesses
 from omegadot.diagnosis.reported.precision import precision_reported
-from omegadot.diagnosis.reported.run import SLACK, ReportedRun, reported_run, reported_run_guesses
+from omegadot.diagnosis.reported.run import SLACK, ReportedRun, reported_run
 from omegadot.diagnosis.reported.run_causes import (
     CAUSES_REPORTED,
     SEEN,

@@ -31,6 +31,11 @@ class Sweep(Steps):
         """The accuracy, or else the step: what names it among the sweeps of one integrator."""
         return self.timestep if self.accuracy is None else self.accuracy
 
+    def until(self, samples: int) -> Sweep:
+        """The first samples, or all where there are no more."""
+        numbers = self.sample_steps
+        return replace(self, steps=int(numbers[min(samples, len(numbers)) - 1]))
+
     def refined(self, factor: int) -> Sweep:
         """The same samples at a step `factor` times smaller."""
         parts = (self.timestep / factor, self.steps * factor, self.every * factor)

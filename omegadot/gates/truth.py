@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -42,6 +42,14 @@ class Companion:
     growth: Array
     omega_dot: Array
 
+    def until(self, count: int) -> Companion:
+        """Its first samples."""
+        return Companion(self.state[:count], self.growth[:count], self.omega_dot[:count])
+
+
+# Companions by scheme over the steps of a sweep: of these schemes, or of all that may be stepped.
+StepSchemes = Callable[[Sweep, Sequence[SchemeKey] | None], Mapping[SchemeKey, Companion]]
+
 
 @dataclass(frozen=True)
 class Truth:
@@ -49,8 +57,7 @@ class Truth:
 
     source: "closed-form" or "series".  growth: (n,), of rounding along the exact trajectory.
     floor: (n,) per channel, how far a perfect answer in the yardstick's precision may be off: omega
-    relative to the yardstick's rate, attitude in rad.  step_others: adds the companions of every
-    scheme that a run which declares none may equal.
+    relative to the yardstick's rate, attitude in rad.  step_schemes: steps further companions.
     """
 
     source: str
@@ -61,7 +68,7 @@ class Truth:
     floor: dict[str, Array]
     yardstick: Yardstick
     companions: dict[tuple[SchemeKey, float], Companion] = field(default_factory=dict)
-    step_others: Callable[[], None] = lambda: None
+    step_schemes: StepSchemes = lambda sweep, keys: {}
 
     def in_precision(self, precision: str) -> Truth:
         """What an engine is held against that computes in "float64" or "float32".
@@ -90,10 +97,22 @@ class Truth:
         """The exact states at the samples of one sweep."""
         return self.state[self.rows(sweep)]
 
-    def every_companion(self) -> Mapping[tuple[SchemeKey, float], Companion]:
-        """Of every scheme; they take long, and are stepped when they are first requested."""
-        self.step_others()
-        return self.companions
+    def of_step(self, sweep: Sweep) -> dict[SchemeKey, Companion]:
+        """The companions that are known with a sweep's step."""
+        step = sweep.timestep
+        return {key: own for (key, timestep), own in self.companions.items() if timestep == step}
+
+    def beginnings(self, sweep: Sweep) -> dict[SchemeKey, Companion]:
+        """Of every scheme that an engine's run may equal, over these first steps of a sweep."""
+        stepped, count = self.step_schemes(sweep, None), len(sweep.times)
+        return {**stepped, **{key: own.until(count) for key, own in self.of_step(sweep).items()}}
+
+    def whole(self, sweep: Sweep, key: SchemeKey) -> Companion | None:
+        """Of one scheme over a whole sweep, stepped when it is first requested."""
+        if (key, sweep.timestep) not in self.companions:
+            for own, found in self.step_schemes(sweep, [key]).items():
+                self.companions[own, sweep.timestep] = found
+        return self.companions.get((key, sweep.timestep))
 
     def companion(self, integrator: Integrator, sweep: Sweep) -> Companion | None:
         """The run of the reference that an integrator's should equal, where there is one."""

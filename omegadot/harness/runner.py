@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.states.equation import evaluation_states_of
 from omegadot.gates.steps.scheme import comparison_keys
-from omegadot.gates.truth import SchemeKey, Truth, scheme_key
+from omegadot.gates.truth import Companion, SchemeKey, StepSchemes, Truth, scheme_key
 from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.engines import Engines, outcome_of
 from omegadot.harness.judging.engine import shared_rows
@@ -206,31 +206,25 @@ class Runner:
         truth = judged.truth
         if truth is None:
             return judged
-        return replace(judged, truth=replace(truth, step_others=self._others(judged, truth)))
+        return replace(judged, truth=replace(truth, step_schemes=self._schemes_of(judged, truth)))
 
-    def _others(self, judged: JudgedCase, truth: Truth) -> Callable[[], None]:
-        """Adds the companions of every scheme to a case's, where a run fails that declares none.
-
-        No verdict depends on them.
-        """
+    def _schemes_of(self, judged: JudgedCase, truth: Truth) -> StepSchemes:
+        """Steps the schemes that a case's failing runs may equal. No verdict depends on them."""
         case = judged.case
+        failing = [
+            run.integrator
+            for engine in judged.engines
+            for run in engine.runs
+            if any(row.verdict == "fail" for row in run.rows)
+        ]
+        every = {key for one in failing for key in comparison_keys(one, case.system)}
 
-        @cache
-        def add() -> None:
-            failing = [
-                run.integrator
-                for engine in judged.engines
-                for run in engine.runs
-                if any(row.verdict == "fail" for row in run.rows)
-            ]
-            wanted = {key for one in failing for key in comparison_keys(one, case.system)}
-            keys = sorted(wanted - {key for key, _ in truth.companions}, key=str)
-            if keys:
-                call = self._submit_companions(case, lambda: truth, keys, case.sweeps)
-                found: Companions = outcome_of(call)
-                truth.companions.update(found)
+        def step(sweep: Sweep, keys: Sequence[SchemeKey] | None) -> dict[SchemeKey, Companion]:
+            wanted = sorted(every - truth.of_step(sweep).keys(), key=str) if keys is None else keys
+            call = self._submit_companions(case, lambda: truth, list(wanted), [sweep])
+            return {key: own for (key, _), own in outcome_of(call).items()}
 
-        return add
+        return step
 
     def execute(self) -> Outcome:
         """Run everything; Ctrl-C ends the workers and keeps what has come in."""

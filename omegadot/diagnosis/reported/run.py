@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT, scheme_named
+from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.truth import Truth
@@ -22,11 +22,9 @@ from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
 LEAST_SAMPLES = 6
-MOST_GUESSES = 3
 # In parts of what rounding may do: a fitted number is then good to six digits.
 DISTINCT = 1e6
 SLACK = 4.0
-MOST_STEPS = 5000  # of a run that is stepped for a guess
 
 
 @dataclass(frozen=True)
@@ -148,65 +146,10 @@ def reported_run(
         return None
     time, state = answer.result["time"], State(**answer.result["state"])
     whole = ReportedRun(case, truth, integrator, sweep, time, state, own.state, own.growth)
-    return _until_it_shows(whole) if len(time) == len(sweep.times) else whole
+    return until_it_shows(whole) if len(time) == len(sweep.times) else whole
 
 
-def reported_run_guesses(
-    case: Case, truth: Truth, result: CaseResult, run: JudgedRun
-) -> list[ReportedRun]:
-    """The run next to the nearest schemes of the reference, of an engine that declares none.
-
-    Which are nearest is seen in the first samples, before a fault has spoiled the rest.
-    """
-    integrator, sweep = run.integrator, run.sweep
-    answer = result.runs.get((integrator.name, sweep.timestep))
-    if answer is None or not answer.ok or integrator.scheme in SCHEMES:
-        return []
-    time, state = answer.result["time"], State(**answer.result["state"])
-    ranked = list[tuple[tuple[int, float], ReportedRun]]()
-    for (key, timestep), own in truth.every_companion().items():
-        if timestep != sweep.timestep:
-            continue
-        guess = replace(integrator, scheme=key.scheme, coordinates=key.coordinates)
-        one = ReportedRun(case, truth, guess, sweep, time, state, own.state, own.growth, False)
-        if len(time) != len(sweep.times):
-            return [one]
-        ranked.append((one.distance_at_first, one))
-    ranked.sort(key=lambda pair: pair[0])
-    if ranked and len(time) == len(sweep.times):
-        ranked += _explicit(ranked[0][1], ranked[0][0])
-    ranked.sort(key=lambda pair: pair[0])
-    return [_until_it_shows(one) for _, one in ranked[:MOST_GUESSES]]
-
-
-def _explicit(
-    nearest: ReportedRun, distance: tuple[int, float]
-) -> list[tuple[tuple[int, float], ReportedRun]]:
-    """The run next to explicit schemes that are nearer than the reference's nearest.
-
-    Each is stepped through the first samples, and the one that is nearest there through the run.
-    """
-    truth, sweep = nearest.truth, nearest.sweep
-    own = replace(nearest.integrator, coordinates="com-world")
-    first = sweep.sample_steps[min(LEAST_SAMPLES, len(sweep.times)) - 1]
-    short = replace(sweep, steps=int(first))
-    count = len(short.times)
-    beginning = replace(nearest, sweep=short, time=nearest.time[:count])
-    beginning = replace(beginning, state=nearest.state[:count], growth=nearest.growth[:count])
-    best, least = "", distance
-    for name in EXPLICIT:
-        guess = replace(beginning, integrator=replace(own, scheme=name))
-        here = replace(guess, own=guess.stepped()).distance_at_first
-        if here < least:
-            best, least = name, here
-    if not best or sweep.steps > MOST_STEPS:
-        return []
-    growth = truth.growth[truth.rows(sweep)]
-    guess = replace(nearest, integrator=replace(own, scheme=best), growth=growth)
-    return [(least, replace(guess, own=guess.stepped()))]
-
-
-def _until_it_shows(reported: ReportedRun) -> ReportedRun:
+def until_it_shows(reported: ReportedRun) -> ReportedRun:
     """The beginning of a run, until it has departed from the reference's beyond any doubt.
 
     Causes are tried by stepping again: a short trajectory is quicker, and followed more surely
