@@ -13,6 +13,7 @@ import pytest
 from command_line import FAULTY, WRONG, omegadot, quick_scenario
 
 import omegadot as api
+from omegadot.commands.engines.page import AGAIN, markdown_of, section
 
 TOY = Path(__file__).parents[2] / "docs" / "examples" / "toy_engine.py"
 
@@ -148,3 +149,14 @@ def test_a_trace_is_detected_and_scored() -> None:
     strict = api.score(trace, scenario, attitude="1e-9deg", **reading.arguments())
     assert not strict.passed
     assert [task.engine for task in strict.failures] == ["trace"]
+
+
+def test_the_page_of_engines_is_what_their_adapters_report() -> None:
+    """Caught: a convention, a default or an integrator that changed, and the page did not."""
+    page = (Path(__file__).parents[2] / "docs" / "engines.md").read_text(encoding="utf-8")
+    known = [entry.description for entry in api.engines() if entry.description is not None]
+    assert len(known) >= 5
+    for own in known:
+        assert "\n".join(section(own)) + "\n" in page, f"docs/engines.md is old: {AGAIN}"
+    made = markdown_of(api.engines())
+    assert page.startswith(made[: made.index("| exact")])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from omegadot.commands.options import Adapters, Format, Output
+from omegadot.commands.options import Adapters, PageFormat, PageOutput
 
 if TYPE_CHECKING:
     from omegadot.adapters.protocol import Integrator
@@ -15,15 +15,19 @@ if TYPE_CHECKING:
 
 
 def engines(
-    output: Output = Format.text,
+    output: PageOutput = PageFormat.text,
     adapters: Adapters = None,
 ) -> None:
     """List the engines: installed or not, versions, integrators, conventions, what is off."""
     from omegadot.commands.engines.engines import engines as installed_engines
 
     entries = installed_engines(adapters or ())
-    if output is Format.json:
+    if output is PageFormat.json:
         print_json(entries)
+    elif output is PageFormat.markdown:
+        from omegadot.commands.engines.page import markdown_of
+
+        typer.echo(markdown_of(entries), nl=False)
     else:
         print_text(entries)
 
@@ -70,12 +74,10 @@ def print_text(entries: Sequence[EngineEntry]) -> None:
 
 def _integrator_line(integrator: Integrator) -> str:
     """Its name, the scheme that it is declared to equal, and its order, once where it is one."""
-    orders, scheme = integrator.orders, integrator.scheme
-    if not orders:
+    from omegadot.commands.engines.page import order_of
+
+    if not integrator.orders:
         return f"{integrator.name}: {integrator.note}"
-    if len(set(orders.values())) == 1:
-        order = f"order {next(iter(orders.values()))}"
-    else:
-        order = "order " + ", ".join(f"{value} in {c}" for c, value in orders.items())
-    same = scheme == integrator.name
-    return f"{integrator.name}: {order}" + ("" if same or not scheme else f", {scheme}")
+    same = integrator.scheme in (None, integrator.name)
+    order = f"{integrator.name}: order {order_of(integrator)}"
+    return order if same else f"{order}, {integrator.scheme}"
