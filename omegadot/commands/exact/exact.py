@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from omegadot.commands.typed import typed
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
@@ -65,6 +66,7 @@ class ExactStates:
         return pl.DataFrame({"time": self.time, **columns, **floors})
 
 
+@typed
 def exact(scenario: ScenarioLike, times: ArrayLike | None = None) -> ExactStates:
     """The exact solution of a scenario: states, omega-dot and floor at given times.
 
@@ -113,7 +115,7 @@ def _followed(case: Case, requested: Array) -> Array:
 def _checked(times: ArrayLike, case: Case) -> Array:
     try:
         found = np.atleast_1d(np.array(times, dtype=float))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         found = np.empty(0)
     rising = found.ndim == 1 and found.size and np.isfinite(found).all() and found[0] >= 0.0
     if not rising or np.any(np.diff(found) <= 0.0):
