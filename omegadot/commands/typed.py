@@ -87,7 +87,7 @@ def _kinds(hint: Any) -> list[str]:
     if origin in (Union, types.UnionType):
         return [name for one in arguments for name in _kinds(one)]
     if origin is Sequence:
-        return ["a list of such", *_kinds(arguments[0])] if arguments else ["a list"]
+        return [*_kinds(arguments[0]), "a list of such"]
     if origin is type(None):
         return []
     return [_NAMES.get(origin, f"a {getattr(origin, '__name__', 'value')}")]

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from omegadot.commands.typed import typed
 from omegadot.gates.case import Case
 from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
@@ -66,7 +65,6 @@ class ExactStates:
         return pl.DataFrame({"time": self.time, **columns, **floors})
 
 
-@typed
 def exact(scenario: ScenarioLike, times: ArrayLike | None = None) -> ExactStates:
     """The exact solution of a scenario: states, omega-dot and floor at given times.
 
