@@ -67,7 +67,14 @@ Integrators = Annotated[
 Exceptions = Annotated[
     list[Path] | None, option("FILE", "Known failures, declared in TOML; repeatable.")
 ]
-Timeout = Annotated[float, option("S", "Time limit in s for one request to an engine.", min=0.1)]
+Timeout = Annotated[
+    float,
+    option(
+        "S",
+        "Time limit in s for one request to an engine; a start may take 20 s in any case.",
+        min=0.1,
+    ),
+]
 Jobs = Annotated[
     int | None,
     option("N", "Number of engines that run at the same time. Default: all cores.", min=1),

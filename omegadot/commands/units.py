@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from numbers import Real
 
 from omegadot.harness.usage import UsageError, nearest
 
@@ -60,7 +61,7 @@ def quantity(value: object, kind: str, where: str, needs_unit: bool = False) -> 
     dimension.  Raises UsageError.
     """
     advice = f"write it as {_EXAMPLES[kind]}"
-    if isinstance(value, bool) or not isinstance(value, str | int | float):
+    if isinstance(value, bool) or not isinstance(value, str | Real):
         raise UsageError(f"{where} is {value!r}; {advice}.")
     found = _QUANTITY.fullmatch(str(value))
     if found is None:

@@ -185,7 +185,7 @@ def case_of(
         if not (isinstance(one, Real) and 0.0 < one < 1.0):
             shown = f"{one:g}" if isinstance(one, Real) else repr(one)
             raise UsageError(f"--accuracy {shown}: not a relative tolerance; give one from 0 to 1.")
-    steps = tuple(dict.fromkeys(timesteps)) or scenario.run.timesteps
+    steps = tuple(dict.fromkeys(map(float, timesteps))) or scenario.run.timesteps
     sweeps = tuple(sweep_of(duration, step, sample) for step in steps)
-    own = tuple(dict.fromkeys(accuracies)) or scenario.run.accuracies or ACCURACIES
+    own = tuple(dict.fromkeys(map(float, accuracies))) or scenario.run.accuracies or ACCURACIES
     return Case(scenario, system_of(scenario), initial_state_of(scenario), sweeps, own)

@@ -131,7 +131,7 @@ class Engines:
 def _advice(answer: Answer) -> str:
     """What to do about a worker that did not start, by how it ended."""
     if answer.outcome == "timeout":
-        return "give it more time (--timeout)"
+        return "give it more time (--timeout; a start has 20 s in any case)"
     if "MemoryError" in answer.reason or "SIGKILL" in answer.reason:
         return "give it more memory (--memory)"
     if "ImportError" in answer.reason or "ModuleNotFoundError" in answer.reason:

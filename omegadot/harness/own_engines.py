@@ -10,6 +10,8 @@ The file stands in the current folder. Its table ``adapters`` names engines of o
 
 from __future__ import annotations
 
+import os
+import re
 from pathlib import Path
 
 from omegadot.adapters.registry import registered
@@ -19,6 +21,8 @@ from omegadot.scenarios.files import read_toml
 
 FILE = "omegadot.toml"
 ADAPTERS = "adapters"
+_LONGEST = 60
+_NAME = re.compile(rf"[A-Za-z][\w.+-]{{0,{_LONGEST - 1}}}", re.ASCII)
 
 
 def known_engines() -> dict[str, str]:
@@ -27,7 +31,7 @@ def known_engines() -> dict[str, str]:
     Raises UsageError and ScenarioError where the file is not as it must be.
     """
     known = registered()
-    if not Path(FILE).exists():
+    if not os.path.lexists(FILE):
         return known
     tables = read_toml(Path(FILE), FILE)
     for key in tables:
@@ -38,12 +42,18 @@ def known_engines() -> dict[str, str]:
         raise UsageError(f'{FILE}: {ADAPTERS} is no table; write lines such as toy = "toy.py:Toy".')
     for name, target in found.items():
         where = f"{FILE}: {ADAPTERS}.{name}"
-        if not isinstance(target, str):
+        if not _NAME.fullmatch(name):
             raise UsageError(
-                f"{where}: {target!r} is no text; give FILE.py:Class, module:Class or a program "
-                "with its arguments."
+                f"{FILE}: {ADAPTERS} names an engine {name[:_LONGEST]!r}; give a name of at most "
+                f"{_LONGEST} letters, digits, '-', '_', '+' and '.', a letter first."
             )
-        if name in known:
+        if not isinstance(target, str) or not target.strip():
+            shown = "empty" if isinstance(target, str) else f"{target!r}, which is no text"
+            raise UsageError(
+                f"{where} is {shown}; give FILE.py:Class, module:Class or a program with its "
+                "arguments."
+            )
+        if name.casefold() in {other.casefold() for other in known}:
             raise UsageError(f"{where}: there is an engine of this name; give another.")
         try:
             known[name] = target_of(target)

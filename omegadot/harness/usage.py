@@ -39,7 +39,10 @@ def check_number(option: str, value: object, least: float) -> None:
 
     Seconds, GiB and kilograms beyond that are mistyped; the system's clock refuses them as well.
     """
-    number = float(value) if isinstance(value, Real) else math.nan
+    try:
+        number = float(value) if isinstance(value, Real) else math.nan
+    except OverflowError:  # a whole number that no float holds
+        number = math.inf
     if not (least <= number <= MOST and number > 0.0):
         limit = f"of at least {least:g}" if least else "above 0"
         limit += f" and at most {MOST:g}" if number > MOST else ""

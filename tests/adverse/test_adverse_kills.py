@@ -63,6 +63,7 @@ def test_two_hundred_kills_lose_no_record(tmp_path: Path, monkeypatch: pytest.Mo
             time.sleep(draw.uniform(0.0, 0.1))
             os.kill(number, signal.SIGKILL)
             assert writers.stdout.readline() == "ended\n"
+            read_record(folder)
             check_folder(folder)  # as the next run does first
             read_record(folder)
             written += folder.stat().st_ino != before

@@ -169,12 +169,12 @@ def test_errors_are_the_commands(
     [
         ({"setup": "as_shipped"}, "--setup as_shipped: no such setup; write as-shipped"),
         ({"jobs": 0}, "--jobs 0: give a whole number of at least 1"),
-        ({"jobs": 1.5}, "--jobs 1.5"),
+        ({"jobs": 1.5}, "jobs is 1.5; give a whole number."),
         ({"timeout": -1.0}, "--timeout -1.0: give a number above 0"),
-        ({"timeout": "3"}, "--timeout 3: give"),
-        ({"memory": "x"}, "--memory x: give a number of at least 0.1"),
+        ({"timeout": "3"}, "timeout is '3'; give a number."),
+        ({"memory": "x"}, "memory is 'x'; give a number."),
         ({"seed": -1}, "--seed -1"),
-        ({"timesteps": "0.01"}, "--timestep '0.01'"),
+        ({"timesteps": "0.01"}, "timesteps is '0.01'; give a number or a list of such."),
         ({"exceptions": "none.toml"}, "none.toml is missing"),
     ],
 )

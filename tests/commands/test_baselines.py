@@ -165,7 +165,7 @@ def test_an_update_leaves_what_was_not_run() -> None:
 def test_a_rerun_stays_in_its_bands_and_a_patched_figure_does_not(tmp_path: Path) -> None:
     arguments = ("--integrator", "semi-implicit-euler", "--baseline", "kept")
     engine = ("check", "reference", "--scenario", quick_scenario(tmp_path), *arguments)
-    assert omegadot(*engine, folder=tmp_path).code == 1  # nothing is stored yet
+    assert omegadot(*engine, folder=tmp_path).code == 2  # no such folder
     written = omegadot(*engine, "--update-baseline", folder=tmp_path)
     assert written.code == 0, written.out
     file = tmp_path / "kept" / "reference.toml"

@@ -141,3 +141,14 @@ def test_a_file_without_a_time_is_refused(capsys, tmp_path):
     result = detected(capsys, path)
     assert result.code == 2
     assert "no column rises" in result.err
+
+
+def test_what_fits_is_written_as_a_map_that_scores_alike(capsys, tmp_path):
+    columns = [1e3 * TIMES, *body_rates_and_angles(tumble(TIMES))]
+    path = table(tmp_path / "trace.csv", columns, ["clock", *(f"C {k}" for k in range(1, 7))])
+    found = tmp_path / "found.toml"
+    assert detected(capsys, path, "--out", found).code == 0
+    line = (path, "--scenario", BRICK, "--map", found, "--out", tmp_path / "out")
+    result = run_score(capsys, *line, "--format", "json")
+    assert {channel["verdict"] for channel in result.json["channels"].values()} == {"pass"}
+    assert detected(capsys, path, "--out", path).code == 2  # no file of ours is replaced

@@ -77,7 +77,7 @@ ELSEWHERE = {
     "DiesInLoad": ("crashed", "ended by signal 6 (SIGABRT)"),
     "ExitsInLoad": ("raised", "SystemExit: the licence has expired"),
     "DiesInModel": ("crashed", "reading the model back: ended by signal 6 (SIGABRT)"),
-    "NoModel": ("raised", "reading the model back: AnswerError: model() is of type NoneType"),
+    "NoModel": ("raised", "reading the model back: model() is of type NoneType"),
     "ModelNotANumber": ("ok", ""),
     "DiesInForwardDynamics": ("crashed", "ended by signal 6 (SIGABRT)"),
     "TorqueOfOneState": ("raised", "inverse_dynamics() has the shape (3,); answer with (200, 3)"),

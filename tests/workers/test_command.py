@@ -17,6 +17,7 @@ from omegadot.harness.engine_target import file_of, target_of
 from omegadot.harness.own_engines import known_engines
 from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.system import Body, State, System
+from omegadot.scenarios import ScenarioError
 from omegadot.workers.engine_end.checked import AnswerError, description_of
 from omegadot.workers.engine_end.command import CommandAdapter, ProgramError
 from omegadot.workers.engine_end.operations import OPERATIONS
@@ -182,7 +183,13 @@ def test_engines_of_ones_own_have_names(tmp_path: Path, monkeypatch: pytest.Monk
     [
         ("[adapter]\n", "omegadot.toml: key 'adapter' is unknown; write adapters."),
         ("adapters = 3\n", "omegadot.toml: adapters is no table"),
-        ("[adapters]\ntoy = 3\n", "omegadot.toml: adapters.toy: 3 is no text"),
+        ("[adapters]\ntoy = 3\n", "omegadot.toml: adapters.toy is 3, which is no text"),
+        ('[adapters]\ntoy = " "\n', "omegadot.toml: adapters.toy is empty"),
+        ('[adapters]\n"" = "toy.py:Toy"\n', "adapters names an engine '';"),
+        ('[adapters]\n"a:b" = "toy.py:Toy"\n', "adapters names an engine 'a:b';"),
+        ('[adapters]\n"../x" = "toy.py:Toy"\n', "adapters names an engine '../x';"),
+        ('[adapters]\nMuJoCo = "toy.py:Toy"\n', "adapters.MuJoCo: there is an engine of this"),
+        ("\ufeff\0", "omegadot.toml is not valid TOML"),
         ('[adapters]\nmujoco = "toy.py:Toy"\n', "adapters.mujoco: there is an engine of this name"),
         ('[adapters]\ntoy = "toy.py:Toy"\n', "adapters.toy: toy.py: no such adapter file"),
     ],
@@ -192,7 +199,16 @@ def test_a_wrong_omegadot_toml_is_one_sentence(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("omegadot.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(UsageError, match=reason):
+    with pytest.raises((UsageError, ScenarioError), match=reason):
+        known_engines()
+
+
+def test_an_omegadot_toml_that_leads_nowhere_is_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("omegadot.toml").symlink_to("nowhere")
+    with pytest.raises(ScenarioError, match=r"omegadot\.toml is missing"):
         known_engines()
 
 

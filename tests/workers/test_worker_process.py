@@ -44,7 +44,7 @@ def test_a_start_has_its_own_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     late = worker_of("import time; time.sleep(3600)", timeout=0.1).start()
     assert (late.outcome, late.reason) == (
         "timeout",
-        "no answer within 2 s; the worker was ended",
+        "not started within 2 s; the worker was ended",
     )
 
 

@@ -17,6 +17,7 @@ from omegadot.commands.check.shrink import SECONDS, Failing, kinds_of_failure
 from omegadot.commands.check.shrink import shrink as shrink_check
 from omegadot.commands.check.suite import SEED, Suite
 from omegadot.commands.progress import Count, Reporter, Reporting, reporting
+from omegadot.commands.typed import typed
 from omegadot.harness.arguments import Via, adapters_named, several
 from omegadot.harness.engine_target import EngineLike, is_target, target_of
 from omegadot.harness.own_engines import known_engines
@@ -69,6 +70,7 @@ class CheckResult:
         return f"<omegadot check of {len(self.by_check)}: {named}>"
 
 
+@typed
 def check(
     engine: EngineLike,
     *,

@@ -70,6 +70,12 @@ def select(arguments: Arguments) -> Selection:
     """
     if arguments.update and arguments.baseline is None:
         raise UsageError("--update-baseline: give the folder of the baselines with --baseline DIR.")
+    baseline = None if arguments.baseline is None else path_of(arguments.baseline)
+    if baseline is not None and not arguments.update and not os.path.isdir(baseline):
+        raise UsageError(
+            f"--baseline {baseline}: no such folder; store the values there first with "
+            "--update-baseline, or check the path."
+        )
     adapters = adapters_named(arguments.adapters)
     known = {**known_engines(), **adapters}
     unknown = tuple(name for name in arguments.required if name not in known)
@@ -87,7 +93,7 @@ def select(arguments: Arguments) -> Selection:
         cases=[case_of(scenario, ()) for scenario in (*named, *drawn)],
         exceptions=exceptions_of(choices, map(path_of, arguments.exceptions)),
         unknown=unknown,
-        baseline=None if arguments.baseline is None else path_of(arguments.baseline),
+        baseline=baseline,
         drawn=frozenset(scenario.name for scenario in drawn),
     )
 

@@ -16,6 +16,7 @@ from omegadot.commands.choose.motion import Motion, cases_of
 from omegadot.commands.choose.requirements import merged, read_requirements
 from omegadot.commands.choose.result import ChooseResult
 from omegadot.commands.progress import Reporting, reporting
+from omegadot.commands.typed import typed
 from omegadot.harness.arguments import engine_choices, several
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import RunRequest
@@ -29,6 +30,7 @@ BROKEN = ("crashed", "timeout", "raised")
 Quantity = str | float
 
 
+@typed
 def choose(
     scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
     engines: EngineLike | Sequence[EngineLike] | None = None,

@@ -112,7 +112,9 @@ def merged(file: Mapping[str, Any], line: Mapping[str, Any], path: str) -> Requi
 
     Raises UsageError, also where no accuracy is required: without one every step is good enough.
     """
-    typed = {key: value for key, value in line.items() if value not in (None, "", [])}
+    typed = {
+        k: v for k, v in line.items() if not (v is None or (isinstance(v, str | list) and not v))
+    }
     given = {**file, **typed}
     places = {key: f"--{key}" if key in typed else f"{path}: {key}" for key in given}
     accuracy = [key for key in ACCURACY if key in given]

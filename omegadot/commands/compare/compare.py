@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from omegadot.commands.typed import typed
 from omegadot.reports.record.record import Record, read_record
 from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.two_runs.comparison import Comparison, compare_records
@@ -13,6 +14,7 @@ RunLike = str | os.PathLike[str] | Record
 """The folder of a run, or its record."""
 
 
+@typed
 def compare(was: RunLike, now: RunLike) -> Comparison:
     """What got better, worse, appeared and vanished from one run to another.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from omegadot.adapters.protocol import Description
 from omegadot.adapters.registry import OPTIONAL, is_absent
+from omegadot.commands.typed import typed
 from omegadot.harness.arguments import engine_choices, several
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.plan import EngineChoice
@@ -33,6 +34,7 @@ class EngineEntry:
         return self.description is not None
 
 
+@typed
 def engines(adapters: EngineLike | Sequence[EngineLike] = ()) -> tuple[EngineEntry, ...]:
     """Every engine that is registered, each started in a process of its own.
 

@@ -113,7 +113,7 @@ def _followed(case: Case, requested: Array) -> Array:
 def _checked(times: ArrayLike, case: Case) -> Array:
     try:
         found = np.atleast_1d(np.array(times, dtype=float))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         found = np.empty(0)
     rising = found.ndim == 1 and found.size and np.isfinite(found).all() and found[0] >= 0.0
     if not rising or np.any(np.diff(found) <= 0.0):

@@ -13,6 +13,7 @@ from omegadot.commands.faults.catalogue import ORDERED
 from omegadot.commands.faults.matrix import DEFAULT, EngineMatrix, engine_matrix
 from omegadot.commands.faults.prepared import Pool
 from omegadot.commands.progress import Count, Reporting, reporting
+from omegadot.commands.typed import typed
 from omegadot.harness.arguments import several
 from omegadot.harness.usage import UsageError, check_count, nearest
 from omegadot.scenarios.random_systems import LARGEST_SEED, MOST_SYSTEMS
@@ -45,6 +46,7 @@ class FaultsResult:
         return sum(matrix.minutes for matrix in self.matrices)
 
 
+@typed
 def faults(
     engines: str | Sequence[str] | None = None,
     *,

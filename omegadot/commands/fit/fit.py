@@ -20,11 +20,13 @@ from omegadot.commands.fit.scenario_file import MARK, scenario_of_fit, text_of
 from omegadot.commands.fit.sentences import sentences
 from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.settings import GivenColumns, Reading, reading_of, settings_of
+from omegadot.commands.typed import typed
 from omegadot.harness.usage import UsageError, check_number
 from omegadot.reports.record.whole_file import check_target, path_of, write_whole
 from omegadot.scenarios import scenario
 
 
+@typed
 def fit(
     trace: str | os.PathLike[str],
     *,

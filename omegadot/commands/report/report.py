@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 from omegadot.commands.compare.compare import compare
+from omegadot.commands.typed import typed
 from omegadot.reports.charts.chart_library import packed_library
 from omegadot.reports.record.whole_file import (
     PAGE_MARK,
@@ -20,6 +21,7 @@ TWO_RUNS = Path("two-runs.html")
 PathLike = str | os.PathLike[str]
 
 
+@typed
 def report(run: PathLike, other: PathLike | None = None, *, out: PathLike | None = None) -> Path:
     """Draw the page of a stored run again, or of two runs side by side; where it was written.
 

@@ -12,6 +12,7 @@ from omegadot.commands.progress import Count, Progress, Reporter, Reporting, rep
 from omegadot.commands.run.declare import with_declared
 from omegadot.commands.run.record import record_of
 from omegadot.commands.run.result import RunInterrupted, RunResult, result_of
+from omegadot.commands.typed import typed
 from omegadot.harness.arguments import Via, by_ways, case_of, engine_choices, scenarios_of, several
 from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import Outcome, RunRequest, tasks_of
@@ -23,6 +24,7 @@ from omegadot.reports.run_record import RunRecord
 from omegadot.scenarios import ScenarioLike
 
 
+@typed
 def run(
     scenarios: ScenarioLike | Sequence[ScenarioLike] | None = None,
     engines: EngineLike | Sequence[EngineLike] | None = None,

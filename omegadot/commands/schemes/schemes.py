@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from omegadot.commands.other_python import checked_interpreters, worker_command
 from omegadot.commands.progress import Progress, Reporting, reporting
+from omegadot.commands.typed import typed
 from omegadot.diagnosis.scheme_study.record import Record, record_of
 from omegadot.diagnosis.scheme_study.study import EngineStudy, study_engine
 from omegadot.harness.arguments import engine_choices, several
@@ -62,6 +63,7 @@ class SchemesResult:
         return f"<omegadot schemes of {count} integrators, {len(self.departures)} not as declared>"
 
 
+@typed
 def schemes(
     engines: EngineLike | Sequence[EngineLike] | None = None,
     *,

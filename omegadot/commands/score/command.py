@@ -104,11 +104,16 @@ def score(
             "NAME[:INTEGRATOR]", "An engine to run on the same scenario; repeatable.", "--with"
         ),
     ] = None,
-    out: Annotated[Path, _option("DIR", "Folder for the record and its report.")] = Path(
-        "omegadot-score"
-    ),
+    out: Annotated[
+        Path,
+        _option(
+            "DIR",
+            "Folder for the record and its report; with --detect, a FILE.toml for what fits, as "
+            "--map takes it.",
+        ),
+    ] = Path("omegadot-score"),
     detect: Annotated[
-        bool, typer.Option("--detect", help="Report which conventions fit, and write nothing.")
+        bool, typer.Option("--detect", help="Report which conventions fit, and score nothing.")
     ] = False,
     output: Annotated[Format, typer.Option("--format", help="Output format.")] = Format.text,
 ) -> None:
@@ -123,14 +128,20 @@ def score(
         del given[name_apart]
     if detect:
         _refuse_beside_detect(context)
+        file = _file_for_a_map(context, out)
         from omegadot.commands.score.detection.detect import detect as detect_conventions
+        from omegadot.commands.score.detection.reading import MARK
         from omegadot.commands.score.print_score import print_detected
+        from omegadot.reports.record.whole_file import write_whole
 
         window = {key: given[key] for key in ("rate", "from_time", "to_time")}
         fits = detect_conventions(
             trace, scenario, columns=column or [], map_file=map_file, **window
         )
-        raise typer.Exit(print_detected(fits, trace, scenario, as_json=output is Format.json))
+        code = print_detected(fits, trace, scenario, as_json=output is Format.json)
+        if file is not None and code == 0:
+            write_whole(file, fits.fitting[0].map_text(), MARK)
+        raise typer.Exit(code)
     from omegadot.commands.run.print_run import exit_code
     from omegadot.commands.run.result import RunInterrupted
     from omegadot.commands.score.print_score import print_json, print_text
@@ -157,14 +168,32 @@ def score(
 _OF_DETECT = {"trace", "scenario", "column", "map_file", "rate", "from_time", "to_time"}
 
 
+def _file_for_a_map(context: typer.Context, out: Path) -> Path | None:
+    """The file that is to be written beside --detect, if one is. Raises UsageError, RecordError."""
+    from omegadot.commands.score.detection.reading import MARK
+    from omegadot.harness.usage import UsageError
+    from omegadot.reports.record.whole_file import check_target
+
+    if not _typed(context, "out"):
+        return None
+    if out.suffix != ".toml":
+        raise UsageError(f"--out {out}: with --detect it is a map that is written; give FILE.toml.")
+    check_target(out, MARK)
+    return out
+
+
+def _typed(context: typer.Context, name: str) -> bool:
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
+
+
 def _refuse_beside_detect(context: typer.Context) -> None:
     """Raise UsageError for an option that would be ignored."""
     from omegadot.harness.usage import UsageError
 
     for parameter in context.command.params:
-        source = context.get_parameter_source(str(parameter.name))
-        typed = source is not None and source.name == "COMMANDLINE"
-        if typed and parameter.name not in _OF_DETECT | {"detect", "output"}:
+        typed = _typed(context, str(parameter.name))
+        if typed and parameter.name not in _OF_DETECT | {"detect", "output", "out"}:
             raise UsageError(
                 f"{parameter.opts[0]}: --detect finds how the trace is to be read, and takes no "
                 "other setting; leave one of the two out."

@@ -18,6 +18,7 @@ from omegadot.commands.score.rows import rows_of
 from omegadot.commands.score.sentences import sentences
 from omegadot.commands.score.settings import GivenColumns, reading_of
 from omegadot.commands.score.shift import Shift
+from omegadot.commands.typed import typed
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
 from omegadot.harness.arguments import case_of, engine_choices, scenarios_of, several
@@ -68,6 +69,7 @@ class ScoreResult(RunResult):
         return sentences(self.found, list(self.rows))
 
 
+@typed
 def score(
     trace: str | os.PathLike[str],
     scenario: ScenarioLike,

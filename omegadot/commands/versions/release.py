@@ -6,7 +6,7 @@ import shutil
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from packaging.version import InvalidVersion, Version
+from packaging.version import Version
 
 from omegadot.adapters.registry import BUILT_IN
 from omegadot.harness.usage import UsageError, nearest
@@ -16,7 +16,7 @@ def version_of(text: str) -> Version | None:
     """What releases are ordered by; None of a text that is no version (PEP 440)."""
     try:
         return Version(text)
-    except InvalidVersion:
+    except ValueError:  # InvalidVersion, or one of thousands of digits
         return None
 
 

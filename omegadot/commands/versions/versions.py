@@ -8,6 +8,7 @@ from typing import Literal
 
 from omegadot.adapters.protocol import Setup
 from omegadot.commands.progress import Count, Progress, Reporting, reporting
+from omegadot.commands.typed import typed
 from omegadot.commands.versions.aims import aims_of, check_integrators
 from omegadot.commands.versions.bisection import bisect_metric
 from omegadot.commands.versions.changes import Portrait
@@ -20,12 +21,13 @@ from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import Via, check_way, several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, check_count, check_number, check_setup
-from omegadot.reports.record.whole_file import make_folder, path_of
+from omegadot.reports.record.whole_file import as_record_error, make_folder, path_of
 from omegadot.scenarios import ScenarioLike
 
 MOST_UNASKED = 1e9  # bytes
 
 
+@typed
 def versions(
     engine: str,
     releases: str | Sequence[str],
@@ -79,7 +81,10 @@ def versions(
         fetching = None if offline else installer_named(installer)
     except InstallError as error:
         raise UsageError(f"--installer {installer}: {error}.") from error
-    environments = Environments(path_of(cache or default_cache()), product, fetching)
+    folder = path_of(cache or default_cache())
+    with as_record_error(folder):
+        folder.is_dir()
+    environments = Environments(folder, product, fetching)
     wanted, pythons = requested_releases(
         several(releases),
         environments.releases,

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import glob
 import json
 import os
 import re
 import secrets
 import shutil
+import sys
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,6 +30,7 @@ RUN, PAGE = "run.json", "report.html"
 METRICS, TRAJECTORIES = "metrics.parquet", "trajectories.parquet"
 SECONDS_TO_WRITE = 60.0
 _LEFT = re.compile(r"\.(\d+)-[0-9a-f]{12}\.(new|old)")
+_HERE, _RENAME_EXCHANGE = -100, 2  # AT_FDCWD and the flag, of linux/fcntl.h and linux/fs.h
 _REPEATING = ("timestep", "accuracy", "time")
 FILES = (RUN, METRICS, TRAJECTORIES, PAGE)
 
@@ -161,9 +164,11 @@ def write_record(record: Record, folder: Path, page: str) -> None:
 
 
 def _take_the_place_of(folder: Path, fresh: Path) -> None:
-    # A folder that is not empty cannot be renamed over, so the earlier record is moved away first.
     aside = fresh.with_suffix(".old")
     had_earlier = folder.exists()
+    if had_earlier and _exchange(folder, fresh):
+        return  # the earlier record is removed under the other name
+    # A folder that is not empty cannot be renamed over, so the earlier record is moved away first.
     if had_earlier:
         os.replace(folder, aside)
     try:
@@ -173,6 +178,15 @@ def _take_the_place_of(folder: Path, fresh: Path) -> None:
             os.replace(aside, folder)
         raise
     shutil.rmtree(aside, ignore_errors=True)
+
+
+def _exchange(one: Path, other: Path) -> bool:
+    """Exchange two folders at once, so that at no moment there is none; whether it can be done."""
+    if sys.platform != "linux":
+        return False
+    rename = getattr(ctypes.CDLL(None), "renameat2", None)  # glibc has it since 2.28
+    names = os.fsencode(one), os.fsencode(other)
+    return rename is not None and not rename(_HERE, names[0], _HERE, names[1], _RENAME_EXCHANGE)
 
 
 def _write_parquet(frame: pl.DataFrame, fields: Mapping[str, Field], path: Path) -> None:

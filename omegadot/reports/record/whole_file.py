@@ -16,9 +16,10 @@ def path_of(given: str | os.PathLike[str]) -> Path:
     """The path that a script gives. Raises RecordError for what is none, such as a number."""
     from omegadot.reports.record.schema import RecordError
 
-    if isinstance(given, str | os.PathLike):
+    if isinstance(given, str | os.PathLike) and "\0" not in os.fspath(given):
         return Path(given)
-    raise RecordError(f"{given!r}: is no path; give a text or a pathlib.Path.")
+    shown = repr(given) if isinstance(given, str | float) else f"a {type(given).__name__}"
+    raise RecordError(f"{shown}: is no path; give a text or a pathlib.Path.")
 
 
 @contextlib.contextmanager

@@ -21,6 +21,8 @@ from omegadot.reports.text.numbers import (
 )
 
 UNKNOWN = "none is known"
+# Of a metric that is measured after another system was loaded, which its note names.
+OF_SIBLING = " of sibling"
 
 
 def failures_of(record: Record) -> tuple[str, ...]:
@@ -71,7 +73,10 @@ def _measure(row: Mapping[str, Any]) -> str:
     # A share of a bound, or no number: the note states what is wrong.
     if row["note"] and (row["bound"] == 1.0 or not isfinite(row["value"] or 0.0)):
         return f"{channel}: {row['note']}"
-    text = f"{channel} {row['metric'].replace('_', ' ')} {quantity(row['value'], row['unit'])}"
+    metric, after = row["metric"].replace("_", " "), ""
+    if metric.endswith(OF_SIBLING):
+        metric, after = metric.removesuffix(OF_SIBLING), f" {row['note']}".rstrip()
+    text = f"{channel} {metric} {quantity(row['value'], row['unit'])}{after}"
     excess = _excess(row)
     if row["bound"] is not None and 1.0 < excess < float("inf"):
         text += f", {short(excess)} times its bound"

@@ -74,11 +74,18 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
         named = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
     verb = "agrees" if len(agreeing) == 1 else "agree"
     apart = f" Declared exceptions: {listed(excused)}." if excused else ""
+    open_ = [f"{n} ({_outcomes(engines[n])})" for n in engines if n not in (*agreeing, *excused)]
+    apart += f" No verdict on {listed(open_)}." if open_ else ""
     return (
         f"{named} {verb} with the Newton–Euler equations at identical states: the largest "
         f"omega-dot residual is {quantity(largest.value, largest.unit)} "
         f"({largest.engine} on {largest.scenario}).{apart}"
     )
+
+
+def _outcomes(cells: list[Cell]) -> str:
+    """How the runs of an engine ended that give no verdict."""
+    return listed(list(dict.fromkeys(cell.status.replace("-", " ") for cell in cells)))
 
 
 def _failing(summary: Summary, engines: list[str]) -> str:

@@ -7,7 +7,8 @@ of the two bounds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +22,7 @@ _KEY = list(RunKey._fields)
 _NAME = ["gate", "channel", "metric", "nth"]
 # The bound of an order is the declared one; that of everything else that has one is rounding.
 _NOT_ROUNDING = "observed_order"
+CHANCE = 1e-3
 # Measured at states drawn by the seed.
 _DRAWN = ("residual", "state")
 # From the worst to the best; what is not judged is no pass.
@@ -113,9 +115,28 @@ class Cost:
     runs: int
 
 
-def costs(pairs: pl.DataFrame) -> list[Cost]:
-    """One entry an engine and integrator, in the order of the second record; never judged.
+def _chance(scenarios: Sequence[pl.DataFrame]) -> float:
+    """How likely it is that equal costs are ordered as these timings are; 1 where some overlap.
 
+    Of n and m timings of one cost, 1 of (n + m choose n) orders has all of the one below the other.
+    A value that stands at several steps was timed once.
+    """
+    odds, rising = 2.0, set[bool]()
+    for own in scenarios:
+        was, now = own.get_column("value"), own.get_column("value_now")
+        rising.add(slower := bool(now.min() > was.max()))  # type: ignore[operator]
+        if len(rising) > 1 or not (slower or now.max() < was.min()):  # type: ignore[operator]
+            return 1.0
+        odds /= math.comb(was.n_unique() + now.n_unique(), was.n_unique())
+    return min(1.0, odds)
+
+
+def costs(pairs: pl.DataFrame) -> list[Cost]:
+    """One entry an engine and integrator whose cost changed, in the order of the second record.
+
+    The steps of a scenario repeat one computation, so their timings show the noise. Listed is what
+    is slower, or faster, on every scenario beyond all of it: the timings of the two records do not
+    overlap, and equal costs would be ordered so in one of 1 000 cases at most.
     pairs: of `paired`.
     """
     before, now = pl.col("value"), pl.col("value_now")
@@ -123,8 +144,15 @@ def costs(pairs: pl.DataFrame) -> list[Cost]:
         pl.col("metric") == "time_per_step",
         *(value.is_finite() & (value > 0.0) for value in (before, now)),
     )
-    ratio = now / before
-    found = timed.group_by("engine", "version", "setup", "integrator", maintain_order=True).agg(
+    ratio, names = now / before, ("engine", "version", "setup", "integrator")
+    rows = [
+        key
+        for key, own in timed.group_by(names, maintain_order=True)
+        if _chance(own.partition_by("scenario")) <= CHANCE
+    ]
+    kept = pl.DataFrame(rows, {name: timed.schema[name] for name in names}, orient="row")
+    timed = timed.join(kept, names, nulls_equal=True, how="semi", maintain_order="left")
+    found = timed.group_by(names, maintain_order=True).agg(
         ratio.median().alias("median"),
         ratio.quantile(0.25, "linear").alias("low"),
         ratio.quantile(0.75, "linear").alias("high"),

@@ -83,9 +83,11 @@ def _described(found: Any) -> Description:
     return _fields_of("describe", Description, found)
 
 
-def _end_with_this_process() -> None:
+def end_with_parent() -> bool:
+    """Have the system kill this process when its parent ends; whether the system can."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    return sys.platform == "linux"
 
 
 class CommandAdapter:
@@ -97,7 +99,7 @@ class CommandAdapter:
                 program_of(command),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                preexec_fn=_end_with_this_process if os.name == "posix" else None,
+                preexec_fn=end_with_parent if os.name == "posix" else None,
             )
         except OSError as error:
             raise AdapterError(f"{command}: it cannot be started, {error.strerror}.") from None

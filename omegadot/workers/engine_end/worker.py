@@ -9,9 +9,7 @@ on. After running out of memory it states so and leaves, for what is left of it 
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import os
-import signal
 import sys
 import threading
 import time
@@ -22,8 +20,13 @@ from typing import Any, BinaryIO, cast
 
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import OURS, AdapterError, build_adapter
-from omegadot.workers.engine_end.checked import description_of
-from omegadot.workers.engine_end.command import PR_SET_PDEATHSIG, CommandAdapter, ProgramLostError
+from omegadot.workers.engine_end.checked import AnswerError, description_of
+from omegadot.workers.engine_end.command import (
+    CommandAdapter,
+    ProgramError,
+    ProgramLostError,
+    end_with_parent,
+)
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
@@ -46,6 +49,8 @@ def failure(error: BaseException) -> dict[str, Any]:
     texts = one_line(_text_of(error))
     if isinstance(error, UnsupportedError):
         return {"outcome": "unsupported", "reason": texts}
+    if isinstance(error, AnswerError | ProgramError):  # it states all, and no line of ours helps
+        return {"outcome": "raised", "reason": texts}
     last = traceback.extract_tb(error.__traceback__)[-1:]
     where = f" ({os.path.basename(last[0].filename)}:{last[0].lineno})" if last else ""
     reason = f"{type(error).__name__}: {texts}".rstrip(": ") + where
@@ -122,15 +127,13 @@ def _private_channels() -> tuple[BinaryIO, BinaryIO]:
     return requests, answers
 
 
-def _end_with_parent() -> None:
+def _end_with_harness() -> None:
     """Have this process killed when its parent ends, however busy it is and however that ends.
 
-    Linux does so by itself. Elsewhere a thread looks for a new parent, as long as the engine lets
+    Where the system does not do so, a thread looks for a new parent, as long as the engine lets
     other threads run.
     """
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    elif os.name == "posix":
+    if not end_with_parent() and os.name == "posix":
         threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
 
 
@@ -145,7 +148,7 @@ def main() -> None:
 
     The module of an engine of one's own may stand in the current folder, which comes last.
     """
-    _end_with_parent()
+    _end_with_harness()
     if sys.argv[1] not in OURS.values():
         with contextlib.suppress(FileNotFoundError):  # a folder that was removed holds no module
             sys.path.append(os.getcwd())

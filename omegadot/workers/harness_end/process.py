@@ -56,9 +56,9 @@ def _worker_environment(memory: int | None) -> dict[str, str]:
 class WorkerProcess:
     """One engine's process. It is started when first requested and again after it dies.
 
-    timeout: s, for one request; a start has 20 s at least.  memory: bytes of data that it may
-    hold; half of the machine's where none is given, and no limit where that is not known.
-    via: the format of the files by which systems are loaded; "" for the engine's API.
+    timeout: s, for one request; a start may take 20 s where that is longer.  memory: bytes of data
+    that it may hold; half of the machine's where none is given, and no limit where that is not
+    known.  via: the format of the files by which systems are loaded; "" for the engine's API.
     """
 
     def __init__(
@@ -97,7 +97,8 @@ class WorkerProcess:
         except OSError as error:
             return Answer("crashed", f"the worker could not be started: {error}")
         self._pipes = pipes = Pipes(process, mark)
-        answer = self._wait(pipes, max(self._timeout, SECONDS_TO_START))
+        seconds = max(self._timeout, SECONDS_TO_START)
+        answer = self._wait(pipes, seconds, f"not started within {seconds:g} s")
         if not answer.ok:
             self.stop()
         return answer
@@ -121,7 +122,7 @@ class WorkerProcess:
         if pipes is None:
             return Answer("crashed", "the worker is not running")
         pipes.send({"operation": operation, **fields})
-        return self._wait(pipes, self._timeout)
+        return self._wait(pipes, self._timeout, f"no answer within {self._timeout:g} s")
 
     def peak_memory(self) -> int | None:
         """Bytes that the living process has held in memory at most; None where it is not known."""
@@ -131,12 +132,12 @@ class WorkerProcess:
             return getattr(psutil.Process(self.pid).memory_info(), "peak_wset", None)
         return answer.result if answer.ok else None
 
-    def _wait(self, pipes: Pipes, seconds: float) -> Answer:
+    def _wait(self, pipes: Pipes, seconds: float, late: str) -> Answer:
         try:
             answer = pipes.answers.get(timeout=seconds)
         except queue.Empty:
             self.stop()
-            return Answer("timeout", f"no answer within {seconds:g} s; the worker was ended")
+            return Answer("timeout", f"{late}; the worker was ended")
         if isinstance(answer, Lost):
             return Answer("crashed", self._post_mortem(pipes, answer.how))
         if answer.pop("leaves", False):

@@ -22,6 +22,7 @@ from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.score import case_given
 from omegadot.commands.score.settings import GivenColumns, settings_of
 from omegadot.commands.score.table import Table, TraceError, bare, find_column
+from omegadot.commands.typed import typed
 from omegadot.gates.case import Case
 from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.system import Array
@@ -50,6 +51,7 @@ class Detected:
     turn: float
 
 
+@typed
 def detect(
     trace: str | os.PathLike[str],
     scenario: ScenarioLike,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +16,7 @@ from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array
 
 PROBES = 8
+MARK = "# Detected by omegadot score --detect."
 Option = tuple[str, str | float]
 
 
@@ -66,6 +68,15 @@ class Reading:
         settings = {SETTINGS[k]: value for k, value in options if k != "column"}
         return {"columns": [value for k, value in options if k == "column"], **settings}
 
+    def map_text(self) -> str:
+        """The same as a file for ``--map``."""
+        given = self.arguments()
+        pairs = [one.partition("=")[::2] for one in given.pop("columns")]
+        columns = [f"{role} = {_toml(names.split(','))}" for role, names in pairs]
+        keys = {option: key for key, option in SETTINGS.items()}
+        settings = [f"{keys[name]} = {_toml(value)}" for name, value in given.items()]
+        return "\n".join([MARK, *settings, "\n[columns]", *columns]) + "\n"
+
     def _options(self) -> list[Option]:
         clock = self.clock
         found: list[Option] = [("column", f"t={clock.column}")] * (clock.column is not None)
@@ -92,6 +103,10 @@ def _option(key: str, value: str | float) -> str:
     if key.endswith("-axes"):  # it may begin with a minus
         return f"--{key}={value}"
     return f"--{key} {value}"
+
+
+def _toml(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _attitude_options(found: Attitude) -> list[Option]:

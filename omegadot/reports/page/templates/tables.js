@@ -2,9 +2,9 @@
 // page are prepared when it is opened.
 const leading = /^[-−]?\d+(\.\d+)?(e[-+]?\d+)?(?![\w.])/;
 
-// A cell as text, without its links to the glossary.
+// A cell as text, without its links to the glossary and what keeps its exponents on one line.
 const isTerm = (node) => node.classList?.contains("term") ?? false;
-const textOf = (cell) => [...cell.childNodes].filter((n) => !isTerm(n)).map((n) => n.textContent).join("").replace(/\s+/g, " ").trim();
+const textOf = (cell) => [...cell.childNodes].filter((n) => !isTerm(n)).map((n) => n.textContent).join("").replace(/\u2060/g, "").replace(/\s+/g, " ").trim();
 
 // The lowest head cell of each column, and the texts of all head cells above it.
 function columnsOf(table) {
@@ -22,7 +22,7 @@ function columnsOf(table) {
 // The number that is read in a cell: of the matrix that which is shown.
 function sizeOf(cell) {
   const shown = [...cell.querySelectorAll(".n")].find((n) => n.offsetWidth > 0);
-  const text = shown ? shown.textContent : textOf(cell);
+  const text = textOf(shown ?? cell);
   if (text === "not finite") return Infinity;
   const found = leading.exec(text);
   return found ? Number(found[0].replace("−", "-")) : null;
