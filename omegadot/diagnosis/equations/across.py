@@ -9,6 +9,7 @@ from itertools import islice
 import numpy as np
 
 from omegadot.diagnosis.equations.at_states import where_of, where_wrong
+from omegadot.diagnosis.equations.by_formula import ByFormula, by_formula
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.held import Held, Scene, Scenes
@@ -53,6 +54,7 @@ class Across:
         self._all = Scenes()
         self._accepted: list[list[Candidate]] = []
         self._weak: dict[str, list[Held]] = {}
+        self._formulas: dict[str, ByFormula] = {}
         self._quick: dict[tuple[str, str, int], _Level] = {}
         self._nested: dict[str, Across] = {}
         self._explains: dict[tuple[str, str], set[str]] = {}
@@ -83,6 +85,7 @@ class Across:
         self._accepted, self._texts, self._chosen = [], {}, {}
         self._weak, self._quick, self._nested = {}, {}, {}
         self._conditions, self._partly, self._explains = {}, {}, {}
+        self._formulas = {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -100,6 +103,9 @@ class Across:
         if text:
             return text
         text = self._at_some_states(scene, source) or self._shared(scene, source, QUICK)
+        if text:
+            return text
+        text = self._by_formula(scene, source)
         if text:
             return text
         quick = self._quick_of(scene, source, QUICK)
@@ -172,6 +178,20 @@ class Across:
         here = [one for one in found if scene.name in one.names]
         most = max((len(one.shown) for one in here), default=0)
         return list({o.candidate.key: o for o in here[::-1] if len(o.shown) == most}.values())[::-1]
+
+    def _by_formula(self, scene: Scene, source: str) -> str:
+        """A product of known vectors that explains the whole run."""
+        if source not in self._formulas:
+            self._formulas[source] = by_formula(self._all, source)
+        found = self._formulas[source]
+        here = [one for one in found.whole if scene.name in one.names]
+        partly = [] if here else [one for one in found.partly if scene.name in one.names]
+        text = self._text_of(here, source) or conditional(partly)
+        if text:
+            first = here[0] if here else next(one for one in partly if conditional([one]) == text)
+            self._chosen[scene.name, source] = first.candidate
+            self._explains[scene.name, source] = first.names
+        return text
 
     def _weak_cause(self, scene: Scene, source: str, weak: Sequence[Held]) -> str:
         """What fits by numbers that are others on each scenario, with those of the first."""

@@ -99,7 +99,7 @@ class Evidence:
         angular = _share(norm(self.found.angular - true.angular), self.angular_bound)
         return bool(np.all(linear <= 1.0) and np.any(angular > BEYOND_ROUNDING))
 
-    def fits(self, candidate: Acceleration, slack: float = SLACK) -> bool:
+    def fits(self, candidate: Acceleration, slack: float | Array = SLACK) -> bool:
         """Whether a candidate is the engine's at every state."""
         return bool(np.all(self.shares(candidate) <= slack))
 
