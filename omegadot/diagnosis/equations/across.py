@@ -17,7 +17,7 @@ from omegadot.diagnosis.equations.search import levels
 from omegadot.diagnosis.equations.worded import conditional, worded
 
 PLAIN = 2  # levels of one scenario without limits: they fit all states, or those that are wrong
-QUICK = 3  # levels that are quick, and more basic than what another scenario has shown
+QUICK = 5  # levels that are quick, and more basic than what another scenario has shown
 MOST_DEEP = 5  # scenarios that are searched to the end; the rest have what these have
 
 
