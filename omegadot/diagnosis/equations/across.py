@@ -13,6 +13,7 @@ from omegadot.diagnosis.equations.by_formula import ByFormula, by_formula
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.held import Held, Scene, Scenes
+from omegadot.diagnosis.equations.known import known_over
 from omegadot.diagnosis.equations.search import levels
 from omegadot.diagnosis.equations.worded import conditional, worded
 
@@ -55,6 +56,7 @@ class Across:
         self._accepted: list[list[Candidate]] = []
         self._weak: dict[str, list[Held]] = {}
         self._formulas: dict[str, ByFormula] = {}
+        self._known: dict[str, str] = {}
         self._quick: dict[tuple[str, str, int], _Level] = {}
         self._nested: dict[str, Across] = {}
         self._explains: dict[tuple[str, str], set[str]] = {}
@@ -85,7 +87,7 @@ class Across:
         self._accepted, self._texts, self._chosen = [], {}, {}
         self._weak, self._quick, self._nested = {}, {}, {}
         self._conditions, self._partly, self._explains = {}, {}, {}
-        self._formulas = {}
+        self._formulas, self._known = {}, {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -93,6 +95,19 @@ class Across:
             with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
                 self._texts[name, source] = self._cause(name, source)
         return self._texts[name, source]
+
+    def known(self, name: str, source: str) -> str:
+        """What is seen of the scenarios on which nothing fits; "" on one that is hardly off."""
+        if not self.scenes[name].evidence[source].clear:
+            return ""
+        if source not in self._known:
+            every = [s for s in self.scenes.values() if source in s.evidence]
+            off = [s for s in every if s.evidence[source].clear and not self.cause(s.name, source)]
+            right = [s.features for s in every if np.all(s.evidence[source].sound)]
+            along = self._formulas[source].along if source in self._formulas else ""
+            with np.errstate(all="ignore"):
+                self._known[source] = known_over(off, right, source, along)
+        return self._known[source]
 
     def _cause(self, name: str, source: str) -> str:
         scene = self.scenes[name]
@@ -127,6 +142,9 @@ class Across:
                 return text
             weak = weak or found.weak
             partial += found.partial
+        many = weak and weak[0].candidate.numbers is not None and len(weak[0].candidate.numbers) > 1
+        own = [one for one in self._formulas[source].own if scene.name in one.names]
+        weak = own if own and (many or not weak) else weak
         text = self._weak_cause(scene, source, weak) or self._where_wrong(scene, source)
         if not text:
             text = conditional(partial)

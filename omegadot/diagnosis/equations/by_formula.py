@@ -19,34 +19,48 @@ MOST_HELD, MOST_PAIRED = 16, 3
 
 @dataclass(frozen=True)
 class ByFormula:
-    """whole: hold everywhere.  partly: hold where they show, and other scenarios are sound."""
+    """whole: hold everywhere.  partly: hold where they show, and other scenarios are sound.
+
+    own: hold everywhere by a factor of its own on each.  along: what all that is added is along,
+    whatever its size; "" where it is along nothing known.
+    """
 
     whole: tuple[Held, ...] = ()
     partly: tuple[Held, ...] = ()
+    own: tuple[Held, ...] = ()
+    along: str = ""
 
 
 def by_formula(scenes: Scenes, source: str) -> ByFormula:
     """What may be named on the scenarios with evidence of this source."""
     known = [s for s in scenes.by_name.values() if source in s.evidence]
     failing = [s for s in known if s.evidence[source].clear]
-    whole, partly = list[Held](), list[Held]()
-    for candidate, scene in _candidates(failing, source):
-        held = scenes.held(candidate, scene, source)
-        if held.contradicted or (held.numbers and not held.law):
-            continue
-        if not held.against:
-            return ByFormula((held,), tuple(partly))
-        partly.append(held)
-    return ByFormula(tuple(whole), tuple(partly))
-
-
-def _candidates(failing: Sequence[Scene], source: str) -> Iterator[tuple[Candidate, Scene]]:
-    """Each with its factor, and a scenario that it fits."""
+    partly, own = list[Held](), list[Held]()
     every = [s.evidence[source] for s in failing]
     others = [e for s in failing for e in s.scaled.values()] if source == "forward" else []
-    angular = formulas(every, others)[:MOST_HELD]
-    linear = formulas(every, others, linear=True)[:MOST_HELD]
-    singles = sorted([*angular, *linear], key=lambda one: one.cost)
+    angular = formulas(every, others)
+    linear = formulas(every, others, linear=True)
+    for candidate, scene in _candidates(failing, source, angular.found, linear.found):
+        held = scenes.held(candidate, scene, source)
+        if held.contradicted:
+            continue
+        if held.numbers and not held.law:
+            own += [] if held.against else [held]
+        elif held.against:
+            partly.append(held)
+        else:
+            return ByFormula((held,), tuple(partly))
+    return ByFormula((), tuple(partly), tuple(own[:1]), angular.along)
+
+
+def _candidates(
+    failing: Sequence[Scene],
+    source: str,
+    angular: Sequence[AnyFormula],
+    linear: Sequence[AnyFormula],
+) -> Iterator[tuple[Candidate, Scene]]:
+    """Each with its factor, and a scenario that it fits."""
+    singles = sorted([*angular[:MOST_HELD], *linear[:MOST_HELD]], key=lambda one: one.cost)
     both = [Together(a, b) for a, b in pairs_of(angular[:MOST_PAIRED], linear[:MOST_PAIRED])]
     for one in (*singles, *both):
         seen = [s for s in failing if _shows(one, s.evidence[source])]

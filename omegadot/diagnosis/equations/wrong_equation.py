@@ -7,8 +7,6 @@ from collections.abc import Callable
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
-from omegadot.diagnosis.equations.dependence import dependence
-from omegadot.diagnosis.equations.describe import description, scenarios_in_common
 from omegadot.diagnosis.equations.evidence import (
     BEYOND_ROUNDING,
     SLACK,
@@ -107,18 +105,8 @@ def _constant(across: Across, source: str) -> str:
 
 
 def known_difference(across: Across, name: str, source: str) -> list[str]:
-    """What is known where no cause fits."""
-    scenes = [scene for scene in across.scenes.values() if source in scene.evidence]
-    sound = [bool(np.all(scene.evidence[source].sound)) for scene in scenes]
-    failing = [scene.features for scene, right in zip(scenes, sound, strict=True) if not right]
-    passing = [scene.features for scene, right in zip(scenes, sound, strict=True) if right]
-    here = across.scenes[name]
-    texts = (
-        description(here.evidence[source]),
-        dependence(here.evidence[source], here.scaled) if source == FORWARD else "",
-        scenarios_in_common(failing, passing),
-    )
-    known = "; ".join(text for text in texts if text)
+    """What is known where no cause fits, of all such scenarios together."""
+    known = across.known(name, source)
     return [f"none is known; {known}"] if known else []
 
 

@@ -40,6 +40,7 @@ VECTORS: dict[str, tuple[Unit, str]] = {
     "E_y": (NONE, "the world's y axis"),
     "E_z": (NONE, "the world's z axis"),
 }
+MOMENTUM = "I omega"  # which is a matrix times a vector, and a size of it
 MATRICES: dict[str, tuple[Unit, str]] = {
     "I": (INERTIA, "the inertia"),
     "I_c": (INERTIA, "the inertia about the centre of mass"),
@@ -62,6 +63,9 @@ SIZES: dict[str, tuple[Unit, str]] = {  # of a system
     "|tau_w|": (TORQUE, ""),
     "tr I": (INERTIA, ""),
     "tr I_c": (INERTIA, ""),
+    "ln(1+d)": (NONE, "the damping in SI units"),  # what is made of a damping a second
+    "ln(1/(1-d))": (NONE, "the damping in SI units"),
+    "(1-exp(-d))": (NONE, "the damping in SI units"),
 }
 
 
@@ -97,6 +101,7 @@ def facts_of(evidence: Evidence) -> Facts:
         "s": rotate_inverse(q, states.position),
         "omega-dot": evidence.true.angular,
         "a": rotate_inverse(q, evidence.true.linear),
+        MOMENTUM: product(inertia, w),
     }
     vectors |= {f"e_{k}": none + axis for k, axis in zip("xyz", np.eye(3), strict=True)}
     vectors |= {f"E_{k}": turn[:, j] + none for j, k in enumerate("xyz")}
@@ -107,7 +112,10 @@ def facts_of(evidence: Evidence) -> Facts:
     lengths = [float(norm(np.asarray(x))) for x in (load.gravity, arm, center)]
     lengths += [float(norm(vectors["p"])[0])] if len(w) else [0.0]
     lengths += [float(norm(x)) for x in (load.torque_body, load.torque_world)]
-    numbers = (mass, damping, *lengths, float(np.trace(inertia)), float(np.trace(own)))
+    traces = float(np.trace(inertia)), float(np.trace(own))
+    left = -np.log1p(-damping) if damping < 1.0 else np.nan
+    decays = float(np.log1p(damping)), float(left), -float(np.expm1(-damping))
+    numbers = (mass, damping, *lengths, *traces, *decays)
     sizes = {name: np.full(len(w), x) for name, x in zip(SIZES, numbers, strict=True)}
     return Facts(vectors, matrices, sizes)
 
@@ -122,7 +130,7 @@ def terms_of(facts: Facts) -> dict[str, Array]:
     own, w = facts.vectors, facts.vectors["omega"]
     weight = facts.sizes["m"][:, None] * cross(own["r"], own["g"])
     return {
-        "the gyroscopic term -omega x I omega": -cross(w, _times(facts.matrices["I"], w)),
+        "the gyroscopic term -omega x I omega": -cross(w, own[MOMENTUM]),
         "the damping torque -d omega": -facts.sizes["d"][:, None] * w,
         "the torque in body axes": own["tau_b"],
         "the torque in world axes": own["tau_w"],
@@ -130,8 +138,9 @@ def terms_of(facts: Facts) -> dict[str, Array]:
     }
 
 
-def _times(matrix: Array, vector: Array) -> Array:
-    return np.asarray((matrix @ vector[..., None])[..., 0])
+def product(matrices: Array, vectors: Array) -> Array:
+    """``M v`` over leading axes."""
+    return np.asarray((matrices @ vectors[..., None])[..., 0])
 
 
 def together(several: Sequence[Facts]) -> Facts:

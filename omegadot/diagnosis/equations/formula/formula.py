@@ -17,11 +17,12 @@ from omegadot.diagnosis.equations.formula.facts import (
     Facts,
     Unit,
     facts_of,
+    product,
     terms_of,
 )
 from omegadot.diagnosis.equations.formula.law import NO_LAW, Law, symbols_of
 from omegadot.diagnosis.equations.formula.rows import factors, rows_of
-from omegadot.diagnosis.equations.formula.vectors import Vector, product
+from omegadot.diagnosis.equations.formula.vectors import Vector
 from omegadot.diagnosis.equations.formula.wording import with_factor
 from omegadot.reference_impl.motion import center_of_mass_acceleration
 from omegadot.reference_impl.rotations import rotate
@@ -128,6 +129,13 @@ class Formula:
             return f"a torque {shown} is added{held}"
         what = "omega-dot" if self.kind == "rate" else "the linear acceleration, in body axes,"
         return f"{what} has {shown} in it{held}"
+
+    @property
+    def direction(self) -> str:
+        """``a torque along r x omega``, and what these are."""
+        legend = ", ".join(self._legend())
+        kind = {"torque": "a torque", "rate": "a rate", "linear": "an acceleration"}[self.kind]
+        return f"{kind} along {self.vector.text}{f' ({legend})' if legend else ''}"
 
     def _legend(self) -> list[str]:
         """What the symbols are."""

@@ -9,11 +9,11 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.diagnosis.equations.formula.facts import SIZES, VECTORS, Facts, Unit
+from omegadot.diagnosis.equations.formula.facts import MOMENTUM, SIZES, VECTORS, Facts, Unit
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
 
-NORMS = ("omega", "v", "s", "omega-dot", "a")  # which change from state to state
+NORMS = ("omega", "v", "s", "omega-dot", "a", MOMENTUM)  # which change from state to state
 DOTS = (
     "omega",
     "g",
@@ -104,7 +104,8 @@ def _unit_of(name: str) -> Unit:
     if name in SIZES:
         return SIZES[name][0]
     one, _, other = name.strip("|").partition(" . ")
-    units = [np.array(VECTORS[k][0]) for k in (one, other) if k]
+    known = {**{k: unit for k, (unit, _) in VECTORS.items()}, MOMENTUM: (1.0, 2.0, -1.0)}
+    units = [np.array(known[k]) for k in (one, other) if k]
     total = np.sum(units, axis=0)
     return (float(total[0]), float(total[1]), float(total[2]))
 
@@ -149,6 +150,7 @@ def _of_states(facts: Facts, places: NDArray[np.intp], signs: Array) -> Columns:
     """Sizes that change from state to state, as logarithms."""
     found: Columns = {}
     names = [f"|{one}|" for one in NORMS]
+    names += [f"omega . {MOMENTUM}"]
     names += [f"{a} . {b}" for a, b in combinations(DOTS, 2) if not a.startswith(("e_", "E_"))]
     for name in names:
         values = number_of(facts, name)[places]

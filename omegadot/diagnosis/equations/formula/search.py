@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
-from omegadot.diagnosis.equations.formula.facts import terms_of
+from omegadot.diagnosis.equations.formula.facts import product, terms_of
 from omegadot.diagnosis.equations.formula.formula import Formula, Kind
 from omegadot.diagnosis.equations.formula.law import laws
 from omegadot.diagnosis.equations.formula.rows import Rows, across, rows_of
 from omegadot.diagnosis.equations.formula.tensors import OtherInertia, other_inertias, with_law
-from omegadot.diagnosis.equations.formula.vectors import blocks, product
+from omegadot.diagnosis.equations.formula.vectors import blocks
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
 
@@ -25,9 +25,17 @@ IN_LAWS = 24  # states of each scenario
 MOST_TRIED = 24  # vectors whose size is looked at
 
 
+@dataclass(frozen=True)
+class Found:
+    """found: the plainest first.  along: what all that is added is along, whatever its size."""
+
+    found: Sequence[AnyFormula] = ()
+    along: str = ""
+
+
 def formulas(
     failing: Sequence[Evidence], others: Sequence[Evidence] = (), linear: bool = False
-) -> list[AnyFormula]:
+) -> Found:
     """Those that may be the engine's equation, the plainest first; each has yet to be held.
 
     failing: of the scenarios on which it is wrong.  others: of the same systems with one size
@@ -35,7 +43,7 @@ def formulas(
     """
     every = [one for one in failing if _shows(one, linear)]
     if not every:
-        return []
+        return Found()
     with np.errstate(all="ignore"):
         chosen = _spread(every, linear)
         rows = rows_of([e.at(p) for e, p in chosen], linear)
@@ -47,7 +55,8 @@ def formulas(
         found: list[AnyFormula] = [x for v in near[:MOST_TRIED] for x in _with_law(v, seen)]
         if not linear:
             found += [x for one in other_inertias(rows) for x in with_law(one, seen)]
-    return sorted(found, key=lambda one: one.cost)
+    along = next((one.direction for one in near if not one.instead), "")
+    return Found(sorted(found, key=lambda one: one.cost), along)
 
 
 def _shows(evidence: Evidence, linear: bool) -> bool:

@@ -16,10 +16,10 @@ from omegadot.diagnosis.equations.formula.facts import (
     Facts,
     Unit,
     facts_of,
+    product,
 )
 from omegadot.diagnosis.equations.formula.law import NO_LAW, Law, laws, symbols_of
 from omegadot.diagnosis.equations.formula.rows import Rows, across, factors, rows_of
-from omegadot.diagnosis.equations.formula.vectors import product
 from omegadot.diagnosis.equations.formula.wording import with_factor
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.motion import center_of_mass_acceleration

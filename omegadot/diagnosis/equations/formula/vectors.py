@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.diagnosis.equations.formula.facts import MATRICES, VECTORS, Facts, Unit, at
+from omegadot.diagnosis.equations.formula.facts import MATRICES, VECTORS, Facts, Unit, at, product
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.system import Array
@@ -57,11 +57,6 @@ def times(name: str, one: Vector) -> Vector:
         )
 
     return Vector(text, unit, one.cost + 0.8, lambda f: product(f.matrices[name], one.of(f)), size)
-
-
-def product(matrices: Array, vectors: Array) -> Array:
-    """``M v`` over leading axes."""
-    return np.asarray((matrices @ vectors[..., None])[..., 0])
 
 
 def crossed(one: Vector, other: Vector) -> Vector:
