@@ -147,8 +147,8 @@ class Across:
         weak = own if own and (many or not weak) else weak
         text = self._weak_cause(scene, source, weak) or self._where_wrong(scene, source)
         if not text:
-            text = conditional(partial)
-            named = [one for one in partial if text and conditional([one]) == text]
+            text = conditional(partial, own=True)
+            named = [one for one in partial if text and conditional([one], own=True) == text]
             self._partly.setdefault(source, []).extend((one, text) for one in named[:1])
         return text
 

@@ -8,13 +8,15 @@ from itertools import product as pairs_of
 
 import numpy as np
 
-from omegadot.diagnosis.equations.candidate import Candidate
+from omegadot.diagnosis.equations.candidate import FORMULAS, Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.formula import AnyFormula, Together, formulas
 from omegadot.diagnosis.equations.held import Held, Scene, Scenes
+from omegadot.diagnosis.equations.worded import conditional
 from omegadot.reference_impl.system import Array
 
 MOST_HELD, MOST_PAIRED = 16, 3
+CONDITION = 1.5  # what a condition costs
 
 
 @dataclass(frozen=True)
@@ -48,9 +50,17 @@ def by_formula(scenes: Scenes, source: str) -> ByFormula:
             own += [] if held.against else [held]
         elif held.against:
             partly.append(held)
-        else:
+        elif not any(_plainer(one, held) and conditional([one]) for one in partly):
             return ByFormula((held,), tuple(partly))
     return ByFormula((), tuple(partly), tuple(own[:1]), angular.along)
+
+
+def _plainer(one: Held, other: Held) -> bool:
+    """Whether one that holds under a condition is likelier than another that holds everywhere."""
+    costs = [
+        x.candidate.terms.cost for x in (one, other) if isinstance(x.candidate.terms, FORMULAS)
+    ]
+    return len(costs) == 2 and costs[0] + CONDITION < costs[1]
 
 
 def _candidates(

@@ -20,6 +20,8 @@ from omegadot.reference_impl.system import Acceleration, Array, System
 
 BY_MASS = re.compile("(divided|multiplied) by the mass|left out of the weight|a mass of 1 kg")
 
+FORMULAS = (Formula, OtherInertia, Together)
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -43,11 +45,16 @@ class Candidate:
 
     def fits(self, evidence: Evidence, made: Acceleration) -> bool:
         """Whether what it gives is the engine's, within the rounding of its numbers."""
-        if isinstance(self.terms, Formula | OtherInertia | Together) and self.numbers is not None:
+        if isinstance(self.terms, FORMULAS) and self.numbers is not None:
             return evidence.fits(made, self.terms.slack(evidence, self.numbers))
         if self.family is None or self.numbers is None:
             return evidence.fits(made)
         return evidence.fits(made, self.family.slack(evidence.system, self.numbers))
+
+    @property
+    def has_law(self) -> bool:
+        """Whether the law of its number is a part of it."""
+        return isinstance(self.terms, FORMULAS)
 
     @property
     def by_mass(self) -> bool:

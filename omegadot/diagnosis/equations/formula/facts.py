@@ -63,6 +63,7 @@ SIZES: dict[str, tuple[Unit, str]] = {  # of a system
     "|tau_w|": (TORQUE, ""),
     "tr I": (INERTIA, ""),
     "tr I_c": (INERTIA, ""),
+    "m|g||r|": (TORQUE, ""),
     "ln(1+d)": (NONE, "the damping in SI units"),  # what is made of a damping a second
     "ln(1/(1-d))": (NONE, "the damping in SI units"),
     "(1-exp(-d))": (NONE, "the damping in SI units"),
@@ -115,7 +116,7 @@ def facts_of(evidence: Evidence) -> Facts:
     traces = float(np.trace(inertia)), float(np.trace(own))
     left = -np.log1p(-damping) if damping < 1.0 else np.nan
     decays = float(np.log1p(damping)), float(left), -float(np.expm1(-damping))
-    numbers = (mass, damping, *lengths, *traces, *decays)
+    numbers = (mass, damping, *lengths, *traces, mass * lengths[0] * lengths[1], *decays)
     sizes = {name: np.full(len(w), x) for name, x in zip(SIZES, numbers, strict=True)}
     return Facts(vectors, matrices, sizes)
 

@@ -25,6 +25,11 @@ class Together:
         return np.ones(2)
 
     @property
+    def cost(self) -> float:
+        """How far from plain they are."""
+        return self.angular.cost + self.linear.cost
+
+    @property
     def name(self) -> str:
         """What they are, whatever the factors."""
         return f"{self.angular.name} and {self.linear.name}"

@@ -128,6 +128,9 @@ def blocks(facts: Facts, few: NDArray[np.intp]) -> Iterator[Block]:
     if signed:
         yield np.stack([one.of(facts) for one in signed]), lambda k: signed[k]
     i, j = np.triu_indices(len(more), 1)
+    by = np.array([_matrix_of(one.text) for one in more])
+    apart = (by[i] != by[j]) | (by[i] == "")  # of two by one matrix it is that of the plain ones
+    i, j = i[apart], j[apart]
     yield cross(rows[i], rows[j]), lambda k: crossed(more[i[k]], more[j[k]])
     a, b = np.triu_indices(len(plain), 1)
     inner = cross(values[a], values[b])
@@ -142,6 +145,11 @@ def blocks(facts: Facts, few: NDArray[np.intp]) -> Iterator[Block]:
         yield moved, lambda k, n=name: times(n, crossed(plain[a[k]], plain[b[k]]))  # type: ignore[misc]
     c, d = np.triu_indices(len(plain))
     yield values[c] * values[d], lambda k: each(plain[c[k]], plain[d[k]])
+
+
+def _matrix_of(text: str) -> str:
+    first, _, rest = text.partition(" ")
+    return first if rest else ""
 
 
 def _matrices(facts: Facts) -> list[str]:
