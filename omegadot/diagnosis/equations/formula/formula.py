@@ -21,7 +21,7 @@ from omegadot.diagnosis.equations.formula.facts import (
     terms_of,
 )
 from omegadot.diagnosis.equations.formula.law import NO_LAW, Law, symbols_of
-from omegadot.diagnosis.equations.formula.rows import factors, rows_of
+from omegadot.diagnosis.equations.formula.rows import ROUNDINGS, factors, rows_of
 from omegadot.diagnosis.equations.formula.vectors import Vector
 from omegadot.diagnosis.equations.formula.wording import with_factor
 from omegadot.reference_impl.motion import center_of_mass_acceleration
@@ -30,7 +30,6 @@ from omegadot.reference_impl.system import Acceleration, Array, System
 
 Kind = Literal["torque", "rate", "linear"]
 UNITS: dict[Kind, Unit] = {"torque": TORQUE, "rate": (0, 0, -2), "linear": (0, 1, -2)}
-ROUNDINGS = 16.0  # of a product of a few vectors
 
 
 @dataclass(frozen=True)
@@ -73,6 +72,13 @@ class Formula:
     def _solved(self, facts: Facts, more: Array) -> Array:
         return product(facts.matrices["I^-1"], more) if self.kind == "torque" else more
 
+    def sizes(self, facts: Facts) -> Array:
+        """(n,): what the parts of `accelerations` multiply to."""
+        size = np.abs(self.law.of(facts)) * self.vector.size(facts)
+        if self.kind == "torque":
+            size = size * np.sqrt(np.sum(facts.matrices["I^-1"] ** 2, axis=(-1, -2)))
+        return np.asarray(size)
+
     def replaced(self, facts: Facts) -> Array:
         """What it stands in place of, as an acceleration; nothing where it is added."""
         if not self.instead:
@@ -96,9 +102,7 @@ class Formula:
     def slack(self, evidence: Evidence, p: Array) -> Array:
         """(n,): in bounds, what the rounding of its own products may be off by."""
         facts = facts_of(evidence)
-        size = np.abs(self.law.of(facts) * float(p[0])) * self.vector.size(facts)
-        if self.kind == "torque":
-            size = size * np.sqrt(np.sum(facts.matrices["I^-1"] ** 2, axis=(-1, -2)))
+        size = np.abs(float(p[0])) * self.sizes(facts)
         bound = evidence.linear_bound if self.kind == "linear" else evidence.angular_bound
         own = ROUNDINGS * evidence.eps * size
         return SLACK + np.where(own > 0.0, own / np.where(bound > 0.0, bound, own), 0.0)

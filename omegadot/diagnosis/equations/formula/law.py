@@ -132,10 +132,13 @@ def laws(seen: Seen) -> Iterator[Law]:
     logs = np.log(np.abs(seen.factors[places]))
     known, system = seen.known[places] + ROUNDED, seen.system[places]
     signs = np.sign(seen.factors[places])
-    columns = _of_states(seen.facts, places, signs)
+    columns = _of_states(seen.facts, places, signs, system)
     for law, rest in _along_states(columns, logs, known, system, signs):
         values, sure = _by_system(rest, known, system)
-        found = list(_over_systems(seen.facts, places, values, sure, system))
+        own = signs * np.sign(number_of(seen.facts, law.signed)[places]) if law.signed else signs
+        found = list[tuple[tuple[str, float], ...]]()
+        if np.all(own == own[0]):
+            found = list(_over_systems(seen.facts, places, values, sure, system))
         for powers in found:
             yield Law((*law.powers, *powers), law.signed)
         if not found and len(values) > 1:
@@ -146,7 +149,15 @@ def laws(seen: Seen) -> Iterator[Law]:
 Columns = dict[str, tuple[Array, bool]]  # logarithms, and whether the sign is the factor's
 
 
-def _of_states(facts: Facts, places: NDArray[np.intp], signs: Array) -> Columns:
+def _one_each(signs: Array, system: NDArray[np.intp]) -> bool:
+    """Whether the sign is the same at every state of a system."""
+    sums = np.bincount(system, signs)
+    return bool(np.all(np.abs(sums) == np.bincount(system)))
+
+
+def _of_states(
+    facts: Facts, places: NDArray[np.intp], signs: Array, system: NDArray[np.intp]
+) -> Columns:
     """Sizes that change from state to state, as logarithms."""
     found: Columns = {}
     names = [f"|{one}|" for one in NORMS]
@@ -157,7 +168,7 @@ def _of_states(facts: Facts, places: NDArray[np.intp], signs: Array) -> Columns:
         if not np.all(np.isfinite(values)) or np.any(values == 0.0):
             continue
         along = np.sign(values) * signs
-        if "." in name and not np.all(along == along[0]):
+        if "." in name and not _one_each(along, system):
             continue  # where its sign is another than the factor's
         logs = np.log(np.abs(values))
         if not any(np.max(np.abs(logs - other)) < EQUAL for other, _ in found.values()):
@@ -169,7 +180,7 @@ def _along_states(
     columns: Columns, logs: Array, known: Array, system: NDArray[np.intp], signs: Array
 ) -> Iterator[tuple[Law, Array]]:
     """Laws over the states of each system, with what they leave of the logarithms."""
-    one_sign = bool(np.all(signs == signs[0]))
+    one_sign = _one_each(signs, system)
     if one_sign and _constant(logs, known, system):
         yield Law(), logs
     names = list(columns)

@@ -15,6 +15,8 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.system import Array
 
+ROUNDINGS = 16.0  # of a product of a few vectors
+
 
 @dataclass(frozen=True)
 class Rows:
@@ -27,18 +29,29 @@ class Rows:
     due: Array
     bound: Array
     system: NDArray[np.intp]
+    eps: float
 
     def at(self, places: NDArray[np.intp]) -> Rows:
         """These states alone."""
-        return Rows(
-            at(self.facts, places), self.due[places], self.bound[places], self.system[places]
-        )
+        parts = (self.due[places], self.bound[places], self.system[places])
+        return Rows(at(self.facts, places), *parts, self.eps)
 
-    def seen(self, values: Array, due: Array) -> Seen:
+    def allowed(self, values: Array, due: Array, sizes: Array) -> Array:
+        """(n,): how far vectors (n, 3) may be from what is due.
+
+        sizes: (n,), what the parts of each multiply to. Where terms cancel in a product, its own
+        rounding is more than that of the engine's answer.
+        """
+        length = norm(values)
+        own = ROUNDINGS * self.eps * norm(due) * sizes / np.where(length > 0.0, length, np.inf)
+        return SLACK * self.bound + own
+
+    def seen(self, values: Array, due: Array, sizes: Array) -> Seen:
         """The factor of a vector at every state, (n, 3), that makes what is due."""
         size = np.sum(values * values, axis=-1)
         found = np.sum(values * due, axis=-1) / np.where(size > 0.0, size, np.nan)
-        return Seen(found, SLACK * self.bound / norm(due), self.system, self.facts)
+        known = self.allowed(values, due, sizes) / norm(due)
+        return Seen(found, known, self.system, self.facts)
 
 
 def rows_of(parts: Sequence[Evidence], linear: bool) -> Rows:
@@ -54,7 +67,8 @@ def rows_of(parts: Sequence[Evidence], linear: bool) -> Rows:
             bound.append(one.angular_bound)
     system = np.repeat(np.arange(len(parts)), [len(one) for one in bound])
     facts = together([facts_of(one) for one in parts])
-    return Rows(facts, np.concatenate(due), np.concatenate(bound), system)
+    eps = max(one.eps for one in parts)
+    return Rows(facts, np.concatenate(due), np.concatenate(bound), system, eps)
 
 
 def across(due: Array, values: Array) -> Array:

@@ -19,6 +19,7 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
 
 AnyFormula = Formula | OtherInertia
+SCREENED = 1e-9  # relative: what cancels in a product may leave so much of its rounding
 VISIBLE, SEEN = 30.0, 0.1  # bounds; part of the states
 SCENARIOS, STATES, FEW = 8, 6, 4  # of which vectors are tried; states of the first of these
 IN_LAWS = 24  # states of each scenario
@@ -111,15 +112,17 @@ def _along(rows: Rows, few: NDArray[np.intp], linear: bool) -> Iterator[Formula]
             size = norm(lanes)
             unit = lanes / np.where(size > 0.0, size, 1.0)[..., None]
             for instead, due in targets.items():
+                allowed = SLACK * first.bound + SCREENED * norm(due[few])
                 left = norm(due[few] - np.sum(due[few] * unit, -1, keepdims=True) * unit)
-                for k in np.flatnonzero(np.all(left <= SLACK * first.bound, axis=-1)):
+                for k in np.flatnonzero(np.all(left <= allowed, axis=-1)):
                     one = Formula(kind, named(int(k)), instead=instead)
                     if _holds(one, rows, due) and not _is_scaled(one, rows):
                         yield one
 
 
 def _holds(one: Formula, rows: Rows, due: Array) -> bool:
-    return bool(np.all(across(due, one.accelerations(rows.facts)) <= SLACK * rows.bound))
+    values = one.accelerations(rows.facts)
+    return bool(np.all(across(due, values) <= rows.allowed(values, due, one.sizes(rows.facts))))
 
 
 def _is_scaled(one: Formula, rows: Rows) -> bool:
@@ -143,5 +146,5 @@ def _visible(every: Sequence[Evidence], linear: bool) -> Rows:
 def _with_law(one: Formula, rows: Rows) -> Iterator[Formula]:
     """The same with its size: as one law over all scenarios."""
     due = rows.due + one.replaced(rows.facts)
-    for law in laws(rows.seen(one.accelerations(rows.facts), due)):
+    for law in laws(rows.seen(one.accelerations(rows.facts), due, one.sizes(rows.facts))):
         yield replace(one, law=law)

@@ -170,6 +170,6 @@ def other_inertias(rows: Rows) -> Iterator[OtherInertia]:
 
 def with_law(one: OtherInertia, rows: Rows) -> Iterator[OtherInertia]:
     """The same with its size, which states do not change."""
-    for law in laws(rows.seen(one.line(rows), rows.due)):
+    for law in laws(rows.seen(one.line(rows), rows.due, 0.0 * rows.bound)):
         if not law.signed and all(name in SIZES for name, _ in law.powers):
             yield OtherInertia(one.tensor, one.parts, law)

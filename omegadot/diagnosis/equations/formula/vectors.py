@@ -13,6 +13,7 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.system import Array
 
+INVERSE = {("I", "I^-1"), ("I^-1", "I"), ("R", "R^T"), ("R^T", "R")}
 SAME = 1e-12  # relative: what is the same on all of a run
 
 
@@ -49,7 +50,7 @@ def known(name: str) -> Vector:
 def times(name: str, one: Vector) -> Vector:
     """A matrix times a vector."""
     unit = _added(MATRICES[name][0], one.unit)
-    text = f"{name} {one.inner}"
+    text = f"{name} {one.text if _matrix_of(one.text) else one.inner}"
 
     def size(facts: Facts) -> Array:
         return np.asarray(
@@ -132,6 +133,16 @@ def blocks(facts: Facts, few: NDArray[np.intp]) -> Iterator[Block]:
     apart = (by[i] != by[j]) | (by[i] == "")  # of two by one matrix it is that of the plain ones
     i, j = i[apart], j[apart]
     yield cross(rows[i], rows[j]), lambda k: crossed(more[i[k]], more[j[k]])
+    deep = _twice(more, matrices)
+    if deep:
+        moved = np.stack([one.of(facts) for one in deep])
+        yield moved, lambda k: deep[k]
+        first, second = (np.ravel(x) for x in np.indices((len(short), len(deep))))
+        places = np.array(short)[first]
+        yield (
+            cross(values[places], moved[second]),
+            lambda k: crossed(plain[places[k]], deep[second[k]]),
+        )
     a, b = np.triu_indices(len(plain), 1)
     inner = cross(values[a], values[b])
     outer, pairs = (np.ravel(x) for x in np.indices((len(more), len(a))))
@@ -147,9 +158,20 @@ def blocks(facts: Facts, few: NDArray[np.intp]) -> Iterator[Block]:
     yield values[c] * values[d], lambda k: each(plain[c[k]], plain[d[k]])
 
 
+def _twice(more: list[Vector], matrices: list[str]) -> list[Vector]:
+    """Two matrices, one after the other, on a vector that is likely."""
+    once = [one for one in more if _matrix_of(one.text) and one.cost < 2.0]
+    return [
+        times(name, one)
+        for name in matrices
+        for one in once
+        if (name, _matrix_of(one.text)) not in INVERSE
+    ]
+
+
 def _matrix_of(text: str) -> str:
     first, _, rest = text.partition(" ")
-    return first if rest else ""
+    return first if rest and first in MATRICES else ""
 
 
 def _matrices(facts: Facts) -> list[str]:
