@@ -11,17 +11,25 @@ from wrong_equations import CASES, GRAVITY, PIVOT, WORLD_TORQUE, case, with_torq
 
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.by_formula import ByFormula, by_formula
-from omegadot.diagnosis.equations.evidence import of_forward_dynamics
+from omegadot.diagnosis.equations.evidence import (
+    INVERSE,
+    of_forward_dynamics,
+    of_inverse_dynamics,
+)
 from omegadot.diagnosis.equations.held import Scene, Scenes
 from omegadot.diagnosis.equations.known import known_over
 from omegadot.diagnosis.equations.wrong_equation import FORWARD
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case
-from omegadot.gates.states.equation import random_states
+from omegadot.gates.states.equation import random_acceleration, random_states
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia
-from omegadot.reference_impl.motion import center_of_mass_acceleration, forward_dynamics
+from omegadot.reference_impl.motion import (
+    center_of_mass_acceleration,
+    forward_dynamics,
+    inverse_dynamics,
+)
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
@@ -186,3 +194,17 @@ def test_where_nothing_fits_one_sentence_holds_on_every_scenario() -> None:
     for scene in failing[:2]:
         across.add(scene)
     assert len({across.known(scene.name, FORWARD) for scene in failing[:2]}) == 1
+
+
+def test_a_torque_that_inverse_dynamics_add_is_found() -> None:
+    across = Across()
+    for one in EVERY:
+        system, x = one.system, random_states(one, 40, [1])
+        requested = random_acceleration(system, x, [2])
+        more = 0.2 * cross(requested.angular, apply(system.body.inertia, x.angular_velocity))
+        torque = inverse_dynamics(system, x, requested) + more
+        evidence = of_inverse_dynamics(system, x, requested, torque)
+        features = features_of(system, one.initial)
+        across.add(Scene(one.name, system, features, {INVERSE: evidence}))
+    (text,) = {across.of_inverse_dynamics(one.name) for one in EVERY}
+    assert text.startswith("inverse dynamics are wrong: a torque k omega-dot x I_c omega is added")

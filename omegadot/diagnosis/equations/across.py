@@ -11,7 +11,7 @@ import numpy as np
 from omegadot.diagnosis.equations.at_states import where_of, where_wrong
 from omegadot.diagnosis.equations.by_formula import ByFormula, by_formula
 from omegadot.diagnosis.equations.candidate import Candidate
-from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.evidence import INVERSE, Evidence
 from omegadot.diagnosis.equations.held import Held, Scene, Scenes
 from omegadot.diagnosis.equations.known import known_over
 from omegadot.diagnosis.equations.search import levels
@@ -196,6 +196,15 @@ class Across:
         here = [one for one in found if scene.name in one.names]
         most = max((len(one.shown) for one in here), default=0)
         return list({o.candidate.key: o for o in here[::-1] if len(o.shown) == most}.values())[::-1]
+
+    def of_inverse_dynamics(self, name: str) -> str:
+        """The formula of a wrong torque; "" where none holds on the whole run."""
+        scene = self.scenes[name]
+        if INVERSE not in scene.evidence or not scene.evidence[INVERSE].clear:
+            return ""
+        with np.errstate(all="ignore"):
+            text = self._by_formula(scene, INVERSE)
+        return f"inverse dynamics are wrong: {text}" * bool(text)
 
     def _by_formula(self, scene: Scene, source: str) -> str:
         """A product of known vectors that explains the whole run."""

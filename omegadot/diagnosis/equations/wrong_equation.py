@@ -9,9 +9,11 @@ import numpy as np
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.evidence import (
     BEYOND_ROUNDING,
+    INVERSE,
     SLACK,
     Evidence,
     of_forward_dynamics,
+    of_inverse_dynamics,
 )
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.quotient import difference_quotient
@@ -50,6 +52,10 @@ def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult
         )
         if answer.ok
     }
+    requested, torque = evaluation_states.acceleration, result.inverse
+    if torque.ok and np.isfinite(torque.result["torque"]).all():
+        known = (case.system, evaluation_states.random, requested, torque.result["torque"])
+        evidence[INVERSE] = of_inverse_dynamics(*known, eps_of(result.precision))
     held = body_from(result.model.result["bodies"][0]) if result.model.ok else None
     scaled = {
         what: of_forward_dynamics(

@@ -29,6 +29,7 @@ from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.system import Acceleration, Array, System
 
 Kind = Literal["torque", "rate", "linear"]
+Where = Literal["free", "pivoted", "any"]
 UNITS: dict[Kind, Unit] = {"torque": TORQUE, "rate": (0, 0, -2), "linear": (0, 1, -2)}
 
 
@@ -36,13 +37,15 @@ UNITS: dict[Kind, Unit] = {"torque": TORQUE, "rate": (0, 0, -2), "linear": (0, 1
 class Formula:
     """``found = right + k law(sizes) vector``, or this in place of one of the right torques.
 
-    kind: a torque, through the inertia; a rate; or a linear acceleration, of a free body.
+    kind: a torque, through the inertia; a rate; or a linear acceleration, of a free body, a
+    pivoted one or any.
     """
 
     kind: Kind
     vector: Vector
     law: Law = NO_LAW
     instead: str = ""
+    where: Where = "free"
 
     @property
     def cost(self) -> float:
@@ -90,9 +93,10 @@ class Formula:
         facts, true = facts_of(evidence), evidence.true
         more = float(p[0]) * self.accelerations(facts) - self.replaced(facts)
         if self.kind == "linear":
-            free = evidence.system.load.pivot is None
+            here = "free" if evidence.system.load.pivot is None else "pivoted"
             turned = rotate(evidence.states.orientation, more)
-            return Acceleration(true.angular, true.linear + (turned if free else 0.0 * turned))
+            acts = self.where in (here, "any")
+            return Acceleration(true.angular, true.linear + (turned if acts else 0.0 * turned))
         angular = true.angular + more
         if evidence.system.load.pivot is None:
             return Acceleration(angular, true.linear)
@@ -131,7 +135,9 @@ class Formula:
             return f"in place of {self.instead} stands {shown}{held}"
         if self.kind == "torque":
             return f"a torque {shown} is added{held}"
-        what = "omega-dot" if self.kind == "rate" else "the linear acceleration, in body axes,"
+        of = " of a pivoted body" if self.where == "pivoted" else ""
+        linear = f"the linear acceleration{of}, in body axes,"
+        what = "omega-dot" if self.kind == "rate" else linear
         return f"{what} has {shown} in it{held}"
 
     @property

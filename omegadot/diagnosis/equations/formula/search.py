@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.diagnosis.equations.evidence import SLACK, Evidence
+from omegadot.diagnosis.equations.evidence import INVERSE, SLACK, Evidence
 from omegadot.diagnosis.equations.formula.facts import product, terms_of
-from omegadot.diagnosis.equations.formula.formula import Formula, Kind
+from omegadot.diagnosis.equations.formula.formula import Formula, Kind, Where
 from omegadot.diagnosis.equations.formula.law import laws
 from omegadot.diagnosis.equations.formula.rows import Rows, across, rows_of
 from omegadot.diagnosis.equations.formula.tensors import OtherInertia, other_inertias, with_law
@@ -53,8 +53,11 @@ def formulas(
         near = sorted(_along(rows, few, linear), key=lambda one: one.cost)
         more = [e for e in others if _shows(e, linear)]
         seen = _visible([*every, *more], linear)
+        held = {e.system.load.pivot is not None for e in every}
+        where: Where = "any" if len(held) > 1 else "pivoted" if held == {True} else "free"
+        near = [replace(one, where=where) if linear else one for one in near]
         found: list[AnyFormula] = [x for v in near[:MOST_TRIED] for x in _with_law(v, seen)]
-        if not linear:
+        if not linear and every[0].source != INVERSE:
             found += [x for one in other_inertias(rows) for x in with_law(one, seen)]
     along = next((one.direction for one in near if not one.instead), "")
     return Found(sorted(found, key=lambda one: one.cost), along)
@@ -62,8 +65,10 @@ def formulas(
 
 def _shows(evidence: Evidence, linear: bool) -> bool:
     """Whether it is seen at more than a few states, where rounding itself may be small."""
-    if not evidence.finite or (linear and evidence.system.load.pivot is not None):
+    if not evidence.finite:
         return False
+    if linear and evidence.system.load.pivot is not None and np.any(_off(evidence, False) > 1.0):
+        return False  # it follows from a wrong omega-dot
     return bool(np.mean(_off(evidence, linear) > VISIBLE) > SEEN)
 
 
