@@ -128,7 +128,8 @@ class CaseCauses:
             torque = answers.inverse.result["torque"]
             eps = eps_of(answers.precision)
             known = (self._case.system, states.random, states.acceleration)
-            return inverse_causes(*known, torque, eps)
+            formula = across.of_inverse_dynamics(self._case.name)
+            return inverse_causes(*known, torque, eps) or ([formula] if formula else [])
         return lever_causes(*model)
 
 

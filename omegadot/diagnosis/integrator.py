@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from omegadot.diagnosis.equations.describe import scenarios_in_common
+from omegadot.diagnosis.equations.known import scenarios_in_common
 from omegadot.diagnosis.equations.wrong_equation import known_difference
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs

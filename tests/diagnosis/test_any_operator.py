@@ -94,7 +94,7 @@ def test_where_nothing_fits_the_dependence_on_each_size_is_measured() -> None:
     found = dependence(evidence(system, states), scaled)
     assert "as |omega|^3" in found
     assert "as the damping" in found
-    assert found.endswith("it does not depend on the speed and the mass")
+    assert found.endswith("it does not depend on the speed, the place and the mass")
 
 
 @pytest.mark.parametrize(

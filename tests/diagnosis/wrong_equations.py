@@ -269,7 +269,7 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
         "the size of gravity is 9.81 m/s^2, whatever was requested",
     ),
     "cubic": (cubic_damping, "a torque of -0.01 |omega|^2 omega N m acts"),
-    "quartic": (quartic_damping, "by a torque along omega, by an amount that goes as |omega|^4"),
+    "quartic": (quartic_damping, "a torque k |omega|^3 omega is added, with k = -0.01 kg m^2 s^2"),
     "swapped": (
         gyroscopic_swapped,
         "the components of the gyroscopic term are others: x, y, z hold y, x, z",

@@ -9,14 +9,16 @@ from itertools import islice
 import numpy as np
 
 from omegadot.diagnosis.equations.at_states import where_of, where_wrong
+from omegadot.diagnosis.equations.by_formula import ByFormula, by_formula
 from omegadot.diagnosis.equations.candidate import Candidate
-from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.evidence import INVERSE, Evidence
 from omegadot.diagnosis.equations.held import Held, Scene, Scenes
+from omegadot.diagnosis.equations.known import known_over
 from omegadot.diagnosis.equations.search import levels
 from omegadot.diagnosis.equations.worded import conditional, worded
 
 PLAIN = 2  # levels of one scenario without limits: they fit all states, or those that are wrong
-QUICK = 3  # levels that are quick, and more basic than what another scenario has shown
+QUICK = 5  # levels that are quick, and more basic than what another scenario has shown
 MOST_DEEP = 5  # scenarios that are searched to the end; the rest have what these have
 
 
@@ -53,6 +55,8 @@ class Across:
         self._all = Scenes()
         self._accepted: list[list[Candidate]] = []
         self._weak: dict[str, list[Held]] = {}
+        self._formulas: dict[str, ByFormula] = {}
+        self._known: dict[str, str] = {}
         self._quick: dict[tuple[str, str, int], _Level] = {}
         self._nested: dict[str, Across] = {}
         self._explains: dict[tuple[str, str], set[str]] = {}
@@ -83,6 +87,7 @@ class Across:
         self._accepted, self._texts, self._chosen = [], {}, {}
         self._weak, self._quick, self._nested = {}, {}, {}
         self._conditions, self._partly, self._explains = {}, {}, {}
+        self._formulas, self._known = {}, {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -90,6 +95,19 @@ class Across:
             with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
                 self._texts[name, source] = self._cause(name, source)
         return self._texts[name, source]
+
+    def known(self, name: str, source: str) -> str:
+        """What is seen of the scenarios on which nothing fits; "" on one that is hardly off."""
+        if not self.scenes[name].evidence[source].clear:
+            return ""
+        if source not in self._known:
+            every = [s for s in self.scenes.values() if source in s.evidence]
+            off = [s for s in every if s.evidence[source].clear and not self.cause(s.name, source)]
+            right = [s.features for s in every if np.all(s.evidence[source].sound)]
+            along = self._formulas[source].along if source in self._formulas else ""
+            with np.errstate(all="ignore"):
+                self._known[source] = known_over(off, right, source, along)
+        return self._known[source]
 
     def _cause(self, name: str, source: str) -> str:
         scene = self.scenes[name]
@@ -100,6 +118,9 @@ class Across:
         if text:
             return text
         text = self._at_some_states(scene, source) or self._shared(scene, source, QUICK)
+        if text:
+            return text
+        text = self._by_formula(scene, source)
         if text:
             return text
         quick = self._quick_of(scene, source, QUICK)
@@ -121,10 +142,13 @@ class Across:
                 return text
             weak = weak or found.weak
             partial += found.partial
+        many = weak and weak[0].candidate.numbers is not None and len(weak[0].candidate.numbers) > 1
+        own = [one for one in self._formulas[source].own if scene.name in one.names]
+        weak = own if own and (many or not weak) else weak
         text = self._weak_cause(scene, source, weak) or self._where_wrong(scene, source)
         if not text:
-            text = conditional(partial)
-            named = [one for one in partial if text and conditional([one]) == text]
+            text = conditional(partial, own=True)
+            named = [one for one in partial if text and conditional([one], own=True) == text]
             self._partly.setdefault(source, []).extend((one, text) for one in named[:1])
         return text
 
@@ -172,6 +196,29 @@ class Across:
         here = [one for one in found if scene.name in one.names]
         most = max((len(one.shown) for one in here), default=0)
         return list({o.candidate.key: o for o in here[::-1] if len(o.shown) == most}.values())[::-1]
+
+    def of_inverse_dynamics(self, name: str) -> str:
+        """The formula of a wrong torque; "" where none holds on the whole run."""
+        scene = self.scenes[name]
+        if INVERSE not in scene.evidence or not scene.evidence[INVERSE].clear:
+            return ""
+        with np.errstate(all="ignore"):
+            text = self._by_formula(scene, INVERSE)
+        return f"inverse dynamics are wrong: {text}" * bool(text)
+
+    def _by_formula(self, scene: Scene, source: str) -> str:
+        """A product of known vectors that explains the whole run."""
+        if source not in self._formulas:
+            self._formulas[source] = by_formula(self._all, source)
+        found = self._formulas[source]
+        here = [one for one in found.whole if scene.name in one.names]
+        partly = [] if here else [one for one in found.partly if scene.name in one.names]
+        text = self._text_of(here, source) or conditional(partly)
+        if text:
+            first = here[0] if here else next(one for one in partly if conditional([one]) == text)
+            self._chosen[scene.name, source] = first.candidate
+            self._explains[scene.name, source] = first.names
+        return text
 
     def _weak_cause(self, scene: Scene, source: str, weak: Sequence[Held]) -> str:
         """What fits by numbers that are others on each scenario, with those of the first."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.candidate import Candidate
-from omegadot.diagnosis.equations.evidence import SLACK, Evidence
+from omegadot.diagnosis.equations.evidence import FAR_FROM_ROUNDING, SLACK, Evidence
 from omegadot.diagnosis.wording.conditions import only_where
 from omegadot.reference_impl.system import State, System
 
@@ -31,8 +31,14 @@ def where_wrong(evidence: Evidence, every: Sequence[Evidence]) -> str:
     # where nothing of the kind acts, every state is right, and shows nothing
     shown = [part for part in parts if not np.all(part[2])]
     mixed = sum(bool(np.any(right)) for _, _, right in shown)
-    if np.all(evidence.sound) or not mixed:
+    if np.all(evidence.sound) or not mixed or any(map(_fades, every)):
         return ""
     alone = [(evidence.system, evidence.states, evidence.sound)]
     where = only_where(parts) or (only_where(shown) if mixed > 1 else "")
     return where or (only_where(alone) if len(shown) < 2 else "")
+
+
+def _fades(evidence: Evidence) -> bool:
+    """Whether what is wrong sinks into rounding: the states where it does are those of no limit."""
+    shares = evidence.shares(evidence.true)
+    return bool(np.any((shares > 1.0) & (shares < FAR_FROM_ROUNDING)))

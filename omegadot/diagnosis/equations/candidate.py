@@ -10,6 +10,7 @@ import numpy as np
 from omegadot.diagnosis.equations.equation_form import Form, accelerations
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.families import Family, fit
+from omegadot.diagnosis.equations.formula import Formula, OtherInertia, Together
 from omegadot.diagnosis.equations.hypotheses import Hypothesis, wrong_form
 from omegadot.diagnosis.equations.operators import Changed
 from omegadot.diagnosis.equations.readings import Reading
@@ -18,6 +19,8 @@ from omegadot.diagnosis.wording.digits import vector
 from omegadot.reference_impl.system import Acceleration, Array, System
 
 BY_MASS = re.compile("(divided|multiplied) by the mass|left out of the weight|a mass of 1 kg")
+
+FORMULAS = (Formula, OtherInertia, Together)
 
 
 @dataclass(frozen=True)
@@ -31,7 +34,7 @@ class Candidate:
     family: Family | None = None
     numbers: Array | None = None
     reading: Reading | None = None
-    terms: Terms | Changed | None = None
+    terms: Terms | Changed | Formula | OtherInertia | Together | None = None
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -42,9 +45,16 @@ class Candidate:
 
     def fits(self, evidence: Evidence, made: Acceleration) -> bool:
         """Whether what it gives is the engine's, within the rounding of its numbers."""
+        if isinstance(self.terms, FORMULAS) and self.numbers is not None:
+            return evidence.fits(made, self.terms.slack(evidence, self.numbers))
         if self.family is None or self.numbers is None:
             return evidence.fits(made)
         return evidence.fits(made, self.family.slack(evidence.system, self.numbers))
+
+    @property
+    def has_law(self) -> bool:
+        """Whether the law of its number is a part of it."""
+        return isinstance(self.terms, FORMULAS)
 
     @property
     def by_mass(self) -> bool:

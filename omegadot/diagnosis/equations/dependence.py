@@ -18,25 +18,46 @@ CLEAR_OF_ROUNDING = 1.0 / CLEAN  # in bounds, which are of many more roundings t
 LEAST = 4  # states
 
 
-def dependence(evidence: Evidence, scaled: Mapping[str, Evidence]) -> str:
-    """``it goes as |omega|^2 and as the mass; it does not depend on the damping``; "" without any.
+Powers = dict[str, float]
 
-    scaled: by what is doubled, the evidence at the first states of this one.
-    """
-    base = evidence.at(np.arange(min(STATES, len(evidence.sound))))
-    kind = "angular" if np.any(_clear(base, "angular")) else "linear"
-    grows, same = list[str](), list[str]()
-    for what, other in scaled.items():
-        power = _exponent(base, other, kind)
-        if power is None:
-            continue
-        if abs(power) < CLEAN:
-            same.append(what)
-        else:
-            shown = number(float(f"{power:.3g}"))
-            grows.append(f"as {what}" if shown == "1" else f"as {what}^{shown}")
+
+def dependence(evidence: Evidence, scaled: Mapping[str, Evidence]) -> str:
+    """Of one scenario, as text; "" where nothing is known."""
+    kind = "angular" if np.any(_clear(_first(evidence), "angular")) else "linear"
+    found = powers_of(evidence, scaled, kind)
+    return dependence_text({what: p for what, p in found.items() if p is not None})
+
+
+def dependence_text(powers: Powers) -> str:
+    """``it goes as |omega|^2 and as the mass; it does not depend on the damping``."""
+    grows = [
+        f"as {what}" if power == 1.0 else f"as {what}^{number(float(f'{power:.3g}'))}"
+        for what, power in powers.items()
+        if power
+    ]
+    same = [what for what, power in powers.items() if not power]
     parts = [f"it goes {listed(grows)}"] if grows else []
     return ", and ".join([*parts, *([f"it does not depend on {listed(same)}"] if same else [])])
+
+
+def powers_of(
+    evidence: Evidence, scaled: Mapping[str, Evidence], kind: str
+) -> dict[str, float | None]:
+    """The exponents by what is doubled; None where there is none, and not what cannot be seen.
+
+    scaled: by what is doubled, the evidence at the first states of this one.  kind: "angular" or
+    "linear".
+    """
+    base, found = _first(evidence), dict[str, float | None]()
+    for what, other in scaled.items():
+        seen, power = _exponent(base, other, kind)
+        if seen:
+            found[what] = power
+    return found
+
+
+def _first(evidence: Evidence) -> Evidence:
+    return evidence.at(np.arange(min(STATES, len(evidence.sound))))
 
 
 def _clear(evidence: Evidence, kind: str) -> NDArray[np.bool_]:
@@ -49,13 +70,13 @@ def _off(evidence: Evidence, kind: str) -> Array:
     return norm(getattr(evidence.found, kind) - getattr(evidence.true, kind))
 
 
-def _exponent(base: Evidence, other: Evidence, kind: str) -> float | None:
-    """The exponent of a power law that holds at every state; None where none does."""
+def _exponent(base: Evidence, other: Evidence, kind: str) -> tuple[bool, float | None]:
+    """Whether enough states show it; and the exponent that holds at all, None where none does."""
     used = _clear(base, kind) & _clear(other, kind)
     if np.count_nonzero(used) < LEAST or not np.array_equal(used, _clear(base, kind)):
-        return None
+        return False, None
     powers = np.log(_off(other, kind)[used] / _off(base, kind)[used]) / np.log(TWICE)
     middle = float(np.median(powers))
     # of other exponents one factor shows no power law
     near = round(2.0 * middle) / 2.0
-    return near if np.max(np.abs(powers - near)) < CLEAN else None
+    return True, near + 0.0 if np.max(np.abs(powers - near)) < CLEAN else None

@@ -1,9 +1,8 @@
-"""Where no cause fits: what is known of the difference, component, direction and dependence."""
+"""What is seen of a difference where no cause fits: its components, direction and size."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import comb
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +10,6 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.equations.equation_form import form_of
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.wording.digits import number
-from omegadot.diagnosis.wording.features import Features, in_common, ways_of
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import rotate_inverse
@@ -20,87 +18,100 @@ from omegadot.reference_impl.system import Array
 
 PARALLEL = 1e-6  # the sine of the angle up to which two directions are the same
 CLEAN = 1e-4  # of an exponent, where a power law is exact but for rounding
+LEAST, MOST = 6, 0.9  # states that show it; part of them, above which a few are special ones
 CLEAR_OF_ROUNDING = 1.0 / CLEAN  # in bounds, which are of many more roundings than there are
 
 
-def description(evidence: Evidence) -> str:
-    """The difference of an engine's accelerations from the right ones, as text; "" without any."""
-    parts = [
-        _of(evidence, "omega-dot", evidence.found.angular - evidence.true.angular, "angular"),
-        _of(evidence, "the linear acceleration", evidence.found.linear - evidence.true.linear, ""),
-    ]
-    return "; ".join(part for part in parts if part)
+@dataclass(frozen=True)
+class Off:
+    """Of one scenario, or of several.
+
+    axes: of the components that are off.  along: what the difference is along at every state.
+    power: of |omega|, in its size; None where it is unknown.  share: of the states, which are off.
+    turns: whether it is another vector at other states, in body axes.
+    """
+
+    axes: frozenset[str]
+    along: frozenset[str]
+    power: float | None
+    share: float
+    turns: bool
 
 
-def _of(evidence: Evidence, what: str, rest: Array, kind: str) -> str:
-    bound = evidence.angular_bound if kind else evidence.linear_bound
+def off_of(evidence: Evidence, kind: str) -> Off | None:
+    """Of omega-dot ("angular") or of the linear acceleration; None where too little is seen."""
+    angular = kind == "angular"
+    rest = getattr(evidence.found, kind) - getattr(evidence.true, kind)
+    bound = evidence.angular_bound if angular else evidence.linear_bound
     size = norm(rest)
     clear = np.isfinite(size) & (size > CLEAR_OF_ROUNDING * bound)
-    if np.count_nonzero(clear) < 6:
-        return ""
+    if np.count_nonzero(clear) < LEAST:
+        return None
     wrong = np.abs(rest) > CLEAR_OF_ROUNDING * bound[:, None]
-    axes = [axis for k, axis in enumerate("xyz") if np.any(wrong[clear, k])]
-    texts = [f"{what} is off"]
-    if len(axes) < 3:
-        texts[0] += f" in {' and '.join(axes)} alone"
-    share = np.count_nonzero(~evidence.sound) / len(size)
-    if share < 1.0:
-        texts.append(f"at {100 * share:.0f} % of the states")
-    along, vectors = _direction(evidence, rest, clear) if kind else ("", rest)
-    if along:
-        texts.append(along)
+    axes = frozenset(axis for k, axis in enumerate("xyz") if np.any(wrong[clear, k]))
+    along, vectors = _directions(evidence, rest, clear) if angular else (frozenset[str](), rest)
     power = _power(norm(evidence.states.angular_velocity)[clear], norm(vectors)[clear])
-    if power is not None:
-        grows = (
-            "by the same amount at every omega"
-            if abs(power) < CLEAN
-            else (f"by an amount that goes as |omega|^{number(round(power, 3))}")
-        )
-        texts.append(grows)
+    units = rest[clear] / size[clear][:, None]
+    turns = bool(np.max(norm(units - units[0])) > PARALLEL)
+    share = np.count_nonzero(~evidence.sound) / len(size)
+    return Off(axes, along, power, share, turns)
+
+
+def off_text(what: str, off: Off, along: str = "") -> str:
+    """``omega-dot is off in x alone, by a torque along omega``."""
+    texts = [f"{what} is off"]
+    if len(off.axes) < 3:
+        texts[0] += f" in {' and '.join(sorted(off.axes))} alone"
+    if off.share < MOST:
+        texts.append(f"at {100 * off.share:.0f} % of the states")
+    named = along or next((one for one in ALONG if one in off.along), "")
+    if named:
+        texts.append(f"by {named}")
+    if off.power is not None:
+        same = abs(off.power) < CLEAN
+        grows = f"by an amount that goes as |omega|^{number(round(off.power, 3))}"
+        texts.append("by the same amount at every omega" if same else grows)
     return ", ".join(texts)
 
 
-def _direction(evidence: Evidence, rest: Array, clear: NDArray[np.bool_]) -> tuple[str, Array]:
-    """The direction of the torque, or of the rate, that is too much, and these vectors."""
+NAMES = (
+    "omega",
+    "the angular momentum",
+    "omega x I omega",
+    "the torque of gravity",
+    "gravity",
+    "the torque in body axes",
+    "the torque in world axes",
+)
+ALONG = tuple(f"{kind} along {name}" for kind in ("a torque", "a rate") for name in NAMES)
+
+
+def _directions(
+    evidence: Evidence, rest: Array, clear: NDArray[np.bool_]
+) -> tuple[frozenset[str], Array]:
+    """What the torque or the rate that is too much is along, and these vectors."""
     system, w = evidence.system, evidence.states.angular_velocity
     form = form_of(system)
     momentum = apply(form.spin, w)
     down = rotate_inverse(evidence.states.orientation, system.load.gravity)
     driven = rotate_inverse(evidence.states.orientation, system.load.torque_world)
-    named = {
-        "omega": w,
-        "the angular momentum": momentum,
-        "omega x I omega": cross(w, momentum),
-        "the torque of gravity": cross(form.arm + 0 * w, down),
-        "gravity": down,
-        "the torque in body axes": system.load.torque_body + 0 * w,
-        "the torque in world axes": driven,
-    }
-    moment = apply(form.spin, rest)
+    own = system.load.torque_body + 0 * w
+    known = (w, momentum, cross(w, momentum), cross(form.arm + 0 * w, down), down, own, driven)
+    moment, found = apply(form.spin, rest), dict[str, Array]()
     for what, vectors in (("a torque", moment), ("a rate", rest)):
-        for name, direction in named.items():
+        for name, direction in zip(NAMES, known, strict=True):
             sizes = norm(direction)[clear] * norm(vectors)[clear]
             sine = norm(cross(vectors, direction))[clear]
             if np.all(sizes > 0.0) and np.all(sine <= PARALLEL * sizes):
-                return f"by {what} along {name}", vectors
-    return "", rest
+                found[f"{what} along {name}"] = vectors
+    return frozenset(found), next(iter(found.values()), rest)
 
 
 def _power(x: Array, y: Array) -> float | None:
     """The exponent of an exact power law, from the slope of the logarithms."""
     used = (x > 0.0) & (y > 0.0)
-    if np.count_nonzero(used) < 6 or np.ptp(np.log(x[used])) < 1.0:
+    if np.count_nonzero(used) < LEAST or np.ptp(np.log(x[used])) < 1.0:
         return None
     slope, start = np.polyfit(np.log(x[used]), np.log(y[used]), 1)
     left = np.log(y[used]) - slope * np.log(x[used]) - start
     return float(slope) if float(np.max(np.abs(left))) < 10 * CLEAN else None
-
-
-def scenarios_in_common(failing: Sequence[Features], passing: Sequence[Features]) -> str:
-    """What the scenarios that fail have in common and the others lack."""
-    if comb(len(failing) + len(passing), len(failing)) < ways_of(failing):
-        return ""  # so few are sorted by chance
-    common = in_common(failing, passing)
-    if not common or len(common) > 2:
-        return ""
-    return f"it fails in scenarios alone where {' or where '.join(common)}"

@@ -18,7 +18,13 @@ from omegadot.gates.bounds.scales import (
     norm,
     torque_size,
 )
-from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.motion import (
+    center_of_mass_acceleration,
+    forward_dynamics,
+    inverse_dynamics,
+)
+from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 # A fitted number has rounding of its own, of about as many terms as there are components.
@@ -29,6 +35,7 @@ DIGITS = 3  # of fitted numbers that are printed
 FAR_FROM_ROUNDING = SLACK * 10.0**DIGITS  # of which what a fit leaves is less than the last digit
 SCREENED = 10  # states at which every hypothesis is tried; only what fits there is tried at all
 LANES = 512
+INVERSE = "inverse"  # evidence of inverse dynamics
 
 
 @dataclass(frozen=True)
@@ -99,7 +106,7 @@ class Evidence:
         angular = _share(norm(self.found.angular - true.angular), self.angular_bound)
         return bool(np.all(linear <= 1.0) and np.any(angular > BEYOND_ROUNDING))
 
-    def fits(self, candidate: Acceleration, slack: float = SLACK) -> bool:
+    def fits(self, candidate: Acceleration, slack: float | Array = SLACK) -> bool:
         """Whether a candidate is the engine's at every state."""
         return bool(np.all(self.shares(candidate) <= slack))
 
@@ -130,7 +137,11 @@ class Evidence:
         """The evidence of these states alone."""
         found = Acceleration(self.found.angular[places], self.found.linear[places])
         bounds = (self.angular_bound[places], self.linear_bound[places])
-        return Evidence(self.source, self.system, self.states[places], found, *bounds, self.eps)
+        part = Evidence(self.source, self.system, self.states[places], found, *bounds, self.eps)
+        if self.source == INVERSE:
+            true = self.true
+            vars(part)["true"] = Acceleration(true.angular[places], true.linear[places])
+        return part
 
     def weighted(self, one: Acceleration, other: Acceleration) -> Array:
         """All components of a difference in one row, each state's in parts of its bound."""
@@ -156,6 +167,25 @@ def of_forward_dynamics(
     bound = ROUNDINGS_PER_EVALUATION * eps
     bounds = (bound * np.maximum(*sizes) / smallest, bound * np.maximum(*linear))
     return Evidence("forward", system, states, found, *bounds, eps)
+
+
+def of_inverse_dynamics(
+    system: System, states: State, requested: Acceleration, torque: Array, eps: float = EPS
+) -> Evidence:
+    """Inverse dynamics as the omega-dot that a wrong torque would make, next to the requested one.
+
+    omega-dot of this evidence is the requested one.
+    """
+    off = torque - inverse_dynamics(system, states, requested)
+    angular = requested.angular + apply(inverse(moving_inertia(system)), off)
+    linear = requested.linear
+    if system.load.pivot is not None:
+        linear = center_of_mass_acceleration(system, states, angular)
+    bound = ROUNDINGS_PER_EVALUATION * eps * torque_size(system, states, requested)
+    bounds = (bound / body_scale(system).smallest, np.full(len(bound), np.inf))
+    made = Evidence(INVERSE, system, states, Acceleration(angular, linear), *bounds, eps)
+    vars(made)["true"] = requested
+    return made
 
 
 def _finite(found: Acceleration, true: Acceleration) -> Acceleration:

@@ -143,8 +143,9 @@ class Scenes:
             held.pairs = self._numbers(family, source)
             if held.pairs:
                 held.law = law_of(held.pairs, LAWS[family.name], family.unit)
-        if held.numbers and not held.law and one.numbers is not None and len(one.numbers) == 1:
-            known = [*held.numbers, (scene, one.numbers)]
+        single = one.numbers is not None and len(one.numbers) == 1 and not one.has_law
+        if held.numbers and not held.law and single:
+            known = [*held.numbers, (scene, np.asarray(one.numbers))]
             held.law = self._power_law(one, known, source)
         return held
 

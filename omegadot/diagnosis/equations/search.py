@@ -37,15 +37,14 @@ def levels(
     yield likely + _readings(evidence)
     yield _fitted(evidence, ONE_NUMBER) + _with_terms(evidence, FEW)
     yield _fitted(evidence, LEAST) + _changed(evidence)
+    yield _with_terms(evidence, MORE)
+    yield _with_terms(evidence, MOST)
     unlikely = [one for one in single if one.fixed[0].unlikely]
     if deep:
         yield unlikely + tried.pairs()
-        yield (_fitted(evidence, THREE_NUMBERS) if evidence.far else []) + _with_terms(
-            evidence, MORE
-        )
+        yield _fitted(evidence, THREE_NUMBERS) if evidence.far else []
         yield _fitted(evidence, EXTRA)
         yield tried.mixed()
-        yield _with_terms(evidence, MOST)
         yield _fitted(evidence, SIX_NUMBERS) if evidence.far else []
     else:
         yield unlikely

@@ -51,13 +51,24 @@ def _like_any(one: Held, others: Sequence[Held]) -> bool:
     return any(map(like, others))
 
 
-def conditional(held: Sequence[Held]) -> str:
-    """The first cause that holds on the scenarios of one kind alone."""
+def conditional(held: Sequence[Held], own: bool = False) -> str:
+    """The first cause that holds on the scenarios of one kind alone.
+
+    own: also one that does so by other numbers on each.
+    """
     for one in held:
+        if one.numbers and not one.law and not own:
+            continue
+        numbers = one.candidate.numbers
+        if numbers is not None and len(numbers) > 1 and len(one.shown) < 2:
+            continue  # many numbers fit one scenario
         shown, against = ([scene.features for scene in group] for group in (one.shown, one.against))
         common = in_common(shown, against)
         if common and len(common) <= 2:
             evidence = next(iter(one.shown[0].evidence.values()))
             text = one.law or one.candidate.text(evidence.system)
-            return f"{text}, but only where {' or where '.join(common)}"
+            text = f"{text}, but only where {' or where '.join(common)}"
+            if not one.numbers or one.law:
+                return text
+            return f"{text} ({one.shown[0].name}; other numbers on {len(one.numbers)} more)"
     return ""

@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
-from omegadot.diagnosis.equations.dependence import dependence
-from omegadot.diagnosis.equations.describe import description, scenarios_in_common
 from omegadot.diagnosis.equations.evidence import (
     BEYOND_ROUNDING,
+    INVERSE,
     SLACK,
     Evidence,
     of_forward_dynamics,
+    of_inverse_dynamics,
 )
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.quotient import difference_quotient
@@ -52,6 +52,10 @@ def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult
         )
         if answer.ok
     }
+    requested, torque = evaluation_states.acceleration, result.inverse
+    if torque.ok and np.isfinite(torque.result["torque"]).all():
+        known = (case.system, evaluation_states.random, requested, torque.result["torque"])
+        evidence[INVERSE] = of_inverse_dynamics(*known, eps_of(result.precision))
     held = body_from(result.model.result["bodies"][0]) if result.model.ok else None
     scaled = {
         what: of_forward_dynamics(
@@ -107,18 +111,8 @@ def _constant(across: Across, source: str) -> str:
 
 
 def known_difference(across: Across, name: str, source: str) -> list[str]:
-    """What is known where no cause fits."""
-    scenes = [scene for scene in across.scenes.values() if source in scene.evidence]
-    sound = [bool(np.all(scene.evidence[source].sound)) for scene in scenes]
-    failing = [scene.features for scene, right in zip(scenes, sound, strict=True) if not right]
-    passing = [scene.features for scene, right in zip(scenes, sound, strict=True) if right]
-    here = across.scenes[name]
-    texts = (
-        description(here.evidence[source]),
-        dependence(here.evidence[source], here.scaled) if source == FORWARD else "",
-        scenarios_in_common(failing, passing),
-    )
-    known = "; ".join(text for text in texts if text)
+    """What is known where no cause fits, of all such scenarios together."""
+    known = across.known(name, source)
     return [f"none is known; {known}"] if known else []
 
 

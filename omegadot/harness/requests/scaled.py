@@ -28,6 +28,8 @@ def doubled(system: System, states: State) -> Iterator[tuple[str, System, State]
     yield "|omega|", system, replace(states, angular_velocity=TWICE * states.angular_velocity)
     if load.pivot is None and np.any(states.linear_velocity):
         yield "the speed", system, replace(states, linear_velocity=TWICE * states.linear_velocity)
+    if load.pivot is None and np.any(states.position):
+        yield "the place", system, replace(states, position=TWICE * states.position)
     yield "the mass", replace(system, bodies=(replace(body, mass=TWICE * body.mass),)), states
     longer = replace(
         body, inertia=TWICE**2 * body.inertia, center_of_mass=TWICE * body.center_of_mass

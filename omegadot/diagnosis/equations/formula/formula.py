@@ -1,0 +1,157 @@
+"""A formula with one factor, as a wrong equation: what it gives at states, and its text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from omegadot.diagnosis.equations.evidence import SLACK, Evidence
+from omegadot.diagnosis.equations.formula.facts import (
+    MATRICES,
+    SIZES,
+    TORQUE,
+    VECTORS,
+    Facts,
+    Unit,
+    facts_of,
+    product,
+    terms_of,
+)
+from omegadot.diagnosis.equations.formula.law import NO_LAW, Law, symbols_of
+from omegadot.diagnosis.equations.formula.rows import ROUNDINGS, factors, rows_of
+from omegadot.diagnosis.equations.formula.vectors import Vector
+from omegadot.diagnosis.equations.formula.wording import with_factor
+from omegadot.reference_impl.motion import center_of_mass_acceleration
+from omegadot.reference_impl.rotations import rotate
+from omegadot.reference_impl.system import Acceleration, Array, System
+
+Kind = Literal["torque", "rate", "linear"]
+Where = Literal["free", "pivoted", "any"]
+UNITS: dict[Kind, Unit] = {"torque": TORQUE, "rate": (0, 0, -2), "linear": (0, 1, -2)}
+
+
+@dataclass(frozen=True)
+class Formula:
+    """``found = right + k law(sizes) vector``, or this in place of one of the right torques.
+
+    kind: a torque, through the inertia; a rate; or a linear acceleration, of a free body, a
+    pivoted one or any.
+    """
+
+    kind: Kind
+    vector: Vector
+    law: Law = NO_LAW
+    instead: str = ""
+    where: Where = "free"
+
+    @property
+    def cost(self) -> float:
+        """How far from plain it is."""
+        return (
+            self.vector.cost
+            + self.law.cost
+            + (1.5 if self.instead else 0.0)
+            + (0.3 if self.kind == "rate" else 0.0)
+        )
+
+    @property
+    def ones(self) -> Array:
+        """A factor of one."""
+        return np.ones(1)
+
+    @property
+    def name(self) -> str:
+        """What it is, whatever the factor."""
+        return f"{self.kind} {self.instead} {self.law.text} {self.vector.text}"
+
+    def accelerations(self, facts: Facts) -> Array:
+        """What a factor of one adds, (n, 3) in body axes, and whatever it stands in place of."""
+        more = self.law.of(facts)[:, None] * self.vector.of(facts)
+        return self._solved(facts, more)
+
+    def _solved(self, facts: Facts, more: Array) -> Array:
+        return product(facts.matrices["I^-1"], more) if self.kind == "torque" else more
+
+    def sizes(self, facts: Facts) -> Array:
+        """(n,): what the parts of `accelerations` multiply to."""
+        size = np.abs(self.law.of(facts)) * self.vector.size(facts)
+        if self.kind == "torque":
+            size = size * np.sqrt(np.sum(facts.matrices["I^-1"] ** 2, axis=(-1, -2)))
+        return np.asarray(size)
+
+    def replaced(self, facts: Facts) -> Array:
+        """What it stands in place of, as an acceleration; nothing where it is added."""
+        if not self.instead:
+            return 0.0 * facts.vectors["omega"]
+        return self._solved(facts, terms_of(facts)[self.instead])
+
+    def made(self, evidence: Evidence, p: Array) -> Acceleration:
+        """The accelerations with this factor."""
+        facts, true = facts_of(evidence), evidence.true
+        more = float(p[0]) * self.accelerations(facts) - self.replaced(facts)
+        if self.kind == "linear":
+            here = "free" if evidence.system.load.pivot is None else "pivoted"
+            turned = rotate(evidence.states.orientation, more)
+            acts = self.where in (here, "any")
+            return Acceleration(true.angular, true.linear + (turned if acts else 0.0 * turned))
+        angular = true.angular + more
+        if evidence.system.load.pivot is None:
+            return Acceleration(angular, true.linear)
+        linear = center_of_mass_acceleration(evidence.system, evidence.states, angular)
+        return Acceleration(angular, linear)
+
+    def slack(self, evidence: Evidence, p: Array) -> Array:
+        """(n,): in bounds, what the rounding of its own products may be off by."""
+        facts = facts_of(evidence)
+        size = np.abs(float(p[0])) * self.sizes(facts)
+        bound = evidence.linear_bound if self.kind == "linear" else evidence.angular_bound
+        own = ROUNDINGS * evidence.eps * size
+        return SLACK + np.where(own > 0.0, own / np.where(bound > 0.0, bound, own), 0.0)
+
+    def fit(self, evidence: Evidence) -> Array | None:
+        """The factor with which this is the engine's equation; None where none is."""
+        k = self.factor([evidence])
+        if not np.isfinite(k) or not k[0]:
+            return None
+        return k if evidence.fits(self.made(evidence, k), self.slack(evidence, k)) else None
+
+    def factor(self, every: Sequence[Evidence]) -> Array:
+        """The factor that fits these best, (1,)."""
+        rows = rows_of(every, self.kind == "linear")
+        rows = replace(rows, due=rows.due + self.replaced(rows.facts))
+        return np.array([factors(self.accelerations(rows.facts), rows)])
+
+    def text(self, _: System, p: Array) -> str:
+        """The cause, with its factor."""
+        left = np.array(UNITS[self.kind], dtype=float) - np.array(self.vector.unit)
+        left = left - np.array(self.law.unit)
+        shown, factor = with_factor(float(p[0]), self.law.text, self.vector.text, left)
+        legend = ", ".join([*factor, *self._legend()])
+        held = f", with {legend}" if legend else ""
+        if self.instead:
+            return f"in place of {self.instead} stands {shown}{held}"
+        if self.kind == "torque":
+            return f"a torque {shown} is added{held}"
+        of = " of a pivoted body" if self.where == "pivoted" else ""
+        linear = f"the linear acceleration{of}, in body axes,"
+        what = "omega-dot" if self.kind == "rate" else linear
+        return f"{what} has {shown} in it{held}"
+
+    @property
+    def direction(self) -> str:
+        """``a torque along r x omega``, and what these are."""
+        legend = ", ".join(self._legend())
+        kind = {"torque": "a torque", "rate": "a rate", "linear": "an acceleration"}[self.kind]
+        return f"{kind} along {self.vector.text}{f' ({legend})' if legend else ''}"
+
+    def _legend(self) -> list[str]:
+        """What the symbols are."""
+        used = symbols_of([self.vector.text, self.law.text])
+        known = {**VECTORS, **MATRICES, **SIZES}
+        extra = {"o": "component by component"} if " o " in self.vector.text else {}
+        return [f"{k} {known[k][1]}" for k in known if k in used and known[k][1]] + [
+            f"{k} {v}" for k, v in extra.items()
+        ]
