@@ -169,13 +169,15 @@ def _of_run(look: _Look, run: JudgedRun, equations: bool) -> RunCauses:
     own = [one for one in guesses if one.is_own]
     if own and not any(one.is_declared for one in own):
         return _lower_order(own)
+    facts = NOTHING
     for guess in guesses:
         found = _of_reported(guess, result, equations)
-        if found.texts:
+        if found.texts and not all(map(is_fact, found.texts)):
             return found
+        facts = facts if facts.texts else found
     found = _of_other_slips(guesses)
-    if found.texts:
-        return found
+    if found.texts or facts.texts:
+        return found if found.texts else facts
     text = restart_cause(truth, result, run)
     return RunCauses((text,)) if text else NOTHING
 

@@ -1,0 +1,80 @@
+"""What all runs of an integrator show together: which term acts otherwise, and how it goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.acting import TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.courses import course_of, points_of
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
+from omegadot.diagnosis.stepping.old_operands import old_operands
+from omegadot.diagnosis.wording.kinds import either
+
+MISSED = 0.2  # of the failing runs, that may be beyond what one share in an interval shows
+MOST_FAILING, MOST_SOUND = 16, 6  # runs that are looked at
+FEW_STEPS, ENOUGH = 8, 4  # between samples, and scenarios with no more of them
+SCENARIOS = 2  # at least, that fail: of one motion much else may be the cause
+
+
+def course_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
+    """A term that acts otherwise in the steps, by one law in every run; none where none does."""
+    chosen = _chosen(runs)
+    if len({run.name for run in chosen if run.fails}) < SCENARIOS:
+        return []
+    every: dict[str, list[Shares]] = {name: [] for name in TERMS}
+    left = dict.fromkeys(TERMS, int(MISSED * sum(run.fails for run in chosen)))
+    for run in chosen:
+        found = shares_of(run, by)
+        for name in list(every):
+            if name in found:
+                every[name].append(found[name])
+            elif run.fails and left[name] > 0:
+                left[name] -= 1
+            else:
+                del every[name]
+        if not every:
+            return []
+    for name, shares in every.items():  # what states less comes first
+        points = points_of(shares)
+        texts = course_of(points) if points is not None else []
+        if texts:
+            return either([f"in the steps, {text.format(name)}" for text in texts])
+    return []
+
+
+def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[str]:
+    """What makes all runs of an integrator together; none where none does."""
+    failing = {run.name for run in runs if run.fails}
+    with np.errstate(all="ignore"):
+        by = scheme_of(integrator, runs) if len(failing) >= SCENARIOS else None
+        if by is None:
+            return []
+        return course_causes(by, runs) or either(old_operands(by, _chosen(runs)))
+
+
+def _chosen(runs: Sequence[KeptRun]) -> list[KeptRun]:
+    """Of the failing ones those of few steps a sample, two a scenario, and some sound ones.
+
+    Within many steps a share changes too much for one number, where enough others are there.
+    """
+    failing, sound = (_two_each([r for r in runs if r.fails is fails]) for fails in (True, False))
+    few = [run for run in failing if run.sweep.every <= FEW_STEPS]
+    if len({run.name for run in few}) >= ENOUGH:
+        failing = few
+    return [*_evenly(failing, MOST_FAILING), *_evenly(sound, MOST_SOUND)]
+
+
+def _two_each(runs: Sequence[KeptRun]) -> list[KeptRun]:
+    kept: dict[str, list[KeptRun]] = {}
+    for run in sorted(runs, key=lambda run: run.sweep.every):
+        kept.setdefault(run.name, []).append(run)
+    return sorted((r for one in kept.values() for r in one[:2]), key=lambda r: r.sweep.every)
+
+
+def _evenly(runs: Sequence[KeptRun], most: int) -> list[KeptRun]:
+    if len(runs) <= most:
+        return list(runs)
+    return [runs[k] for k in np.linspace(0, len(runs) - 1, most).astype(int)]
