@@ -119,14 +119,15 @@ def _shares(run: KeptRun, by: SchemeOf) -> dict[str, Shares]:
     explained = left <= np.maximum(SLACK, LEFT * defect)
     explained |= defect <= FAINT
     explained &= _others_follow(run, names, first, apart)
-    acts = np.maximum(size, defect) > FAINT
+    clear = defect > FAINT
     opened = np.where(size > 0.0, (SLACK + left) / size, np.inf)
     beyond = ~explained & (_large(run, first) | ~np.isfinite(left))
     unclear = ~explained & ~beyond
     return {
         name: Shares(run, alpha[k], opened[k], explained[k], beyond[k])
         for k, name in enumerate(names)
-        if np.all(explained[k] | acts[k])
+        if np.all(explained[k] | (size[k] > FAINT))
+        and (np.any(clear[k] & ~beyond[k]) or not np.any(clear[k]))
         and np.count_nonzero(unclear[k]) <= max(MOST_UNCLEAR, int(UNCLEAR * m))
     }
 

@@ -54,6 +54,7 @@ PLACES: tuple[tuple[tuple[float, float], ...], ...] = (
     tuple(((k + 0.5) / 16, 1 / 16) for k in range(16)),
 )
 MOST_PERIOD = 8
+BETTER = 0.8  # a law must fit by so much better than one that states less
 
 
 @dataclass(frozen=True)
@@ -172,7 +173,8 @@ def _by_step(points: Points) -> Iterator[str]:
     }
     for count in (*range(2, 21), 25, 30, 40, 50, 64, 100):
         for shift in (0, 1):
-            rises = f"from step 1 on, to its full size in step {count + shift}"
+            begins = "0" if shift else f"1/{count}"
+            rises = f"from {begins} in step 1 to its full size in step {count + shift}"
             known[f"{{}} rises evenly with the number of the step, {rises}"] = np.clip(
                 (n - shift) / count, none, one
             )
@@ -221,7 +223,7 @@ def _by_number(
     x = points.steps * points.timestep[:, None] if at is _at_times else np.stack(points.rate)
     high = float(np.nanmax(x)) * 30.0
     low = max(float(np.nanmin(x)) / 30.0, 1e-8 * high)
-    best, text = 1.0, ""
+    best, text = 1.0 / BETTER, ""
     for statement, law in laws.items():
         near, far = low, high
         for _ in range(FINER):
@@ -233,7 +235,7 @@ def _by_number(
             first, last = (good[0], good[-1]) if len(good) else (k, k)
             near, far = tried[max(first - 1, 0)], tried[min(last + 1, TRIED - 1)]
         k = int(np.argmin(worst))
-        if worst[k] <= best:
+        if worst[k] <= BETTER * best:
             best = float(worst[k])
             text = "{} " + statement.format(
                 _number(tried[first], tried[last], tried[k], "not act" in statement)

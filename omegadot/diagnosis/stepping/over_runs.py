@@ -11,6 +11,8 @@ from omegadot.diagnosis.stepping.acting import TERMS, Shares, shares_of
 from omegadot.diagnosis.stepping.courses import course_of, points_of
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.old_operands import old_operands
+from omegadot.diagnosis.stepping.places import place_causes
+from omegadot.diagnosis.stepping.solved import solved_causes
 from omegadot.diagnosis.wording.kinds import either
 
 MISSED = 0.2  # of the failing runs, that may be beyond what one share in an interval shows
@@ -52,7 +54,8 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         by = scheme_of(integrator, runs) if len(failing) >= SCENARIOS else None
         if by is None:
             return []
-        return course_causes(by, runs) or either(old_operands(by, _chosen(runs)))
+        found = course_causes(by, runs) or either(old_operands(by, _chosen(runs)))
+        return found or solved_causes(by, runs) or place_causes(by, runs)
 
 
 def _chosen(runs: Sequence[KeptRun]) -> list[KeptRun]:
