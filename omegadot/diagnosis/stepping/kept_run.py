@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
-MOST_SAMPLES = 48
+MOST_SAMPLES, FEW_SAMPLES = 256, 48  # that are kept, and that are looked at closely
 MOST_STEPS = 64  # between two samples
 SLACK = 4.0  # the start of an interval is rounded as its end is, and each of a sound run's as well
 LEAST = 3  # intervals that show a scheme
@@ -61,6 +61,13 @@ class KeptRun:
     def lengths(self) -> Array:
         """(n - 1,) s."""
         return np.diff(self.times)
+
+    @property
+    def short(self) -> KeptRun:
+        """Its first samples alone."""
+        count = FEW_SAMPLES + 1
+        bounds = {channel: values[:FEW_SAMPLES] for channel, values in self.bounds.items()}
+        return replace(self, times=self.times[:count], state=self.state[:count], bounds=bounds)
 
     def ends(self, by: SchemeOf, motion: Motion | None = None, lanes: int = 0) -> State:
         """Where a scheme leads from each sample to the next: (n - 1, ...), or lanes in front."""
@@ -128,7 +135,7 @@ def scheme_of(integrator: Integrator, runs: Sequence[KeptRun]) -> SchemeOf | Non
         return SchemeOf(SCHEMES[integrator.scheme], integrator.coordinates)
     if integrator.scheme is not None or integrator.knob != "timestep":
         return None
-    rich = sorted(runs, key=_richness, reverse=True)
+    rich = sorted((run.short for run in runs), key=_richness, reverse=True)
     sound, failing = ([run for run in rich if run.fails is fails] for fails in (False, True))
     shown = [*sound[:MOST_LOOKED_AT], *failing[:MOST_LOOKED_AT]]
     best, most = None, 0.0

@@ -21,11 +21,8 @@ FEW_STEPS, ENOUGH = 8, 4  # between samples, and scenarios with no more of them
 SCENARIOS = 2  # at least, that fail: of one motion much else may be the cause
 
 
-def course_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
+def course_causes(by: SchemeOf, chosen: Sequence[KeptRun]) -> list[str]:
     """A term that acts otherwise in the steps, by one law in every run; none where none does."""
-    chosen = _chosen(runs)
-    if len({run.name for run in chosen if run.fails}) < SCENARIOS:
-        return []
     every: dict[str, list[Shares]] = {name: [] for name in TERMS}
     left = dict.fromkeys(TERMS, int(MISSED * sum(run.fails for run in chosen)))
     for run in chosen:
@@ -54,7 +51,8 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         by = scheme_of(integrator, runs) if len(failing) >= SCENARIOS else None
         if by is None:
             return []
-        found = course_causes(by, runs) or either(old_operands(by, _chosen(runs)))
+        chosen = [run.short for run in _chosen(runs)]
+        found = course_causes(by, chosen) or either(old_operands(by, chosen))
         return found or solved_causes(by, runs) or place_causes(by, runs)
 
 

@@ -50,7 +50,7 @@ def solved_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     """The iteration that stops too early, in every step; none where none is seen."""
     if by.scheme.name != "implicit-midpoint":
         return []
-    single = [run for run in runs if run.sweep.every == 1]
+    single = [run.short for run in runs if run.sweep.every == 1]
     chosen = sorted(single, key=lambda run: not run.fails)[:MOST_RUNS]
     with np.errstate(all="ignore"):
         for kind, guess in KINDS.items():
