@@ -40,7 +40,7 @@ from omegadot.reference_impl.system import State, System
 # Scenarios on which the runs of an integrator are looked at in vain, before the rest is left alone:
 # stepping again by all that may be wrong takes long. The order that steps have lost explains them.
 VAIN, VAIN_BESIDE_ORDER = 8, 3
-IN_THE_FIRST = "in the first step of a run alone"
+IN_THE_FIRST = "at the start of a run alone"
 FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
@@ -107,7 +107,8 @@ class IntegratorCauses:
             seen = known_of_runs(self._truth, self._result, failed)
             if seen is not None:
                 self._over.seen[self._case.name] = seen
-            self._of_case()
+            if self._again or not self._over.likely(self._integrator):
+                self._of_case()
         self._result, self._runs = None, []
 
     def sentences(self) -> list[str]:
@@ -192,8 +193,8 @@ class IntegratorCauses:
         alike = self._across.explained(*where)
         followed = self._over.followed(one, alike, steps.eps) if one is not None else set()
         if "between" in followed or {"right", "wrong"} <= followed:
-            later = f"in the first step of a run, {text}; later steps come nearer to the right"
-            return [f"{later} equation"]
+            later = "later steps come nearer to the right equation"
+            return [f"at the start of a run, {text}; {later}"]
         if "right" in followed:
             first = f"{IN_THE_FIRST}, {text}"
             return either([velocity_share_cause(steps), first])

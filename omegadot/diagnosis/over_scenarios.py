@@ -32,6 +32,7 @@ class OverScenarios:
     beginnings: dict[str, Beginning] = field(default_factory=dict)
     kept: list[KeptRun] = field(default_factory=list)
     _together: tuple[int, list[str]] = (0, [])
+    _likely: tuple[int, bool] = (0, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
 
     def together(self, integrator: Integrator) -> list[str]:
@@ -39,6 +40,16 @@ class OverScenarios:
         if self._together[0] != len(self.kept):
             self._together = len(self.kept), causes_over_runs(integrator, self.kept)
         return self._together[1]
+
+    def likely(self, integrator: Integrator) -> bool:
+        """Whether the runs that have been kept so far have a cause together.
+
+        It is looked for again each time that twice as many scenarios fail.
+        """
+        failing = len({run.name for run in self.kept if run.fails}).bit_length()
+        if self._likely[0] != failing:
+            self._likely = failing, bool(failing > 1 and causes_over_runs(integrator, self.kept))
+        return self._likely[1]
 
     def followed(self, one: Candidate, names: set[str], eps: float) -> set[Followed | None]:
         """Which equation the failed runs follow where a cause fits the steps as they vanish.

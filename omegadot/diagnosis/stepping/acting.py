@@ -45,7 +45,7 @@ DELTA = 1e-3
 TRIES = 4
 SETTLED = 1e-5
 TINY = 1e-300
-UNCLEAR, MOST_UNCLEAR = 0.2, 3  # of the intervals of a run, in which a share may change
+UNCLEAR, MOST_UNCLEAR = 0.2, 3  # of single steps, in which a share may change
 LARGE = 0.2  # of omega: a defect is no longer in proportion
 FAINT = 10.0 * SLACK  # what may be rounding of more than one interval
 KNOWN = 0.1  # how well a share must be known to count
@@ -123,12 +123,13 @@ def _shares(run: KeptRun, by: SchemeOf) -> dict[str, Shares]:
     opened = np.where(size > 0.0, (SLACK + left) / size, np.inf)
     beyond = ~explained & (_large(run, first) | ~np.isfinite(left))
     unclear = ~explained & ~beyond
+    most = max(MOST_UNCLEAR, int(UNCLEAR * m)) if run.sweep.every == 1 else m
     return {
         name: Shares(run, alpha[k], opened[k], explained[k], beyond[k])
         for k, name in enumerate(names)
         if np.all(explained[k] | (size[k] > FAINT))
         and (np.any(clear[k] & ~beyond[k]) or not np.any(clear[k]))
-        and np.count_nonzero(unclear[k]) <= max(MOST_UNCLEAR, int(UNCLEAR * m))
+        and np.count_nonzero(unclear[k]) <= most
     }
 
 

@@ -54,6 +54,7 @@ PLACES: tuple[tuple[tuple[float, float], ...], ...] = (
     tuple(((k + 0.5) / 16, 1 / 16) for k in range(16)),
 )
 MOST_PERIOD = 8
+HOPELESS = 5.0  # times what shares are known to, that a law misses them in the mean
 BETTER = 0.8  # a law must fit by so much better than one that states less
 
 
@@ -113,7 +114,8 @@ def points_of(shares: Sequence[Shares]) -> Points | None:
         np.concatenate([np.full(len(used), k) for k, (_, used) in enumerate(kept)]),
     )
     off = points.explained & (np.abs(points.share - 1.0) > CHANGES + points.open)
-    if np.count_nonzero(off) < LEAST or not _varies(points):
+    scenarios = {kept[k][0].run.name for k in np.unique(points.run[off])}
+    if np.count_nonzero(off) < LEAST or len(scenarios) < 2 or not _varies(points):
         return None
     return _few(points, off | ~points.explained)
 
@@ -234,6 +236,8 @@ def _by_number(
             good, k = np.flatnonzero(worst <= 1.0), int(np.argmin(sums))
             first, last = (good[0], good[-1]) if len(good) else (k, k)
             near, far = tried[max(first - 1, 0)], tried[min(last + 1, TRIED - 1)]
+            if min(sums) > HOPELESS * len(points.share):
+                break
         k = int(np.argmin(worst))
         if worst[k] <= BETTER * best:
             best = float(worst[k])

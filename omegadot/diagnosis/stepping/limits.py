@@ -31,7 +31,10 @@ def asleep(reported: ReportedRun) -> str:
         return ""
     rate = float(norm(reported.own.angular_velocity[first]))
     when = f"from t = {reported.time[first]:.4g} s on"
-    return f"the body is put to sleep: omega is zero {when}, where it should be {rate:.2g} rad/s"
+    text = f"omega is zero {when}, where it should be {rate:.2g} rad/s"
+    before = slice(0, first)
+    sound = first > 1 and reported.agrees(reported.state[before], reported.own[before], before)
+    return f"the body is put to sleep: {text}" if sound else text
 
 
 def still(reported: ReportedRun) -> str:
