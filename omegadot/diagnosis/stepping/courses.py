@@ -91,8 +91,8 @@ class Points:
         return np.asarray(np.nan_to_num(off, nan=np.inf))
 
 
-def points_of(shares: Sequence[Shares]) -> Points | None:
-    """The shares of one term that are known; None where too few of them are off."""
+def points_of(shares: Sequence[Shares], scenarios: int = 2) -> Points | None:
+    """The shares of one term that are known; None where too few of them, or scenarios, are off."""
     kept = [(one, np.flatnonzero(one.used)) for one in shares]
     longest = max(one.run.sweep.every for one, _ in kept)
     numbers = np.arange(longest)
@@ -114,8 +114,8 @@ def points_of(shares: Sequence[Shares]) -> Points | None:
         np.concatenate([np.full(len(used), k) for k, (_, used) in enumerate(kept)]),
     )
     off = points.explained & (np.abs(points.share - 1.0) > CHANGES + points.open)
-    scenarios = {kept[k][0].run.name for k in np.unique(points.run[off])}
-    if np.count_nonzero(off) < LEAST or len(scenarios) < 2 or not _varies(points):
+    names = {kept[k][0].run.name for k in np.unique(points.run[off])}
+    if np.count_nonzero(off) < LEAST or len(names) < scenarios or not _varies(points):
         return None
     return _few(points, off | ~points.explained)
 

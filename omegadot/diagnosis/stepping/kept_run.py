@@ -135,6 +135,11 @@ def scheme_of(integrator: Integrator, runs: Sequence[KeptRun]) -> SchemeOf | Non
         return SchemeOf(SCHEMES[integrator.scheme], integrator.coordinates)
     if integrator.scheme is not None or integrator.knob != "timestep":
         return None
+    return likeliest(runs)
+
+
+def likeliest(runs: Sequence[KeptRun], least: int = LEAST) -> SchemeOf | None:
+    """The scheme by which most intervals of the runs are sound, of all that are known."""
     rich = sorted((run.short for run in runs), key=_richness, reverse=True)
     sound, failing = ([run for run in rich if run.fails is fails] for fails in (False, True))
     shown = [*sound[:MOST_LOOKED_AT], *failing[:MOST_LOOKED_AT]]
@@ -143,7 +148,7 @@ def scheme_of(integrator: Integrator, runs: Sequence[KeptRun]) -> SchemeOf | Non
         good = [_sound_where_known(run, one) for run in shown]
         # of a run that is led astray by something else its beginning is the scheme's
         score = sum(float(np.mean(each)) + BEGINS * bool(each[0]) for each in good)
-        if score > most and sum(map(np.count_nonzero, good)) >= LEAST:
+        if score > most and sum(map(np.count_nonzero, good)) >= least:
             best, most = one, score
     return best
 

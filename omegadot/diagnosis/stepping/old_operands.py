@@ -56,7 +56,7 @@ EXPLAINS = 0.8  # of the runs that fail
 LEAST_RUNS, MOST_SAMPLES = 3, 12  # in which an old number shows, from the second step on
 
 
-def old_operands(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
+def old_operands(by: SchemeOf, runs: Sequence[KeptRun], least: int = LEAST_RUNS) -> list[str]:
     """The operands of which each, taken from another place, makes the runs; none where none does.
 
     It makes the beginning of nearly every run that fails, and of every one that does not.
@@ -68,7 +68,7 @@ def old_operands(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     places = PLACES[:3] if name in ("semi-implicit-euler", "rk4-quaternion") else PLACES
     shows = [run for run in runs if run.fails and not run.sound(by)[:MOST_SAMPLES].all()]
     failing = len(shows)
-    if failing < LEAST_RUNS:
+    if failing < least:
         return []
     made = Counter[tuple[str, str]]()
     lanes = [(text, where) for text in OPERANDS for where in places if _differs(text, where, name)]
@@ -80,7 +80,7 @@ def old_operands(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
             made.update(good)
         else:
             lanes = [lane for lane in lanes if lane[0] not in acting or lane in good]
-        if not lanes or (run is shows[LEAST_RUNS - 1] and not made):
+        if not lanes or (run is shows[least - 1] and not made):
             return []  # a mistake that is made in every run is seen in one of three
     most = max((made[lane] for lane in lanes), default=0)
     best = [lane for lane in lanes if made[lane] == most]

@@ -7,13 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.stepping.acting import TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
 from omegadot.diagnosis.stepping.courses import course_of, points_of
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.old_operands import old_operands
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.solved import solved_causes
 from omegadot.diagnosis.wording.kinds import either
+from omegadot.reference_impl.system import Array
 
 MISSED = 0.2  # of the failing runs, that may be beyond what one share in an interval shows
 MOST_FAILING, MOST_SOUND = 16, 6  # runs that are looked at
@@ -54,6 +55,24 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         chosen = [run.short for run in _chosen(runs)]
         found = course_causes(by, chosen) or either(old_operands(by, chosen))
         return found or solved_causes(by, runs) or place_causes(by, runs)
+
+
+def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
+    """What makes one run that stands alone; none where more than one cause does."""
+    run = run.short
+    terms: list[tuple[str, Array]] = []
+    texts = list[str]()
+    for name, one in shares_of(run, by).items():
+        points = points_of([one], scenarios=1)
+        known = [np.allclose(one.share, share, atol=KNOWN, equal_nan=True) for _, share in terms]
+        if points is None or any(known):
+            continue
+        terms.append((name, one.share))
+        texts += either([f"in the steps, {text.format(name)}" for text in course_of(points)])
+    texts = texts or old_operands(by, [run], least=1)
+    if len(texts) > 1:
+        return []
+    return texts or solved_causes(by, [run]) or place_causes(by, [run])
 
 
 def _chosen(runs: Sequence[KeptRun]) -> list[KeptRun]:
