@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, WORLD_TORQUE, case
 
 from omegadot.adapters.protocol import Integrator
@@ -64,7 +65,7 @@ def causes(step: Step, scheme: str = "semi-implicit-euler") -> list[str]:
     return causes_over_runs(Integrator("own", scheme, dict.fromkeys(CHANNELS, 1)), runs)
 
 
-def _sound(run: KeptRun, scheme: str) -> Array:
+def _sound(run: KeptRun, scheme: str) -> NDArray[np.bool_]:
     return run.sound(SchemeOf(SCHEMES[scheme], "com-world"))
 
 

@@ -20,6 +20,7 @@ from omegadot.reference_impl.system import Array, State
 
 LEAST_WRONG, LEAST_SOUND = 4, 20  # intervals
 ODDS = 1000  # as many times as numbers are tried must there be ways to sort the intervals
+MISSED = 0.02  # of the wrong ones, whose stages may lie a little farther than is known
 LEAST_CHANGES = 4  # from sound to wrong, or back, within runs
 MOST_EVERY = 2  # steps in an interval: of more the places in it are unknown
 SIZE_OF = "the size of "
@@ -54,8 +55,10 @@ def place_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     texts = dict[str, str]()
     for name, unit in found.units.items():
         for term, values in (("above", found.most[name]), ("below", -found.least[name])):
-            high, low = float(np.min(values[wrong])), float(np.max(values[found.sound]))
-            if high > low:
+            low = float(np.max(values[found.sound]))
+            beyond = values[wrong] > low
+            if np.mean(beyond) >= 1.0 - MISSED:
+                high = float(np.min(values[wrong][beyond]))
                 sign = 1.0 if term == "above" else -1.0
                 texts[name] = _where(name, term, sign * low, sign * high, unit)
     plain = [text for name, text in texts.items() if SIZE_OF + name not in texts]
