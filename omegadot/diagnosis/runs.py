@@ -146,7 +146,7 @@ def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
     )
     if not failed or not sound or max(sound) >= min(failed):
         return found
-    where = f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s are sound"
+    where = f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s fail no gate"
     kept = [text for text in found.texts if not text.startswith(ALIKE)]
     limit = len(kept) == 1 and LIMIT in kept[0]
     return RunCauses(tuple(text + where for text in kept), found.decisive or limit)

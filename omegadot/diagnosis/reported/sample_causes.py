@@ -26,6 +26,7 @@ from omegadot.reference_impl.system import Array, State
 
 EPS_SINGLE = float(np.finfo(np.float32).eps)
 LEAST_CHANGES = 3
+LEAST_OF_GUESS = 4  # intervals, of a run whose scheme is not declared
 LEAST_BESIDE = 6  # intervals, four of them sound, that show a sample to be alone
 ORDERS, SHOWS = 3.0, 10.0  # an error may go with so high a power of the motion in an interval
 # One interval's rounding is within the bound of its end; its start is rounded, too.
@@ -142,7 +143,9 @@ def intervals(reported: ReportedRun) -> str:
     shares = _shares_of_bounds(reported)
     sound = shares <= SLACK
     wrong = np.flatnonzero(~sound)
-    if len(sound) < 3 or not len(wrong) or not sound.any():
+    # a scheme of several steps begins by one that is not its own
+    least = 1 if reported.is_declared else LEAST_OF_GUESS
+    if len(sound) < 3 or not len(wrong) or np.count_nonzero(sound) < least:
         return ""
     time, first, last = reported.time, int(wrong[0]), int(wrong[-1])
     together = len(wrong) == last - first + 1
