@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
 from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, keeps_pace
 from omegadot.diagnosis.stepping.jumps import jump_cause, jumps, slight_jump_cause
+from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
 from omegadot.diagnosis.stepping.kinematics import (
     kinematic_causes,
     moves_by_cause,
@@ -39,7 +40,7 @@ from omegadot.reference_impl.system import State, System
 # Scenarios on which the runs of an integrator are looked at in vain, before the rest is left alone:
 # stepping again by all that may be wrong takes long. The order that steps have lost explains them.
 VAIN, VAIN_BESIDE_ORDER = 8, 3
-IN_THE_FIRST = "in the first step of a run alone"
+IN_THE_FIRST = "at the start of a run alone"
 FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
@@ -69,6 +70,7 @@ class IntegratorCauses:
         self._result: CaseResult | None = result
         self._runs = list(runs)
         integrator = runs[0].integrator
+        self._integrator = integrator
         self._name, self._declares = integrator.name, integrator.scheme in SCHEMES
         self._again = next(filter(None, (again_cause(run.rows) for run in runs)), "")
         over = self._over = engine.integrators[self._name]
@@ -78,6 +80,7 @@ class IntegratorCauses:
             over.beginnings[case.name] = self._beginning
         failed = [run for run in runs if fails(run)]
         over.fails[case.name] = bool(failed)
+        over.kept += _kept_runs(case.name, truth, result, runs)
         self._turned_wrong = any(
             row.channel == "attitude" and row.verdict == "fail"
             for run in failed
@@ -104,10 +107,16 @@ class IntegratorCauses:
             seen = known_of_runs(self._truth, self._result, failed)
             if seen is not None:
                 self._over.seen[self._case.name] = seen
-            self.sentences()
+            if self._again or not self._over.likely(self._integrator):
+                self._of_case()
         self._result, self._runs = None, []
 
     def sentences(self) -> list[str]:
+        """What makes the runs of all scenarios together, or else what this one shows."""
+        failing = self._over.fails[self._case.name] and not self._again
+        return (self._over.together(self._integrator) if failing else []) or self._of_case()
+
+    def _of_case(self) -> list[str]:
         """Of the steps as they vanish and of the run itself.
 
         What a declared scheme makes of a wrong state is known better by stepping again than by
@@ -184,8 +193,8 @@ class IntegratorCauses:
         alike = self._across.explained(*where)
         followed = self._over.followed(one, alike, steps.eps) if one is not None else set()
         if "between" in followed or {"right", "wrong"} <= followed:
-            later = f"in the first step of a run, {text}; later steps come nearer to the right"
-            return [f"{later} equation"]
+            later = "later steps come nearer to the right equation"
+            return [f"at the start of a run, {text}; {later}"]
         if "right" in followed:
             first = f"{IN_THE_FIRST}, {text}"
             return either([velocity_share_cause(steps), first])
@@ -227,6 +236,19 @@ class IntegratorCauses:
                 over[self._case.name] = (self._of_runs.texts, self._of_runs.decisive)
         known = {name: texts for name, (texts, _) in over.items()}
         return either([over_run(text, known) for text in agreed(self._of_runs.texts, over)])
+
+
+def _kept_runs(
+    name: str, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> Iterator[KeptRun]:
+    """The first samples of the runs that were answered in full, in double precision."""
+    for run in runs if truth.in_precision(result.precision) is truth else ():
+        answer = result.runs.get((run.integrator.name, run.sweep.knob))
+        if answer is not None and answer.ok and len(answer.result["time"]) == len(run.sweep.times):
+            growth = truth.growth[truth.rows(run.sweep)]
+            state = State(**answer.result["state"])
+            one = kept_run(name, truth, run.sweep, state, growth, fails(run))
+            yield from () if one is None else (one,)
 
 
 def _beginning_of(

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 
+from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
+from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.order_lost import OrderLost
+from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 
 
 @dataclass
@@ -18,7 +21,7 @@ class OverScenarios:
 
     causes: each alone explains the runs, and whether these are decisive.  fails: whether a run
     does.  again: what shows where two answers to one request differ.  lost: orders.  seen: what is
-    off.  beginnings: of the failed runs.
+    off.  beginnings: of the failed runs.  kept: the first samples of every run.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -27,7 +30,26 @@ class OverScenarios:
     lost: dict[str, OrderLost] = field(default_factory=dict)
     seen: dict[str, Known] = field(default_factory=dict)
     beginnings: dict[str, Beginning] = field(default_factory=dict)
+    kept: list[KeptRun] = field(default_factory=list)
+    _together: tuple[int, list[str]] = (0, [])
+    _likely: tuple[int, bool] = (0, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
+
+    def together(self, integrator: Integrator) -> list[str]:
+        """What makes all runs of the integrator that have been kept; none where none does."""
+        if self._together[0] != len(self.kept):
+            self._together = len(self.kept), causes_over_runs(integrator, self.kept)
+        return self._together[1]
+
+    def likely(self, integrator: Integrator) -> bool:
+        """Whether the runs that have been kept so far have a cause together.
+
+        It is looked for again each time that twice as many scenarios fail.
+        """
+        failing = len({run.name for run in self.kept if run.fails}).bit_length()
+        if self._likely[0] != failing:
+            self._likely = failing, bool(failing > 1 and causes_over_runs(integrator, self.kept))
+        return self._likely[1]
 
     def followed(self, one: Candidate, names: set[str], eps: float) -> set[Followed | None]:
         """Which equation the failed runs follow where a cause fits the steps as they vanish.

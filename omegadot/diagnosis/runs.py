@@ -147,7 +147,7 @@ def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
     )
     if not failed or not sound or max(sound) >= min(failed):
         return found
-    where = f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s are sound"
+    where = f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s fail no gate"
     kept = [text for text in found.texts if not text.startswith(ALIKE)]
     limit = len(kept) == 1 and LIMIT in kept[0]
     return RunCauses(tuple(text + where for text in kept), found.decisive or limit)
@@ -170,13 +170,15 @@ def _of_run(look: _Look, run: JudgedRun, equations: bool) -> RunCauses:
     own = [one for one in guesses if one.is_own]
     if own and not any(one.is_declared for one in own):
         return _lower_order(own)
+    facts = NOTHING
     for guess in guesses:
         found = _of_reported(guess, result, equations)
-        if found.texts:
+        if found.texts and not all(map(is_fact, found.texts)):
             return found
+        facts = facts if facts.texts else found
     found = _of_other_slips(guesses)
-    if found.texts:
-        return found
+    if found.texts or facts.texts:
+        return found if found.texts else facts
     text = restart_cause(truth, result, run)
     return RunCauses((text,)) if text else NOTHING
 

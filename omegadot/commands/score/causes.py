@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from omegadot.commands.score.measured import Measured, distance, filled
+from omegadot.commands.score.wrong_steps import causes_in_steps
 from omegadot.diagnosis.equations.candidate import BY_MASS
 from omegadot.diagnosis.equations.equation_form import (
     Form,
@@ -62,9 +63,9 @@ class Mistake:
 def causes_of_trace(found: Measured) -> list[str]:
     """The mistakes that the trace follows, as sentences; none where several unlike ones fit.
 
-    It follows one from its start, or from each sample to the next.
+    It follows one from its start, or from each sample to the next, or is stepped by one.
     """
-    return _from_the_start(found) or _between_samples(found)
+    return _from_the_start(found) or _between_samples(found) or causes_in_steps(found)
 
 
 def _between_samples(found: Measured) -> list[str]:

@@ -15,7 +15,7 @@ from omegadot.reference_impl.system import State
 
 MOST_GUESSES = 3
 MOST_STEPS = 5000  # of a run that is stepped for a guess
-Distance = tuple[int, float]
+Distance = tuple[bool, int, float]
 
 
 def reported_run_guesses(

@@ -72,10 +72,11 @@ class ReportedRun:
         return len(self.time) == len(self.own.position) and self.agrees(self.state, self.own)
 
     @property
-    def distance_at_first(self) -> tuple[int, float]:
-        """How many quantities are off in the first samples, and how far, in parts of the bound.
+    def distance_at_first(self) -> tuple[bool, int, float]:
+        """Whether the first interval is off, how many quantities are soon, and how far in bounds.
 
-        A run of one scheme in which one quantity is misreported is nearer to it than to others.
+        A run of one scheme in which one quantity is misreported is nearer to it than to others, and
+        one that is led astray later begins as it does.
         """
         bounds, first = self.bounds, slice(1, LEAST_SAMPLES)
         shares = [
@@ -83,7 +84,8 @@ class ReportedRun:
             for c in CHANNELS
         ]
         off = sum(not bool(np.all(one <= SLACK)) for one in shares)
-        return off, float(np.nan_to_num(np.median(np.max(shares, axis=0)), nan=np.inf))
+        begins = all(bool(np.all(one[:1] <= SLACK)) for one in shares)
+        return not begins, off, float(np.nan_to_num(np.median(np.max(shares, axis=0)), nan=np.inf))
 
     def stepped(
         self,

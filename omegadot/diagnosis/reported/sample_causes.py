@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.wording.conditions import only_where
@@ -23,10 +22,13 @@ from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import rotate, turn_in_body
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import Array, State
 
 EPS_SINGLE = float(np.finfo(np.float32).eps)
 LEAST_CHANGES = 3
+LEAST_OF_GUESS = 4  # intervals, of a run whose scheme is not declared
+LEAST_BESIDE = 6  # intervals, four of them sound, that show a sample to be alone
+ORDERS, SHOWS = 3.0, 10.0  # an error may go with so high a power of the motion in an interval
 # One interval's rounding is within the bound of its end; its start is rounded, too.
 SLACK = 2.0
 ALONE = {
@@ -96,17 +98,30 @@ def omega_dot_late(case: Case, truth: Truth, result: CaseResult, run: JudgedRun)
     return ""
 
 
-def _sound_intervals(reported: ReportedRun) -> NDArray[np.bool_]:
-    """(n - 1,): whether the declared scheme leads from each sample to the next."""
+def _shares_of_bounds(reported: ReportedRun) -> Array:
+    """(n - 1,): how far the declared scheme misses each next sample, in parts of the bounds."""
     numbers = reported.sweep.sample_steps
     count = int(np.count_nonzero(np.diff(numbers) == reported.sweep.every))
     ends = reported.stepped_on(reported.state[:count])
     then, bounds = reported.state[1 : count + 1], reported.bounds
-    sound = np.ones(count, bool)
-    for channel in CHANNELS:
-        apart = reported.truth.yardstick.distance(channel, then, ends)
-        sound &= apart <= SLACK * bounds[channel][1 : count + 1]
-    return sound
+    shares = [
+        reported.truth.yardstick.distance(channel, then, ends) / bounds[channel][1 : count + 1]
+        for channel in CHANNELS
+    ]
+    return np.asarray(np.nan_to_num(np.max(shares, axis=0), nan=np.inf))
+
+
+def _would_show(reported: ReportedRun, shares: Array) -> bool:
+    """Whether the mistake of the first steps, made in the later ones, would show there as well.
+
+    Bounds grow along a run, and where the body comes to rest every scheme is the same.
+    """
+    count, sound = len(shares), shares <= SLACK
+    bound = reported.bounds["omega"][1 : count + 1]
+    w = reported.state.angular_velocity[: count + 1]
+    moves = norm(np.diff(w, axis=0)) + norm(w[:-1])
+    off = float(np.median((shares * bound / moves**ORDERS)[~sound]))
+    return bool(np.all(off * moves[sound] ** ORDERS > SHOWS * SLACK * bound[sound]))
 
 
 def one_field(reported: ReportedRun) -> str:
@@ -125,20 +140,25 @@ def one_field(reported: ReportedRun) -> str:
 
 def intervals(reported: ReportedRun) -> str:
     """From which sample to which the steps are wrong."""
-    sound = _sound_intervals(reported)
+    shares = _shares_of_bounds(reported)
+    sound = shares <= SLACK
     wrong = np.flatnonzero(~sound)
-    if len(sound) < 3 or not len(wrong) or not sound.any():
+    # a scheme of several steps begins by one that is not its own
+    least = 1 if reported.is_declared else LEAST_OF_GUESS
+    if len(sound) < 3 or not len(wrong) or np.count_nonzero(sound) < least:
         return ""
     time, first, last = reported.time, int(wrong[0]), int(wrong[-1])
     together = len(wrong) == last - first + 1
-    if together and first == 0 and 2 * len(wrong) <= len(sound):
+    early = together and first == 0 and 2 * len(wrong) <= len(sound)
+    if early and _would_show(reported, shares):
         return (
             f"only the first steps are wrong: from t = {time[last + 1]:.4g} s on, the run is sound"
         )
     if len(wrong) == 1 and first + 1 < len(sound):
         between = f"between t = {time[first]:.4g} s and {time[first + 1]:.4g} s"
-        return f"the run jumps once, {between}: before and after it is sound"
-    if len(wrong) == 2 and together and last + 1 < len(sound) and _goes_on(reported, first):
+        return f"the run is wrong once, {between}: before and after it is sound"
+    alone = len(wrong) == 2 and together and first > 0 and last + 1 < len(sound)
+    if alone and len(sound) >= LEAST_BESIDE and _goes_on(reported, first):
         pairs = (values[last] == values[last - 1] for values in vars(reported.state).values())
         twice = all(bool(np.all(pair)) for pair in pairs)
         what = "is the one before, reported twice" if twice else "alone does not belong to the run"

@@ -76,7 +76,7 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
 
 
 def slight_jump_cause(steps: VanishingSteps) -> str:
-    """What every step adds to a state however short it is, if that is little; "" without any."""
+    """What a first step adds to a state however short it is, if that is little; "" without any."""
     before, after = steps.states, steps.limit
     rate = norm(before.angular_velocity)
     for name, what, unit in QUANTITIES:
@@ -94,9 +94,10 @@ def slight_jump_cause(steps: VanishingSteps) -> str:
             continue
         k = float(np.sum(off * was) / np.sum(was * was))
         if np.all(norm(off - k * was) <= CLOSE * abs(k) * size + allowed):
-            return f"{what} is multiplied by {factor(1.0 + k)} in every step, however short it is"
+            times = factor(1.0 + k)
+            return f"{what} is multiplied by {times} in the first step, however short it is"
         middle = float(np.median(norm(off)))
-        return f"every step changes {what} by some {middle:.0e} {unit}, however short it is"
+        return f"the first step changes {what} by some {middle:.0e} {unit}, however short it is"
     return ""
 
 
@@ -137,7 +138,7 @@ def _limit(
         least, more = float(np.max(size[jumped])), size[~jumped]
         sleeps = "the body is put to sleep: " if what == "omega" else ""
         if not len(more):
-            return f"{sleeps}{what} is set to zero"
+            return f"{what} is set to zero"
         if np.min(more) < least:
             return ""
         return f"{sleeps}{what} is set to zero below {limits(least, float(np.min(more)), unit)}"

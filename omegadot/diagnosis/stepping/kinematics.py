@@ -100,11 +100,14 @@ def moves_by_cause(steps: VanishingSteps) -> str:
 
 
 def omega_still_cause(steps: VanishingSteps) -> str:
-    """Omega does not change in the first step of a run, which has two explanations."""
+    """Omega does not change at the start of a run, which has several explanations."""
     limit = steps.rates["omega"]
     found, bound = better(limit)
     still = bool(np.all(norm(found) <= SLACK * bound)) and not np.all(limit.shares() <= 1.0)
-    text = "either omega is reported late, or it does not change in the first step of a run"
+    text = (
+        "omega does not change at the start of a run, as where it is reported late, or where what "
+        "changes it begins to act later"
+    )
     return text if still else ""
 
 

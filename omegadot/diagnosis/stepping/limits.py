@@ -31,7 +31,12 @@ def asleep(reported: ReportedRun) -> str:
         return ""
     rate = float(norm(reported.own.angular_velocity[first]))
     when = f"from t = {reported.time[first]:.4g} s on"
-    return f"the body is put to sleep: omega is zero {when}, where it should be {rate:.2g} rad/s"
+    text = f"omega is zero {when}, where it should be {rate:.2g} rad/s"
+    before = slice(0, first)
+    sound = first > 1 and reported.agrees(reported.state[before], reported.own[before], before)
+    # a damping that is taken wrongly may stop the body as well, in its first step
+    damped = bool(np.any(reported.case.system.load.damping))
+    return f"the body is put to sleep: {text}" if sound or not damped else text
 
 
 def still(reported: ReportedRun) -> str:

@@ -23,7 +23,7 @@ FACTS = (
     "times are",
     "time alone is off",
     "one time, that of",
-    "the run jumps once",
+    "the run is wrong once",
     "does not move in the run",
     "is stepped in full",
 )
@@ -58,8 +58,14 @@ def agreed(here: Sequence[str], over_cases: Mapping[str, tuple[Sequence[str], bo
     looked at in vain, and whether its motion decides between causes. Where no motion does, none is
     named but a fact.
     """
-    if any(map(is_fact, here)):
-        return [text for text in here if is_fact(text)]
+    facts = [text for text in here if is_fact(text)]
+    causes = [text for text in here if not is_fact(text)]
+    return (_most_agreed(causes, over_cases) if causes else []) or facts
+
+
+def _most_agreed(
+    here: Sequence[str], over_cases: Mapping[str, tuple[Sequence[str], bool]]
+) -> list[str]:
     kinds, deciding, count = Counter[str](), set[str](), 0
     for texts, decisive in over_cases.values():
         known = {kind_of(text) for text in texts if not is_fact(text)}

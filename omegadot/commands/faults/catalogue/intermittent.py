@@ -17,7 +17,7 @@ from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 
-FIRST_STEPS = ("only the first steps are wrong", "in the first step of a run alone")
+FIRST_STEPS = ("only the first steps are wrong", "at the start of a run alone")
 ASIDE = np.array([1e-6, 0.0, 0.0])  # m
 
 

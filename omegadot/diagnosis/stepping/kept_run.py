@@ -1,0 +1,178 @@
+"""What is kept of a run until all scenarios of an engine have been looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT, scheme_named
+from omegadot.gates.bounds.scales import norm
+from omegadot.gates.case import Sweep
+from omegadot.gates.truth import Truth
+from omegadot.reference_impl.coordinates import Coordinates, distinct
+from omegadot.reference_impl.one_body.body_motion import body_motion
+from omegadot.reference_impl.rotations import normalize, rotation_between
+from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import Array, State, System
+
+MOST_SAMPLES, FEW_SAMPLES = 256, 48  # that are kept, and that are looked at closely
+MOST_STEPS = 64  # between two samples
+SLACK = 4.0  # the start of an interval is rounded as its end is, and each of a sound run's as well
+LEAST = 3  # intervals that show a scheme
+MOST_LOOKED_AT = 4  # runs, sound and wrong, in which the scheme of an engine is looked for
+BEGINS = 0.5  # of a run, that its first interval is sound counts as much
+CHANNELS = ("omega", "attitude", "velocity", "position")
+
+
+@dataclass(frozen=True)
+class SchemeOf:
+    """A scheme, and the coordinates in which it is stepped."""
+
+    scheme: Scheme
+    coordinates: Coordinates
+
+
+@dataclass(frozen=True)
+class KeptRun:
+    """The first samples of one run: times (n,) s and states (n, ...), and whether it fails.
+
+    bounds: (n - 1,) per channel in rad/s, rad, m/s and m, what rounding may do in an interval.
+    """
+
+    name: str
+    system: System
+    sweep: Sweep
+    times: Array
+    state: State
+    bounds: dict[str, Array]
+    fails: bool
+
+    @property
+    def first_steps(self) -> NDArray[np.intp]:
+        """(n - 1,): the number of the first step of each interval, from 1 on."""
+        return self.sweep.sample_steps[: len(self.times) - 1] + 1
+
+    @property
+    def lengths(self) -> Array:
+        """(n - 1,) s."""
+        return np.diff(self.times)
+
+    @property
+    def short(self) -> KeptRun:
+        """Its first samples alone."""
+        count = FEW_SAMPLES + 1
+        bounds = {channel: values[:FEW_SAMPLES] for channel, values in self.bounds.items()}
+        return replace(self, times=self.times[:count], state=self.state[:count], bounds=bounds)
+
+    def ends(self, by: SchemeOf, motion: Motion | None = None, lanes: int = 0) -> State:
+        """Where a scheme leads from each sample to the next: (n - 1, ...), or lanes in front."""
+        every, start = self.sweep.every, self.state[:-1]
+        fields = {**vars(start), "orientation": normalize(start.orientation)}
+        if lanes:
+            fields = {k: np.broadcast_to(f, (lanes, *f.shape)).copy() for k, f in fields.items()}
+        unit = State(**fields)
+        plan = (self.sweep.timestep, every, every, by.coordinates)
+        own = motion or body_motion(self.system, by.coordinates)
+        with np.errstate(all="ignore"):
+            return step_body(by.scheme, self.system, unit, *plan, own)[1][-1]
+
+    def apart(self, ends: State, count: int | None = None) -> dict[str, Array]:
+        """(..., n - 1, 3) per channel: from these ends to the samples, or the first of them."""
+        came = self.state[1:][:count]
+        with np.errstate(all="ignore"):
+            return {
+                "omega": came.angular_velocity - ends.angular_velocity,
+                "attitude": rotation_between(ends.orientation, came.orientation),
+                "velocity": came.linear_velocity - ends.linear_velocity,
+                "position": came.position - ends.position,
+            }
+
+    def sound(self, by: SchemeOf, slack: float = SLACK) -> NDArray[np.bool_]:
+        """(n - 1,): whether the scheme leads from each sample to the next."""
+        apart = self.apart(self.ends(by))
+        good = [norm(apart[c]) <= slack * self.bounds[c] for c in CHANNELS]
+        return np.asarray(np.all(good, axis=0))
+
+
+def kept_run(
+    name: str, truth: Truth, sweep: Sweep, state: State, growth: Array, fails: bool
+) -> KeptRun | None:
+    """The first samples, up to the first that is not finite or is no whole interval later."""
+    numbers = sweep.sample_steps
+    count = min(len(numbers), len(state.position), MOST_SAMPLES + 1)
+    whole = np.diff(numbers[:count]) == sweep.every
+    finite = np.all([np.isfinite(f[:count]).all(-1) for f in vars(state).values()], axis=0)
+    good = finite & np.concatenate(([True], whole))
+    count = count if good.all() else int(np.argmin(good))
+    if count < 3 or sweep.every > MOST_STEPS or sweep.accuracy is not None:
+        return None
+    yardstick = truth.yardstick
+    open_ = yardstick.round_off(sweep.timestep, numbers[:count], growth[:count])
+    later = slice(1, count)
+    momentum = open_["linear_momentum"][later] * yardstick.sizes["linear_momentum"]
+    bounds = {
+        "omega": open_["omega"][later] * yardstick.rate,
+        "attitude": open_["attitude"][later],
+        "velocity": momentum / yardstick.scale.mass,
+        "position": open_["position"][later],
+    }
+    kept = State(*(np.array(f[:count]) for f in vars(state).values()))
+    return KeptRun(name, yardstick.system, sweep, sweep.times[:count], kept, bounds, fails)
+
+
+def scheme_of(integrator: Integrator, runs: Sequence[KeptRun]) -> SchemeOf | None:
+    """The scheme that is declared, or else the one by which most intervals of the runs are sound.
+
+    A sound run says most, and one that is wrong by how it begins. The most likely is taken, and
+    what it does not explain is not named.
+    """
+    if integrator.scheme in SCHEMES:
+        return SchemeOf(SCHEMES[integrator.scheme], integrator.coordinates)
+    if integrator.scheme is not None or integrator.knob != "timestep":
+        return None
+    return likeliest(runs)
+
+
+def likeliest(runs: Sequence[KeptRun], least: int = LEAST) -> SchemeOf | None:
+    """The scheme by which most intervals of the runs are sound, of all that are known."""
+    rich = sorted((run.short for run in runs), key=_richness, reverse=True)
+    sound, failing = ([run for run in rich if run.fails is fails] for fails in (False, True))
+    shown = [*sound[:MOST_LOOKED_AT], *failing[:MOST_LOOKED_AT]]
+    best, most = None, 0.0
+    for one in _schemes(shown):
+        good = [_sound_where_known(run, one) for run in shown]
+        # of a run that is led astray by something else its beginning is the scheme's
+        score = sum(float(np.mean(each)) + BEGINS * bool(each[0]) for each in good)
+        if score > most and sum(map(np.count_nonzero, good)) >= least:
+            best, most = one, score
+    return best
+
+
+def _sound_where_known(run: KeptRun, one: SchemeOf) -> NDArray[np.bool_]:
+    known = one.coordinates == "com-world" or one.coordinates in distinct(run.system)
+    own = one if known else SchemeOf(one.scheme, "com-world")
+    return run.sound(own)
+
+
+def _richness(run: KeptRun) -> tuple[int, float]:
+    """Few steps between samples, and how much the body tumbles there, on which schemes differ."""
+    w = run.state.angular_velocity
+    with np.errstate(all="ignore"):
+        tumbles = float(np.max(norm(np.diff(w, axis=0))))
+    return -run.sweep.every, min(1.0, tumbles * float(run.lengths[0]))
+
+
+def _schemes(runs: Sequence[KeptRun]) -> list[SchemeOf]:
+    ways = dict.fromkeys(way for run in runs for way in distinct(run.system))
+    known = {**SCHEMES, **EXPLICIT}
+    return [
+        SchemeOf(scheme_named(name), way)
+        for way in sorted(ways, key=lambda way: way != "com-world")
+        for name in known
+        if way in known[name].coordinates and (way == "com-world" or name in SCHEMES)
+    ]

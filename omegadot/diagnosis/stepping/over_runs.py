@@ -1,0 +1,100 @@
+"""What all runs of an integrator show together: which term acts otherwise, and how it goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.courses import course_of, points_of
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
+from omegadot.diagnosis.stepping.old_operands import old_operands
+from omegadot.diagnosis.stepping.places import place_causes
+from omegadot.diagnosis.stepping.solved import solved_causes
+from omegadot.diagnosis.wording.kinds import either
+from omegadot.reference_impl.system import Array
+
+MISSED = 0.2  # of the failing runs, that may be beyond what one share in an interval shows
+MOST_FAILING, MOST_SOUND = 16, 6  # runs that are looked at
+FEW_STEPS, ENOUGH = 8, 4  # between samples, and scenarios with no more of them
+SCENARIOS = 2  # at least, that fail: of one motion much else may be the cause
+
+
+def course_causes(by: SchemeOf, chosen: Sequence[KeptRun]) -> list[str]:
+    """A term that acts otherwise in the steps, by one law in every run; none where none does."""
+    every: dict[str, list[Shares]] = {name: [] for name in TERMS}
+    left = dict.fromkeys(TERMS, int(MISSED * sum(run.fails for run in chosen)))
+    for run in chosen:
+        found = shares_of(run, by)
+        for name in list(every):
+            if name in found:
+                every[name].append(found[name])
+            elif run.fails and left[name] > 0:
+                left[name] -= 1
+            else:
+                del every[name]
+        if not every:
+            return []
+    for name, shares in every.items():  # what states less comes first
+        points = points_of(shares)
+        texts = course_of(points) if points is not None else []
+        if texts:
+            return either([f"in the steps, {text.format(name)}" for text in texts])
+    return []
+
+
+def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[str]:
+    """What makes all runs of an integrator together; none where none does."""
+    failing = {run.name for run in runs if run.fails}
+    with np.errstate(all="ignore"):
+        by = scheme_of(integrator, runs) if len(failing) >= SCENARIOS else None
+        if by is None:
+            return []
+        chosen = [run.short for run in _chosen(runs)]
+        found = course_causes(by, chosen) or either(old_operands(by, chosen))
+        return found or solved_causes(by, runs) or place_causes(by, runs)
+
+
+def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
+    """What makes one run that stands alone; none where more than one cause does."""
+    run = run.short
+    terms: list[tuple[str, Array]] = []
+    texts = list[str]()
+    for name, one in shares_of(run, by).items():
+        points = points_of([one], scenarios=1)
+        known = [np.allclose(one.share, share, atol=KNOWN, equal_nan=True) for _, share in terms]
+        if points is None or any(known):
+            continue
+        terms.append((name, one.share))
+        texts += either([f"in the steps, {text.format(name)}" for text in course_of(points)])
+    texts = texts or old_operands(by, [run], least=1)
+    if len(texts) > 1:
+        return []
+    return texts or solved_causes(by, [run]) or place_causes(by, [run])
+
+
+def _chosen(runs: Sequence[KeptRun]) -> list[KeptRun]:
+    """Of the failing ones those of few steps a sample, two a scenario, and some sound ones.
+
+    Within many steps a share changes too much for one number, where enough others are there.
+    """
+    failing, sound = (_two_each([r for r in runs if r.fails is fails]) for fails in (True, False))
+    few = [run for run in failing if run.sweep.every <= FEW_STEPS]
+    if len({run.name for run in few}) >= ENOUGH:
+        failing = few
+    return [*_evenly(failing, MOST_FAILING), *_evenly(sound, MOST_SOUND)]
+
+
+def _two_each(runs: Sequence[KeptRun]) -> list[KeptRun]:
+    kept: dict[str, list[KeptRun]] = {}
+    for run in sorted(runs, key=lambda run: run.sweep.every):
+        kept.setdefault(run.name, []).append(run)
+    return sorted((r for one in kept.values() for r in one[:2]), key=lambda r: r.sweep.every)
+
+
+def _evenly(runs: Sequence[KeptRun], most: int) -> list[KeptRun]:
+    if len(runs) <= most:
+        return list(runs)
+    return [runs[k] for k in np.linspace(0, len(runs) - 1, most).astype(int)]

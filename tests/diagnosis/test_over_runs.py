@@ -1,0 +1,151 @@
+"""Mistakes in the steps that the runs of several scenarios show together; and silence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, WORLD_TORQUE, case
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
+from omegadot.diagnosis.stepping.over_runs import causes_over_runs
+from omegadot.diagnosis.wording.kinds import agreed
+from omegadot.gates.case import Case, Sweep
+from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import applied_torque
+from omegadot.reference_impl.one_body.body_motion import body_motion
+from omegadot.reference_impl.rotations import rotate_inverse
+from omegadot.reference_impl.schemes import SCHEMES, Motion
+from omegadot.reference_impl.schemes.scheme import CHANNELS
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Array, System
+
+CASES = (
+    case("driven", {"torque": BODY_TORQUE}, 1.3),
+    case("driven-in-world", {"torque": WORLD_TORQUE}),
+    case("top-driven", {"pivot": PIVOT, "torque": WORLD_TORQUE, "gravity": GRAVITY}, 0.9),
+    case("damped", {"damping": 0.3}),
+    case("top", {"gravity": GRAVITY, "pivot": PIVOT}),
+)
+STEPS = 24
+Share = Callable[[int, float], float]
+Step = Callable[[System, Motion, Array, Array, float, int], tuple[Array, Array]]
+
+
+def euler(motion: Motion, q: Array, v: Array, h: float, more: Array) -> tuple[Array, Array]:
+    """A step of semi-implicit Euler with a change of omega-dot."""
+    v = v + h * motion.acceleration(q, v)
+    v[-3:] += h * more
+    return motion.retract(q, h * v), v
+
+
+def kept(one: Case, step: Step, h: float, every: int) -> KeptRun:
+    system, motion = one.system, body_motion(one.system)
+    q, v = to_coordinates(system, one.initial, "com-world")
+    places, velocities = [q], [v]
+    for n in range(STEPS * every):
+        q, v = step(system, motion, q, v, h, n)
+        places.append(q)
+        velocities.append(v)
+    cut = slice(None, None, every)
+    state = from_coordinates(system, np.stack(places)[cut], np.stack(velocities)[cut], "com-world")
+    sweep = Sweep(h, STEPS * every, every)
+    bounds = {c: np.full(STEPS, 1e-13) for c in ("omega", "attitude", "velocity", "position")}
+    return KeptRun(one.name, system, sweep, sweep.times, state, bounds, True)
+
+
+def causes(step: Step, scheme: str = "semi-implicit-euler") -> list[str]:
+    runs = [kept(one, step, h, every) for one in CASES for h, every in ((0.02, 1), (0.009, 2))]
+    runs = [replace(run, fails=not bool(np.all(_sound(run, scheme)))) for run in runs]
+    return causes_over_runs(Integrator("own", scheme, dict.fromkeys(CHANNELS, 1)), runs)
+
+
+def _sound(run: KeptRun, scheme: str) -> NDArray[np.bool_]:
+    return run.sound(SchemeOf(SCHEMES[scheme], "com-world"))
+
+
+def driven(share: Share) -> Step:
+    """The applied torque times a share of the step's number and the time."""
+
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        state = from_coordinates(system, q, v, "com-world")
+        torque = (share(n, n * h) - 1.0) * applied_torque(system, state)
+        return euler(motion, q, v, h, apply(inverse(moving_inertia(system)), torque))
+
+    return step
+
+
+@pytest.mark.parametrize(
+    ("share", "phrase"),
+    [
+        (
+            lambda n, t: min(1.0, t / 0.15),
+            "rises evenly from 0 at t = 0 to its full size at t =",
+        ),
+        (lambda n, t: n + 1.0, "in the n-th step of a run the applied torque acts n times"),
+        (lambda n, t: float(n == 0), "acts in the first step of a run alone"),
+        (lambda n, t: float(n % 3 == 1), "acts in one of 3 steps alone, from step 2 on"),
+    ],
+)
+def test_how_a_load_goes_over_a_run_is_named(share: Share, phrase: str) -> None:
+    (text,) = causes(driven(share))
+    assert phrase in text
+    assert "the applied torque" in text
+
+
+def test_a_load_that_is_wrong_by_one_factor_goes_by_no_law() -> None:
+    assert causes(driven(lambda n, t: 0.5)) == []
+
+
+def test_a_load_that_goes_by_no_known_law_is_not_named() -> None:
+    assert causes(driven(lambda n, t: 1.0 + np.cos(40.0 * t))) == []
+
+
+def test_an_operand_of_the_step_before_is_named() -> None:
+    before = dict[int, Array]()
+
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        before[n] = q[-4:]
+        world, back = system.load.torque_world, inverse(moving_inertia(system))
+        old, new = (rotate_inverse(before[k], world) for k in (max(n - 1, 0), n))
+        return euler(motion, q, v, h, apply(back, old - new))
+
+    (text,) = causes(step)
+    assert text == (
+        "in each step the torque in world axes is taken at the attitude of the step before"
+    )
+
+
+@pytest.mark.parametrize("most", [1e-7, 3])
+def test_how_far_an_implicit_equation_is_solved_is_named(most: float) -> None:
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        mean = v
+        for k in range(30):
+            last, place = mean, motion.retract(q, 0.5 * motion.cayley(h * mean))
+            mean = v + 0.5 * h * motion.acceleration(place, mean)
+            if k + 1 == most or 2.0 * float(np.linalg.norm((mean - last)[-3:])) < most < 1.0:
+                break
+        return motion.retract(q, motion.cayley(h * mean)), 2.0 * mean - v
+
+    (text,) = causes(step, "implicit-midpoint")
+    assert "fixed-point iterations" in text
+    expected = "3 fixed-point iterations alone" if most == 3 else "which end once omega changes"
+    assert expected in text
+
+
+def test_what_one_run_shows_gives_way_to_a_cause() -> None:
+    fact, cause = "only the first steps are wrong: from t = 1 s on, the run is sound", "gravity"
+    over = {"one": ([fact, cause], True), "other": ([cause], True)}
+    assert agreed([fact, cause], over) == [cause]
+    assert agreed([fact], over) == [fact]
