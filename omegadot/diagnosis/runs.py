@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.reported.clock import clock_cause
 from omegadot.diagnosis.reported.field_causes import field_causes
-from omegadot.diagnosis.reported.guesses import reported_run_guesses
+from omegadot.diagnosis.reported.guesses import Guesses
 from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import SLACK, ReportedRun, reported_run
 from omegadot.diagnosis.reported.run_causes import (
@@ -56,22 +56,6 @@ class RunCauses:
 NOTHING = RunCauses()
 
 
-class _Look:
-    """The runs of one integrator on a scenario, and the schemes that each is nearest to."""
-
-    def __init__(self, case: Case, truth: Truth, result: CaseResult) -> None:
-        self.case, self.truth, self.result = case, truth, result
-        self._guesses: dict[float, list[ReportedRun]] = {}
-
-    def guesses(self, run: JudgedRun) -> list[ReportedRun]:
-        """Of a run that declares no scheme; worked out once."""
-        knob = run.sweep.knob
-        if knob not in self._guesses:
-            known = (self.case, self.truth, self.result)
-            self._guesses[knob] = reported_run_guesses(*known, run)
-        return self._guesses[knob]
-
-
 def run_causes(
     case: Case,
     truth: Truth,
@@ -83,27 +67,27 @@ def run_causes(
 
     equations: whether the equation that is stepped may be another than the right one.
     """
-    look = _Look(case, truth.in_precision(result.precision), result)
+    guesses = Guesses(case, truth.in_precision(result.precision), result)
     failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
     for run in failed:
         answer = result.runs.get((run.integrator.name, run.sweep.knob))
         if answer is not None and answer.ok:
-            text = clock_cause(answer.result["time"], run.sweep, look.truth.yardstick.eps)
+            text = clock_cause(answer.result["time"], run.sweep, guesses.truth.yardstick.eps)
             if text:
                 return RunCauses((text,))
-    several = _of_several_schemes(look, runs) if failed else ""
+    several = _of_several_schemes(guesses, runs) if failed else ""
     if several:
         return RunCauses((several,))
     for run in sorted(failed, key=lambda run: run.sweep.steps):
-        found = _of_run(look, run, equations)
+        found = _of_run(guesses, run, equations)
         if found.texts:
-            kept = _of_others(look, found, run, failed, equations)
+            kept = _of_others(guesses, found, run, failed, equations)
             return _at_long_steps(kept, runs)
     return NOTHING
 
 
 def _of_others(
-    look: _Look,
+    guesses: Guesses,
     found: RunCauses,
     run: JudgedRun,
     failed: Sequence[JudgedRun],
@@ -114,7 +98,7 @@ def _of_others(
     if not longer or all(map(is_fact, found.texts)):
         return found
     second = min(longer, key=lambda one: one.sweep.steps)
-    other = _of_run(look, second, equations)
+    other = _of_run(guesses, second, equations)
     if other.texts and all(map(is_fact, other.texts)):
         return found
     kinds = set(map(kind_of, other.texts))
@@ -122,14 +106,10 @@ def _of_others(
     return RunCauses(both, found.decisive or other.decisive)
 
 
-def _of_several_schemes(look: _Look, runs: Sequence[JudgedRun]) -> str:
+def _of_several_schemes(guesses: Guesses, runs: Sequence[JudgedRun]) -> str:
     """Runs of one integrator that are different schemes' at different steps, none declared."""
-    named = dict[float, set[str]]()
-    for run in runs:
-        for guess in look.guesses(run):
-            if guess.is_own:
-                known = named.setdefault(run.sweep.timestep, set())
-                known.add(guess.integrator.scheme or "")
+    equal = {run.sweep.timestep: guesses.equal(run) for run in runs}
+    named = {timestep: schemes for timestep, schemes in equal.items() if schemes}
     if len(named) < 2 or set.intersection(*named.values()):
         return ""
     parts = [f"{' or '.join(sorted(n))} at {h:g} s" for h, n in sorted(named.items())]
@@ -153,12 +133,12 @@ def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
     return RunCauses(tuple(text + where for text in kept), found.decisive or limit)
 
 
-def _of_run(look: _Look, run: JudgedRun, equations: bool) -> RunCauses:
+def _of_run(guesses: Guesses, run: JudgedRun, equations: bool) -> RunCauses:
     """Causes in what one run reports, then in its stepping, then in where it is sound.
 
     Where nothing but the omega-dot reported along it failed, only that is looked at.
     """
-    case, truth, result = look.case, look.truth, look.result
+    case, truth, result = guesses.case, guesses.truth, guesses.result
     reported = reported_run(case, truth, result, run)
     if {row.channel for row in run.rows if row.verdict == "fail"} == {"omega_dot"}:
         text = omega_dot_late(case, truth, result, run)
@@ -166,17 +146,17 @@ def _of_run(look: _Look, run: JudgedRun, equations: bool) -> RunCauses:
     if reported is not None:
         return _of_reported(reported, result, equations)
     # By the schemes of the reference that come nearest, where none is declared.
-    guesses = look.guesses(run)
-    own = [one for one in guesses if one.is_own]
+    nearest = guesses.nearest(run)
+    own = [one for one in nearest if one.is_own]
     if own and not any(one.is_declared for one in own):
         return _lower_order(own)
     facts = NOTHING
-    for guess in guesses:
+    for guess in nearest:
         found = _of_reported(guess, result, equations)
         if found.texts and not all(map(is_fact, found.texts)):
             return found
         facts = facts if facts.texts else found
-    found = _of_other_slips(guesses)
+    found = _of_other_slips(nearest)
     if found.texts or facts.texts:
         return found if found.texts else facts
     text = restart_cause(truth, result, run)

@@ -129,7 +129,7 @@ def with_exceptions(
     if exception is None:
         return result
     if result.verdict == "fail":
-        text = f"{exception.reason} ({exception.link}): {result.message}"
+        text = f"{exception.reason} ({exception.link}): {result.settled.message}"
         return Result("declared", text, result.outcome)
     if result.verdict == "pass" and not drawn:
         return Result("fail", no_longer_fails(exception))

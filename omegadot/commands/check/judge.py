@@ -74,7 +74,7 @@ MEASURED = ("ok", "diverged")
 def _of_rows(rows: Sequence[Row], cause: Callable[[], str], unjudged: str) -> Result:
     verdict = worst(row.verdict for row in rows)
     if verdict == "fail":
-        return Result("fail", failure(rows, cause()), again=lambda: failure(rows, cause()))
+        return Result("fail", failure(rows), explained=lambda: failure(rows, cause()))
     if verdict == "pass":
         return PASSED
     notes = dict.fromkeys(row.note for row in rows if row.note)

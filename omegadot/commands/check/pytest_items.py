@@ -46,7 +46,7 @@ class CheckItem(pytest.Item):
 
     def runtest(self) -> None:
         """Request the result: the scenario is run when its first check is."""
-        result = self.suite.result_of(self.check)
+        result = self.suite.result_of(self.check).settled
         # Properties travel with the report, also from another process, and stand in JUnit's file.
         self.user_properties += ((ENGINE, self.check.engine), (VERDICT, result.verdict))
         if result.verdict == "skip":

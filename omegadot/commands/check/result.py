@@ -54,20 +54,20 @@ class Result:
     verdict: "skip" has its reason in `message`, and is no pass; "declared" is a failure that an
     exception excuses; "error" is an engine that did not answer, and then
     outcome: crashed, timeout, raised or not-installed.
-    again: the message once more, when other scenarios may have contradicted its cause.
+    explained: the message with its cause, which is surer the more scenarios are known.
     """
 
     verdict: Verdict
     message: str = ""
     outcome: str = "ok"
-    again: Callable[[], str] | None = field(default=None, compare=False, repr=False)
+    explained: Callable[[], str] | None = field(default=None, compare=False, repr=False)
 
     @property
     def settled(self) -> Result:
-        """The same with a cause that holds on all scenarios that have been run since."""
-        if self.verdict != "fail" or self.again is None:
+        """The same with a cause that holds on all scenarios that have been run."""
+        if self.verdict != "fail" or self.explained is None:
             return self
-        return replace(self, message=self.again(), again=None)
+        return replace(self, message=self.explained(), explained=None)
 
 
 PASSED = Result("pass")

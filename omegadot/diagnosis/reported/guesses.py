@@ -18,35 +18,69 @@ MOST_STEPS = 5000  # of a run that is stepped for a guess
 Distance = tuple[bool, int, float]
 
 
-def reported_run_guesses(
-    case: Case, truth: Truth, result: CaseResult, run: JudgedRun
-) -> list[ReportedRun]:
-    """The run next to the nearest schemes of the reference, of an engine that declares none.
+class Guesses:
+    """Of the runs of one case that declare no scheme: by which they may be stepped.
 
-    Which are nearest is seen in the first samples, before a fault has spoiled the rest; these
-    alone are stepped through the whole run.
+    Which schemes are nearest is seen in the first samples, before a fault has spoiled the rest;
+    these alone are stepped through the whole run.
     """
-    integrator, sweep = run.integrator, run.sweep
-    answer = result.runs.get((integrator.name, sweep.timestep))
-    if answer is None or not answer.ok or integrator.scheme in SCHEMES:
-        return []
-    time, state = answer.result["time"], State(**answer.result["state"])
-    growth = truth.growth[truth.rows(sweep)]
-    whole = ReportedRun(case, truth, integrator, sweep, time, state, state, growth, False)
-    beginnings = truth.beginnings(sweep.until(LEAST_SAMPLES))
-    if len(time) != len(sweep.times):
-        return [_beside_scheme(whole, key) for key in list(beginnings)[:1]]
-    first = whole.until(LEAST_SAMPLES)
-    ranked = [(_beside(first, key, own).distance_at_first, key) for key, own in beginnings.items()]
-    ranked.sort(key=_by_distance)
-    if ranked:
-        least, nearest = ranked[0]
-        ranked += _explicit(_beside(first, nearest, beginnings[nearest]), least, sweep.steps)
-    ranked.sort(key=_by_distance)
-    return [until_it_shows(_beside_scheme(whole, key)) for _, key in ranked[:MOST_GUESSES]]
+
+    def __init__(self, case: Case, truth: Truth, result: CaseResult) -> None:
+        self.case, self.truth, self.result = case, truth, result
+        self._ranked: dict[float, list[tuple[Distance, SchemeKey]]] = {}
+        self._nearest: dict[float, list[ReportedRun]] = {}
+
+    def nearest(self, run: JudgedRun) -> list[ReportedRun]:
+        """The run next to each of the nearest schemes; none where it declares one."""
+        knob, whole = run.sweep.knob, self._whole(run)
+        if whole is None:
+            return []
+        if knob not in self._nearest:
+            keys = [key for _, key in self._by_distance(run, whole)[:MOST_GUESSES]]
+            found = [_beside_scheme(whole, key) for key in keys]
+            sampled = len(whole.time) == len(whole.sweep.times)
+            self._nearest[knob] = list(map(until_it_shows, found)) if sampled else found[:1]
+        return self._nearest[knob]
+
+    def equal(self, run: JudgedRun) -> set[str]:
+        """The schemes that the run equals: none of those that do not begin as it does is."""
+        whole = self._whole(run)
+        if whole is None or not any(off == 0 for (_, off, _), _ in self._by_distance(run, whole)):
+            return set()
+        return {one.integrator.scheme or "" for one in self.nearest(run) if one.is_own}
+
+    def _whole(self, run: JudgedRun) -> ReportedRun | None:
+        """The run next to itself; None where there is none or its scheme is declared."""
+        integrator, sweep = run.integrator, run.sweep
+        answer = self.result.runs.get((integrator.name, sweep.timestep))
+        if answer is None or not answer.ok or integrator.scheme in SCHEMES:
+            return None
+        time, state = answer.result["time"], State(**answer.result["state"])
+        growth = self.truth.growth[self.truth.rows(sweep)]
+        known = (self.case, self.truth, integrator, sweep)
+        return ReportedRun(*known, time, state, state, growth, False)
+
+    def _by_distance(self, run: JudgedRun, whole: ReportedRun) -> list[tuple[Distance, SchemeKey]]:
+        """Every scheme, the nearest in the first samples first."""
+        knob = run.sweep.knob
+        if knob in self._ranked:
+            return self._ranked[knob]
+        beginnings = self.truth.beginnings(run.sweep.until(LEAST_SAMPLES))
+        if len(whole.time) != len(run.sweep.times):
+            return [((True, 0, 0.0), key) for key in beginnings]
+        first = whole.until(LEAST_SAMPLES)
+        ranked = [(_beside(first, k, own).distance_at_first, k) for k, own in beginnings.items()]
+        ranked.sort(key=_distance_of)
+        if ranked:
+            least, nearest = ranked[0]
+            by_nearest = _beside(first, nearest, beginnings[nearest])
+            ranked += _explicit(by_nearest, least, run.sweep.steps)
+        ranked.sort(key=_distance_of)
+        self._ranked[knob] = ranked
+        return ranked
 
 
-def _by_distance(pair: tuple[Distance, SchemeKey]) -> Distance:
+def _distance_of(pair: tuple[Distance, SchemeKey]) -> Distance:
     return pair[0]
 
 
