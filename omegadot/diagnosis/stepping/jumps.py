@@ -68,7 +68,8 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
         allowed = LEFT * norm(was) + norm(step)
         jumped = norm(now - was) > allowed
         if jumped.any() and np.all(np.isfinite(now)):
-            text = _limit(what, unit, was, now, allowed, jumped)
+            damped = bool(np.any(steps.system.load.damping))
+            text = _limit(what, unit, was, now, allowed, jumped, damped)
             if text:
                 return text
     where = only_where([(steps.system, before, stays(steps, after))])
@@ -131,14 +132,21 @@ def _apart(name: str, one: Array, other: Array) -> float:
 
 
 def _limit(
-    what: str, unit: str, was: Array, now: Array, allowed: Array, jumped: NDArray[np.bool_]
+    what: str,
+    unit: str,
+    was: Array,
+    now: Array,
+    allowed: Array,
+    jumped: NDArray[np.bool_],
+    damped: bool,
 ) -> str:
     size, held = norm(was), norm(now)
     if np.all(held[jumped] <= allowed[jumped]):
         least, more = float(np.max(size[jumped])), size[~jumped]
         sleeps = "the body is put to sleep: " if what == "omega" else ""
         if not len(more):
-            return f"{what} is set to zero"
+            # a damping that is taken wrongly stops it as well
+            return f"{what} is set to zero" if damped else f"{sleeps}{what} is set to zero"
         if np.min(more) < least:
             return ""
         return f"{sleeps}{what} is set to zero below {limits(least, float(np.min(more)), unit)}"

@@ -20,6 +20,8 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State
 
+SLOW = 0.1  # rad/s, below which engines put a body to sleep
+
 
 def asleep(reported: ReportedRun) -> str:
     """Omega is zero from some sample on."""
@@ -36,7 +38,8 @@ def asleep(reported: ReportedRun) -> str:
     sound = first > 1 and reported.agrees(reported.state[before], reported.own[before], before)
     # a damping that is taken wrongly may stop the body as well, in its first step
     damped = bool(np.any(reported.case.system.load.damping))
-    return f"the body is put to sleep: {text}" if sound or not damped else text
+    sleeps = sound or not damped or rate < SLOW
+    return f"the body is put to sleep: {text}" if sleeps else text
 
 
 def still(reported: ReportedRun) -> str:

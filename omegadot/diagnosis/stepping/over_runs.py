@@ -8,10 +8,10 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
-from omegadot.diagnosis.stepping.courses import course_of, points_of
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.old_operands import old_operands
 from omegadot.diagnosis.stepping.places import place_causes
+from omegadot.diagnosis.stepping.share_laws import laws_of, points_of
 from omegadot.diagnosis.stepping.solved import solved_causes
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
@@ -22,7 +22,7 @@ FEW_STEPS, ENOUGH = 8, 4  # between samples, and scenarios with no more of them
 SCENARIOS = 2  # at least, that fail: of one motion much else may be the cause
 
 
-def course_causes(by: SchemeOf, chosen: Sequence[KeptRun]) -> list[str]:
+def law_causes(by: SchemeOf, chosen: Sequence[KeptRun]) -> list[str]:
     """A term that acts otherwise in the steps, by one law in every run; none where none does."""
     every: dict[str, list[Shares]] = {name: [] for name in TERMS}
     left = dict.fromkeys(TERMS, int(MISSED * sum(run.fails for run in chosen)))
@@ -39,7 +39,7 @@ def course_causes(by: SchemeOf, chosen: Sequence[KeptRun]) -> list[str]:
             return []
     for name, shares in every.items():  # what states less comes first
         points = points_of(shares)
-        texts = course_of(points) if points is not None else []
+        texts = laws_of(points) if points is not None else []
         if texts:
             return either([f"in the steps, {text.format(name)}" for text in texts])
     return []
@@ -53,7 +53,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         if by is None:
             return []
         chosen = [run.short for run in _chosen(runs)]
-        found = course_causes(by, chosen) or either(old_operands(by, chosen))
+        found = law_causes(by, chosen) or either(old_operands(by, chosen))
         return found or solved_causes(by, runs) or place_causes(by, runs)
 
 
@@ -68,7 +68,7 @@ def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
         if points is None or any(known):
             continue
         terms.append((name, one.share))
-        texts += either([f"in the steps, {text.format(name)}" for text in course_of(points)])
+        texts += either([f"in the steps, {text.format(name)}" for text in laws_of(points)])
     texts = texts or old_operands(by, [run], least=1)
     if len(texts) > 1:
         return []

@@ -1,4 +1,4 @@
-"""Steps that are wrong in one part of all states alone, over all runs: near the vertical, say.
+"""Steps that are wrong in one part of all states alone, over all runs, such as near the vertical.
 
 Every interval is sound or wrong by the scheme that is known. What holds of all wrong ones and of no
 sound one is looked for among the numbers of a state, at the places of each step's stages.

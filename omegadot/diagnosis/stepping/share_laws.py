@@ -147,7 +147,7 @@ def _few(points: Points, off: NDArray[np.bool_]) -> Points:
     return Points(**fields, rate=(first[order], last[order]))
 
 
-def course_of(points: Points) -> list[str]:
+def laws_of(points: Points) -> list[str]:
     """The laws that give every share, as text with {} for the term.
 
     By the number of the step, or else by the time, where runs of several steps distinguish the
