@@ -56,6 +56,7 @@ class Across:
         self._accepted: list[list[Candidate]] = []
         self._weak: dict[str, list[Held]] = {}
         self._formulas: dict[str, ByFormula] = {}
+        self._before: dict[str, ByFormula] = {}  # of fewer scenarios
         self._known: dict[str, str] = {}
         self._quick: dict[tuple[str, str, int], _Level] = {}
         self._nested: dict[str, Across] = {}
@@ -85,8 +86,11 @@ class Across:
         """One more scenario; what was found before may not hold any more."""
         self.scenes[scene.name] = scene
         self._accepted, self._texts, self._chosen = [], {}, {}
-        self._weak, self._quick, self._nested = {}, {}, {}
+        self._weak, self._quick = {}, {}
+        for source, nested in self._nested.items():
+            _add_wrong(nested, scene, source)
         self._conditions, self._partly, self._explains = {}, {}, {}
+        self._before |= self._formulas
         self._formulas, self._known = {}, {}
 
     def cause(self, name: str, source: str) -> str:
@@ -209,7 +213,7 @@ class Across:
     def _by_formula(self, scene: Scene, source: str) -> str:
         """A product of known vectors that explains the whole run."""
         if source not in self._formulas:
-            self._formulas[source] = by_formula(self._all, source)
+            self._formulas[source] = by_formula(self._all, source, self._before.get(source))
         found = self._formulas[source]
         here = [one for one in found.whole if scene.name in one.names]
         partly = [] if here else [one for one in found.partly if scene.name in one.names]
@@ -279,8 +283,7 @@ class Across:
         if source not in self._nested:
             self._nested[source] = Across()
             for one in shown:
-                wrong = one.evidence[source].at(np.flatnonzero(~one.evidence[source].sound))
-                self._nested[source].add(replace(one, evidence={source: wrong}))
+                _add_wrong(self._nested[source], one, source)
         best = self._nested[source].best(scene, source, PLAIN)
         where = {one.candidate.key: self._where_of(one.candidate, source) for one in best}
         sorted_ = [one for one in best if where[one.candidate.key]]
@@ -310,6 +313,15 @@ class Across:
         """Where the equation holds at some states: at which it does not."""
         where = where_wrong(scene.evidence[source], self._evidence(source))
         return f"the equation holds at some states, and is wrong only where {where}" * bool(where)
+
+
+def _add_wrong(nested: Across, scene: Scene, source: str) -> None:
+    """The states of a scenario at which the engine is wrong, as a scenario of their own."""
+    evidence = scene.evidence.get(source)
+    if evidence is None or not evidence.finite or np.all(evidence.sound):
+        return
+    wrong = evidence.at(np.flatnonzero(~evidence.sound))
+    nested.add(replace(scene, evidence={source: wrong}))
 
 
 def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:

@@ -31,12 +31,22 @@ class ByFormula:
     partly: tuple[Held, ...] = ()
     own: tuple[Held, ...] = ()
     along: str = ""
+    hopeless: bool = False  # nothing is along it, which more scenarios do not change
 
 
-def by_formula(scenes: Scenes, source: str) -> ByFormula:
-    """What may be named on the scenarios with evidence of this source."""
+def by_formula(scenes: Scenes, source: str, before: ByFormula | None = None) -> ByFormula:
+    """What may be named on the scenarios with evidence of this source.
+
+    before: of some of these scenarios.
+    """
     known = [s for s in scenes.by_name.values() if source in s.evidence]
     failing = [s for s in known if s.evidence[source].clear]
+    if before is not None and before.hopeless:
+        return before
+    for one in before.whole if before is not None else ():
+        held = scenes.held(one.candidate, one.shown[0], source)
+        if not (held.contradicted or held.numbers or held.against):
+            return ByFormula((held,), before.partly if before is not None else ())
     partly, own = list[Held](), list[Held]()
     every = [s.evidence[source] for s in failing]
     others = [e for s in failing for e in s.scaled.values()] if source == "forward" else []
@@ -52,7 +62,8 @@ def by_formula(scenes: Scenes, source: str) -> ByFormula:
             partly.append(held)
         elif not any(_plainer(one, held) and conditional([one]) for one in partly):
             return ByFormula((held,), tuple(partly))
-    return ByFormula((), tuple(partly), tuple(own[:1]), angular.along)
+    hopeless = angular.hopeless or linear.hopeless
+    return ByFormula((), tuple(partly), tuple(own[:1]), angular.along, hopeless)
 
 
 def _plainer(one: Held, other: Held) -> bool:

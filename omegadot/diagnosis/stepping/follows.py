@@ -25,6 +25,7 @@ Followed = Literal["wrong", "right", "between"]
 BETWEEN = 0.2  # by how much the distances to both may add up to another than their own
 NEAR, FAR = 0.3, 0.7  # of the distance of the two solutions
 GROWS, CLEAR = 3.0, 0.05  # of the part of that distance which a run that leaves a solution has left
+CONVERGED = 0.1  # of the distance of the two solutions
 SEEN = 1e-4  # relative: what the steps here leave
 
 
@@ -76,6 +77,11 @@ def follows(beginning: Beginning, candidate: Candidate, eps: float) -> Followed 
             answer = "right"
         elif abs(to_wrong + to_right - 1.0) < BETWEEN:
             answer = "between" if parts[0] < NEAR and parts[-1] > FAR else None
+        if answer in ("right", "between"):
+            # of a wrong equation that is stiff the steps here may be far from its solution
+            finer = _solved(system, beginning, candidate, 2 * counts[:kept], eps)
+            left = None if finer is None else norm(getattr(finer, name) - far)[used] / apart[used]
+            answer = answer if left is not None and np.max(left) < CONVERGED else None
         found[float(np.max(apart)) / size] = answer
     return found[max(found)] if found else None
 

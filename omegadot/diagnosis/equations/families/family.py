@@ -12,7 +12,7 @@ from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.wording.digits import factor
 from omegadot.reference_impl.system import Array, System
 
-MOST_TRIES = 8
+MOST_TRIES, WILD, NEARER = 8, 3, 0.5  # steps; those that may lead away; what one must leave
 DELTA = 1e-6
 NOTHING = 1e-7  # a part that cannot be kept apart from none in the limit of vanishing steps
 OF_THE_BODY = ("inertia", "lever", "pivot", "mass")  # a larger one makes no term larger
@@ -70,7 +70,8 @@ def _from(evidence: Evidence, family: Family, right: Form, p: Array) -> Array | 
     if size == 0.0:
         size = float(np.trace(right.spin)) if family.unit == "kg m^2" else 1.0
     scale = np.full(len(p), DELTA * (abs(size) or 1.0))
-    for _ in range(MOST_TRIES):
+    before = np.inf
+    for tried in range(MOST_TRIES):
         try:
             here = accelerations(form(p), evidence.states)
             if evidence.fits(here, family.slack(evidence.system, p)):
@@ -80,6 +81,10 @@ def _from(evidence: Evidence, family: Family, right: Form, p: Array) -> Array | 
         except (ValueError, np.linalg.LinAlgError):
             return None
         rest = evidence.weighted(evidence.found, here)
+        left = float(np.sqrt(rest @ rest))
+        if tried >= WILD and not left < NEARER * before:
+            return None  # it has come as near as it comes
+        before = left
         lines = [
             evidence.weighted(type(here)(there.angular[k], there.linear[k]), here) / d
             for k, d in enumerate(scale)

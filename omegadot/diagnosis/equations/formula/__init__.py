@@ -1,4 +1,4 @@
-"""Wrong equations that nobody listed: one product of known vectors and sizes, found by search."""
+"""Wrong equations that no list has: one product of known vectors and sizes, found by search."""
 
 from omegadot.diagnosis.equations.formula.formula import Formula
 from omegadot.diagnosis.equations.formula.search import AnyFormula, formulas

@@ -275,4 +275,4 @@ def symbols_of(texts: Sequence[str]) -> set[str]:
     joined = " ".join(texts)
     for mark in "()|,/":
         joined = joined.replace(mark, " ")
-    return {word.partition("^")[0] if word != "I^-1" else word for word in joined.split()}
+    return {name.partition("^")[0] if name != "I^-1" else name for name in joined.split()}

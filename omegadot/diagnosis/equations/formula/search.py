@@ -32,6 +32,7 @@ class Found:
 
     found: Sequence[AnyFormula] = ()
     along: str = ""
+    hopeless: bool = False  # it is seen, and nothing is along it
 
 
 def formulas(
@@ -59,8 +60,9 @@ def formulas(
         found: list[AnyFormula] = [x for v in near[:MOST_TRIED] for x in _with_law(v, seen)]
         if not linear and every[0].source != INVERSE:
             found += [x for one in other_inertias(rows) for x in with_law(one, seen)]
+    nothing = not found and not near
     along = next((one.direction for one in near if not one.instead), "")
-    return Found(sorted(found, key=lambda one: one.cost), along)
+    return Found(sorted(found, key=lambda one: one.cost), along, nothing)
 
 
 def _shows(evidence: Evidence, linear: bool) -> bool:
