@@ -71,6 +71,12 @@ def test_everything_is_in_the_json(base) -> None:
     assert change["band"] == pytest.approx(2 * BOUND)
 
 
+def test_a_seed_that_no_float_holds_is_shown(base) -> None:
+    found = compare_records(base, with_run(base, seed=10**400))
+    assert "beyond 1e308" in as_text(found)
+    assert draw_two_runs(found)
+
+
 @LOOKS
 def test_axe_finds_nothing_on_the_page(base, tmp_path, look):
     worse = edited(base, value=value_of(base) * 3 + 1, verdict="fail")

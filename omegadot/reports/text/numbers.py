@@ -31,7 +31,12 @@ def times_its_bound(value: float | None, bound: float | None) -> float:
 
 def plain(value: float | None) -> str:
     """A setting as its author would write it: 0.005, not 5e-3; – where there is none."""
-    return "–" if value is None else f"{value:.6g}"
+    if value is None:
+        return "–"
+    try:
+        return f"{value:.6g}"
+    except OverflowError:  # a whole number that no float holds, as a damaged record may have
+        return "beyond 1e308"
 
 
 def grouped(value: float) -> str:
