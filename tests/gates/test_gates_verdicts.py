@@ -40,6 +40,16 @@ def test_a_low_order_is_looked_at_again_at_finer_steps(
     assert judge(replace(found, settled=settled), "rk4", 4).kind == kind
 
 
+def test_a_body_too_thin_for_the_steps_leaves_a_low_order_open() -> None:
+    """Caught: a stiff scheme that is accused where its finest step does not resolve the motion."""
+    for order in (SLOW, ObservedOrder(0.1, False)):
+        found = evidence([0.0, 1e-3, 1e-3], None, None, order)
+        assert judge(replace(found, stiffness=1.01), None, 4).kind == "unresolved"
+        assert judge(replace(found, stiffness=0.99), None, 4).kind in ("unexplained", "unsettled")
+    higher = evidence([0.0, 1e-3, 1e-3], None, None, ObservedOrder(4.0, True))
+    assert judge(replace(higher, stiffness=1.01), None, 4).kind == "consistent"
+
+
 def test_an_order_that_rounding_does_not_leave_open_fails() -> None:
     near = ObservedOrder(1.7, False, hidden=NEAR_ROUNDING)
     found = evidence([0.0, 1e-3, 1e-3], None, None, near)

@@ -103,11 +103,11 @@ def measured(timestep, size, bound=1e-12, saturated=0.0, **more):
     return MeasuredRun(sweep, error, dict.fromkeys(channels, np.full(11, bound)), **more)
 
 
-def held(measured_runs, order, left=None):
+def held(measured_runs, order, left=None, stiffness=0.0):
     scheme = Declared("scheme" if left else None, dict.fromkeys(measured_runs[0].error, order))
     seen = orders_seen(measured_runs)
     of = measured_runs[-1] if left is None else replace(measured_runs[-1], against_scheme=left)
-    (row,) = [r for r in order_rows(seen, scheme, of) if r.channel == "attitude"]
+    (row,) = [r for r in order_rows(seen, scheme, of, stiffness) if r.channel == "attitude"]
     return row
 
 
@@ -122,6 +122,7 @@ def test_orders_are_judged_within_the_tolerance_and_may_be_higher():
     assert held(sweep_of(1.8), 2).verdict == "info"
     assert held(sweep_of(1.1), 2).verdict == "fail"
     assert held(sweep_of(0.0, 1e-2), 1).verdict == "fail"
+    assert held(sweep_of(0.0, 1e-2), 1, stiffness=1.01).verdict == "info"
     assert held(sweep_of(1.0), None).verdict == "info"
 
 

@@ -37,7 +37,7 @@ class MeasuredRun:
 
     gained: whether the energy is larger (1) than the exact one or smaller (-1), where it is known.
     single: whether the engine works in single precision.  of_momentum: what rounding may grow to
-    where the scheme is not known, and may step the angular momentum.
+    where the scheme is not known, and may step the angular momentum.  stiffness: see `Evidence`.
     """
 
     sweep: Sweep
@@ -48,6 +48,7 @@ class MeasuredRun:
     gained: Array | None = field(default=None, kw_only=True)
     single: bool = field(default=False, kw_only=True)
     of_momentum: dict[str, Array] = field(default_factory=dict, kw_only=True)
+    stiffness: float = field(default=0.0, kw_only=True)
 
     @property
     def beside_scheme(self) -> dict[str, Array]:
@@ -68,6 +69,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
     no bound.
     """
     yardstick, rows, exact = truth.yardstick, truth.rows(sweep), truth.at(sweep)
+    scale = yardstick.scale
 
     with np.errstate(over="ignore", invalid="ignore"):  # an engine may be where squares overflow
         mine, right = (total_energy(yardstick.system, one) for one in (state, exact))
@@ -90,6 +92,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
         gained=gained,
         single=yardstick.eps > EPS,
         of_momentum={channel: _sizes(bound) for channel, bound in momentum.items()},
+        stiffness=sweep.timestep * yardstick.rate * (scale.largest / scale.smallest) ** 0.5,
     )
 
 
@@ -131,7 +134,8 @@ def evidence_of(
             own = next(one for one in known if one.timestep == measured.sweep.timestep)
             excess = max(excess, excess_of(own, known, declared + part))
     bound, floor = measured.round_off[channel], measured.floor.get(channel)
-    more = (excess, finer >= FEWEST_STEPS, highest, measured.of_momentum.get(channel))
+    stiffness = min(run.stiffness for run in measured_runs)
+    more = (excess, finer >= FEWEST_STEPS, highest, measured.of_momentum.get(channel), stiffness)
     return Evidence(measured.error[channel], bound, left, tuple(orders), floor, *more)
 
 

@@ -17,8 +17,9 @@ from omegadot.reference_impl.system import Array
 
 ONE_STEP = "one step size cannot show an order"
 UNSETTLED = "the sweep does not resolve the order"
+STIFF = "the steps are too long for so thin a body to show the order"
 NOT_FINITE = "not finite"
-UNDECIDED = (ONE_STEP, UNSETTLED)
+UNDECIDED = (ONE_STEP, UNSETTLED, STIFF)
 """How the notes begin of failures that a finer step could lift."""
 
 
@@ -64,6 +65,8 @@ class Evidence:
     settled: there are so many finer steps that more would not change that.
     highest: the order that rounding leaves open at most, where that is known.
     of_momentum: (n,), what rounding may grow to where the angular momentum may be what is stepped.
+    stiffness: ``h |omega| sqrt(J / lambda)`` of the finest step. Above one the body's thin axis may
+    turn by more than a radian in a step, on which a sound scheme may err without any order.
     """
 
     error: Array
@@ -75,6 +78,7 @@ class Evidence:
     settled: bool = True
     highest: float = np.inf
     of_momentum: Array | None = None
+    stiffness: float = 0.0
 
     @property
     def equals_scheme(self) -> bool:
@@ -129,6 +133,8 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
     if evidence.highest < declared - 0.5:
         limit = f"the order is {evidence.highest:.2f} at most, whatever rounding does"
         return Finding("unexplained", f"{limit}, declared {declared}")
+    if lowest.value < least and evidence.stiffness > 1.0:
+        return Finding("unresolved", f"{STIFF}: {text}")
     if not all(order.resolved for order in seen):
         shown = [order for order in seen if not order.resolved and not order.hidden]
         # Clear errors that do not even begin to shrink as they should.

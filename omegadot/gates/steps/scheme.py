@@ -22,6 +22,7 @@ from omegadot.gates.errors.orders import (
     is_whole,
     order_of,
 )
+from omegadot.gates.errors.verdicts import STIFF
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.reference_impl.coordinates import canonical
@@ -45,12 +46,15 @@ def orders_seen(measured_runs: list[MeasuredRun]) -> dict[str, ObservedOrder]:
 
 
 def order_rows(
-    seen: Mapping[str, ObservedOrder], declared: Declared, measured: MeasuredRun
+    seen: Mapping[str, ObservedOrder],
+    declared: Declared,
+    measured: MeasuredRun,
+    stiffness: float = 0.0,
 ) -> list[Row]:
     """The orders that one integrator's sweep shows, against those that it declares.
 
     A channel in which the engine equals its declared scheme is not held to an order that the
-    scheme does not show here either.
+    scheme does not show here either.  stiffness: of the finest step, see `verdicts.Evidence`.
     """
     found = []
     for channel, shown in seen.items():
@@ -62,6 +66,8 @@ def order_rows(
         elif shown.resolved:
             explained = left is not None and bool(np.all(left <= measured.beside_scheme[channel]))
             verdict, note = _held_to(shown, limit, explained)
+            if verdict == "fail" and stiffness > 1.0:
+                verdict, note = "info", f"{STIFF}: {note}"
         bound = None if limit is None else float(limit)
         found.append(Row(GATE, channel, "observed_order", shown.value, "1", bound, verdict, note))
     return found

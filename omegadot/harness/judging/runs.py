@@ -89,7 +89,7 @@ def _judge_steps(
         if integrator.knob == "fixed-accuracy":
             findings = accuracy.fixed(findings)
         match = scheme.match_row(truth, integrator, measured, state, known)
-        orders = scheme.order_rows(seen, declared, measured)
+        orders = scheme.order_rows(seen, declared, measured, min(r.stiffness for r in known))
         if integrator.knob == "fixed-accuracy":
             orders = accuracy.fixed_orders(orders)
         probed = rows_of_probes(truth, integrator, sweep, result)
