@@ -126,14 +126,17 @@ def _known(channel: str, shown: Sequence[tuple[JudgedRun, _Error]]) -> Known:
 
 
 def _near(powers: Array) -> float | None:
-    """The half or whole number that all are near to."""
+    """The half or whole number that all are near to; None without one."""
+    if not len(powers) or not np.all(np.isfinite(powers)):
+        return None
     near = round(2.0 * float(np.median(powers))) / 2.0
-    return near if len(powers) and np.max(np.abs(powers - near)) < CLEAN else None
+    return near if np.max(np.abs(powers - near)) < CLEAN else None
 
 
 def _of_step(shown: Sequence[tuple[JudgedRun, _Error]]) -> float | None:
     """The exponent of the step in the error at the first time that all runs have."""
-    by_step = sorted(shown, key=lambda pair: -pair[0].sweep.timestep)
+    stepped = [pair for pair in shown if pair[0].sweep.accuracy is None]
+    by_step = sorted(stepped, key=lambda pair: -pair[0].sweep.timestep)
     if len(by_step) < 2:
         return None
     for t in by_step[0][1].time[1:]:
