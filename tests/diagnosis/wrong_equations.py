@@ -109,6 +109,14 @@ def products_in_another_order(system: System, states: State) -> Acceleration:
     return forward_dynamics(replace(system, bodies=(body,)), states)
 
 
+def tensor_about_other_axes(system: System, states: State) -> Acceleration:
+    """As where the principal axes are read off a matrix that is no rotation."""
+    turn = np.array([[2.0, -1.0, 2.0], [2.0, 2.0, -1.0], [-1.0, 2.0, 2.0]]) / 3.0
+    tensor = turn @ np.asarray(system.body.inertia) @ turn.T
+    body = replace(system.body, inertia=tensor)
+    return forward_dynamics(replace(system, bodies=(body,)), states)
+
+
 def mass_in_single_precision(system: System, states: State) -> Acceleration:
     mass = np.asarray(float(np.float32(system.body.mass)))
     body = replace(system.body, mass=mass)
@@ -218,6 +226,10 @@ def torque_of_first_attitude(system: System, states: State) -> Acceleration:
 
 
 EQUATIONS: dict[str, tuple[Any, str]] = {
+    "tensor about other axes": (
+        tensor_about_other_axes,
+        "its moments about the centre of mass are the requested ones, about other axes",
+    ),
     "rate": (damping_as_rate, "the damping acts as a rate"),
     "rate-no-gyro": (rate_and_no_gyroscopic_term, "the gyroscopic term is missing"),
     "mirrored": (mirrored_center, "the centre of mass is mirrored"),

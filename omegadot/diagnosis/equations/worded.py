@@ -32,7 +32,12 @@ def worded(whole: Sequence[Held], source: str, pivoted: bool) -> str:
 def _text_of(held: Held, source: str) -> str:
     """One cause; where its numbers are others on each scenario, those of the first."""
     one = held.candidate
-    text = one.text(held.shown[0].evidence[source].system) + held.where()
+    text = one.text(held.shown[0].evidence[source].system)
+    if one.family is not None and one.numbers is not None and not one.fixed:
+        pairs = [(held.shown[0].system, one.numbers), *((s.system, p) for s, p in held.numbers)]
+        alike = one.family.alike(pairs)
+        text += f"; {alike}" * bool(alike)
+    text += held.where()
     if not held.numbers or one.numbers is None:
         return text
     return f"{text} ({held.shown[0].name}; other numbers on {len(held.numbers)} more)"

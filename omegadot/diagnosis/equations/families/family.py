@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +26,7 @@ class Family:
     starts: where the search begins, each (k,); none where the family does not apply.  form: the
     equation with these numbers.  text: the cause as text.  right: the numbers of the right
     equation, (k,), against which those found are held over several scenarios.  guess: one more
-    start, from the evidence.
+    start, from the evidence.  alike: what the numbers of all scenarios have in common, if anything.
     """
 
     name: str
@@ -37,6 +37,7 @@ class Family:
     right: Callable[[System], Array]
     unit: str = ""
     guess: Callable[[Evidence], Array | None] | None = None
+    alike: Callable[[Sequence[tuple[System, Array]]], str] = lambda pairs: ""
 
     def slack(self, system: System, p: Array) -> float:
         """In bounds, what is allowed: a term that is larger than the right one rounds more."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +17,8 @@ from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import torque
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, System
+
+ALIKE = 1e-6  # of the inertia: as well as its fitted numbers are known
 
 
 def _least(name: str, held: Callable[[Array, float], Array], what: str) -> Family:
@@ -80,9 +82,10 @@ def _of_momentum_balance(evidence: Evidence) -> Array | None:
     w, rate = states.angular_velocity, evidence.found.angular
     due = torque(system, states)
     lines = np.stack([apply(b, rate) + cross(w, apply(b, w)) for b in _BASIS], axis=-1)
-    size = (norm(rate) + norm(w) ** 2)[:, None]
-    if not (np.isfinite(lines).all() and np.all(size > 0.0)):
+    if not np.isfinite(lines).all():
         return None
+    size = (norm(rate) + norm(w) ** 2)[:, None]
+    size = np.where(size > 0.0, size, np.inf)  # at rest nothing shows
     matrix, right = (lines / size[..., None]).reshape(-1, 6), np.ravel(due / size)
     if np.any(right):
         found = np.linalg.lstsq(matrix, right, rcond=None)[0]
@@ -113,6 +116,43 @@ def scale_of_inertia(evidence: Evidence) -> Array | None:
     if not (whole > 0.0 and np.isfinite(whole) and np.any(right)):
         return None
     return np.array([float(line @ right) / whole])
+
+
+def _alike(pairs: Sequence[tuple[System, Array]]) -> str:
+    """What is right of the tensors of all scenarios, or by what they all differ."""
+    tensors = [_next_to_requested(system, _tensor(p)) for system, p in pairs]
+
+    def all_are(same: Callable[[Array, Array], Array]) -> bool:
+        return all(
+            bool(np.all(np.abs(same(*pair)) <= ALIKE * np.linalg.norm(pair[0]))) for pair in tensors
+        )
+
+    off = ~np.eye(3, dtype=bool)
+    if all_are(lambda due, own: np.linalg.eigvalsh(own) - np.linalg.eigvalsh(due)):
+        return "its moments about the centre of mass are the requested ones, about other axes"
+    if all_are(lambda due, own: own - due - np.trace(own - due) / 3.0 * np.eye(3)):
+        return "every moment is off by the same amount"
+    if all_are(lambda due, own: (own - due)[off]):
+        return "its products are the requested ones"
+    if all_are(lambda due, own: np.diag(own - due)):
+        return "its diagonal is the requested one"
+    return ""
+
+
+def _next_to_requested(system: System, tensor: Array) -> tuple[Array, Array]:
+    """The requested tensor about the centre of mass and the engine's.
+
+    Without a torque it is known up to a factor, and the one that suits them is taken.
+    """
+    due = np.asarray(system.body.inertia, dtype=float)
+    if not _torque_free(system):
+        return due, tensor - (np.asarray(moving_inertia(system), dtype=float) - due)
+    ways = np.stack([tensor.ravel(), np.eye(3).ravel()], axis=-1)
+    factor, amount = np.linalg.lstsq(ways, due.ravel(), rcond=None)[0]
+    left = factor * tensor + amount * np.eye(3) - due
+    if np.all(np.abs(left) <= ALIKE * np.linalg.norm(due)):
+        return due, factor * tensor
+    return due, tensor * float(np.trace(due) / np.trace(tensor))
 
 
 def _inertia_family(name: str, where: str, parts: tuple[str, ...]) -> Family:
@@ -147,6 +187,7 @@ def _inertia_family(name: str, where: str, parts: tuple[str, ...]) -> Family:
         lambda s: _six(moving_inertia(s)),
         "kg m^2",
         guess=_of_momentum_balance if len(parts) > 1 else None,
+        alike=_alike if len(parts) > 1 else lambda pairs: "",
     )
 
 
