@@ -154,7 +154,8 @@ def _limit(
     if np.count_nonzero(wrong) == 1:
         k = int(np.argmax(wrong))
         ends, near = now[jumped, k], 10.0 * float(np.max(allowed))
-        if np.ptp(ends) <= near and len(ends) > 1:
+        beyond = np.abs(was[jumped, k] - np.median(ends))  # from where it is brought to the limit
+        if np.ptp(ends) <= near < np.min(beyond) and len(ends) > 1:
             end = float(np.median(ends)) if abs(np.median(ends)) > near else 0.0
             side = "above" if np.all(was[jumped, k] < end) else "below"
             return f"{what} along {'xyz'[k]} is held {side} {end:.6g} {unit}"
