@@ -17,6 +17,7 @@ from omegadot.diagnosis.stepping.trace import Trace, trace_causes
 from omegadot.diagnosis.stepping.vanishing_steps import vanishing_steps
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.diagnosis.wording.features import features_of
+from omegadot.diagnosis.wording.laws import law_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_acceleration, random_states
 from omegadot.gates.steps.probe import DOUBLE, Probe
@@ -158,3 +159,18 @@ def test_one_component_of_the_gyroscopic_term_is_named_in_inverse_dynamics() -> 
     wrong = inverse_dynamics(system, states, requested) - gyroscopic(system, states) * [1, 0, 0]
     (text,) = inverse_causes(system, states, requested, wrong)
     assert text == "inverse dynamics leave out the x component of the gyroscopic term"
+
+
+@pytest.mark.parametrize(
+    ("rounded", "text"),
+    [
+        (np.float16, "rounded to half precision"),
+        (lambda x: float(f"{x:.3g}"), "rounded to 3 digits"),
+        (lambda x: 1.01 * x, "scaled by 1.01"),
+    ],
+)
+def test_numbers_that_are_rounded_have_a_law(rounded: Any, text: str) -> None:
+    """Caught: a list of numbers, one a scenario, in place of what makes each of them."""
+    requested = np.random.default_rng(0).lognormal(0.0, 3.0, 14)
+    pairs = [(np.array([x]), np.array([float(rounded(x))])) for x in requested]
+    assert law_of(pairs, "the damping", "N m s/rad") == f"the damping is {text}"

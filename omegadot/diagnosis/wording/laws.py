@@ -16,6 +16,7 @@ SAME = 1e-6  # relative; what fits a run of vanishing steps is no better known
 CLEAN = 1e-5  # relative: a factor that is one
 LOOSE = 1e-2  # of a power law, in the logarithm, before it is tried
 MOST_DECIMALS = 9
+MOST_BITS, MOST_DIGITS = 18, 6  # of more a fitted number shows nothing
 LEAST_POINTS, LEAST_SPAN = 3, 1.0  # on which it rests; of its logarithms
 
 
@@ -54,6 +55,10 @@ def law_of(pairs: Sequence[tuple[Array, Array]], what: str, unit: str) -> str:
         rounded = np.round(requested, digits)
         if _close(rounded, acting, size) and np.max(np.abs(held)) >= 0.5 * 10.0**-digits:
             return f"{what} is rounded to {digits} decimals"
+    if np.count_nonzero(changed.any(axis=-1)) >= LEAST_POINTS:
+        for way, rounded in _coarser(requested):
+            if _close(rounded, acting, size):
+                return f"{what} is rounded to {way}"
     zero = np.abs(requested[changed])
     if not np.any(held) and not np.any((np.abs(requested) <= np.max(zero)) & (acting != 0.0)):
         least = np.abs(requested[acting != 0.0])
@@ -80,6 +85,20 @@ def law_of(pairs: Sequence[tuple[Array, Array]], what: str, unit: str) -> str:
     if few and np.all(_close(acting, acting[0], size)):
         return f"{what} is {number(float(acting[0, 0]))} {unit}, whatever was requested"
     return ""
+
+
+def _coarser(requested: Array) -> Iterator[tuple[str, Array]]:
+    """Numbers of fewer digits, and what they make of those that were requested."""
+    with np.errstate(over="ignore"):
+        yield "half precision", requested.astype(np.float16).astype(float)
+    part, power = np.frexp(requested)
+    for bits in range(2, MOST_BITS):
+        yield f"{bits} binary digits", np.ldexp(np.round(np.ldexp(part, bits)), power - bits)
+    size = np.abs(requested)
+    places = np.floor(np.log10(np.where(size > 0.0, size, 1.0)))
+    for digits in range(1, MOST_DIGITS):
+        unit = 10.0 ** (places - digits + 1)
+        yield f"{digits} digits", np.round(requested / unit) * unit
 
 
 def _order(requested: Array, acting: Array, size: Array) -> str:
