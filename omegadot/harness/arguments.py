@@ -75,7 +75,7 @@ def engine_choices(
     known |= added
     if not wanted:
         there = {name: target for name, target in known.items() if not is_absent(name)}
-        return [EngineChoice(name, target) for name, target in there.items()]
+        return [EngineChoice(n, target, required=n in added) for n, target in there.items()]
     picked: dict[str, list[str]] = {}
     for given in names:
         name, _, integrator = given.partition(":")

@@ -167,7 +167,9 @@ def test_an_engine_without_integrators_is_named(record):
         {**e, "integrators": []} if e["name"] == "mujoco" else e for e in record.run["engines"]
     ]
     found = remarks(summarise(edited(record, engines=engines)))
-    assert "mujoco has no integrators: its model and its equations alone are judged." in found
+    assert (
+        "mujoco has no integrators: its model and the equations that it offers are judged." in found
+    )
 
 
 def test_the_headline_of_a_failing_run(record):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from omegadot.reports.summary.figures import Figure, size
@@ -58,7 +58,7 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     if failing:
         verb = "fails" if len(failing) == 1 else "fail"
         count = f"{len(failing)} of {times(len(engines), 'engine')}"
-        return f"{count} {verb} a gate: {_failing(summary, failing)}."
+        return f"{count} {verb} a gate: {_failing(summary, failing)}.{_open(engines, failing)}"
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
     # A declared exception is a known failure: such an engine is not reported as agreeing.
@@ -74,8 +74,7 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
         named = f"{listed(agreeing)} (of {times(len(engines), 'engine')})"
     verb = "agrees" if len(agreeing) == 1 else "agree"
     apart = f" Declared exceptions: {listed(excused)}." if excused else ""
-    open_ = [f"{n} ({_outcomes(engines[n])})" for n in engines if n not in (*agreeing, *excused)]
-    apart += f" No verdict on {listed(open_)}." if open_ else ""
+    apart += _open(engines, [*agreeing, *excused])
     return (
         f"{named} {verb} with the Newton–Euler equations at identical states: the largest "
         f"omega-dot residual is {quantity(largest.value, largest.unit)} "
@@ -83,9 +82,22 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     )
 
 
+def _open(engines: dict[str, list[Cell]], named: Sequence[str]) -> str:
+    """The engines besides those that are named on which there is no verdict; "" without any."""
+
+    def is_judged(cells: list[Cell]) -> bool:
+        passed = any(c.runs.get("pass") for c in cells) and any(c.residual for c in cells)
+        return passed or any(c.runs.get("declared") for c in cells)
+
+    open_ = [n for n, cells in engines.items() if n not in named and not is_judged(cells)]
+    texts = [f"{name} ({_outcomes(engines[name])})" for name in open_]
+    return f" No verdict on {listed(texts)}." if texts else ""
+
+
 def _outcomes(cells: list[Cell]) -> str:
     """How the runs of an engine ended that give no verdict."""
-    return listed(list(dict.fromkeys(cell.status.replace("-", " ") for cell in cells)))
+    ends = (c.status.replace("-", " ") for c in cells)
+    return listed(list(dict.fromkeys("no equation" if end == "pass" else end for end in ends)))
 
 
 def _failing(summary: Summary, engines: list[str]) -> str:

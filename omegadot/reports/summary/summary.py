@@ -200,7 +200,8 @@ def _unstepped(run: Mapping[str, Any]) -> Iterator[str]:
     for engine in run["engines"]:
         name = engine["name"]
         if name in ran and engine.get("integrators") == []:
-            yield f"{name} has no integrators: its model and its equations alone are judged."
+            judged = "its model and the equations that it offers are judged"
+            yield f"{name} has no integrators: {judged}."
 
 
 def _truths(trajectories: pl.DataFrame) -> Counter[str]:
