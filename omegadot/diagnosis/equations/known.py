@@ -39,12 +39,12 @@ def known_over(
 
 
 def _goes(powers: Powers, off: Off | None, every: Sequence[Evidence]) -> str:
-    """On what it depends; where that is nothing else of the state, on the attitude alone."""
+    """On what it depends. What changes with the state may still change with the attitude alone."""
     free = any(e.system.load.pivot is None for e in every)
     moves = OF_THE_STATE if free else OF_THE_STATE[:1]  # a pivoted body's place is its attitude's
     alone = off is not None and off.turns and all(powers.get(what) == 0.0 for what in moves)
     rest = {k: v for k, v in powers.items() if not (alone and k in OF_THE_STATE)}
-    texts = ["of the state it depends on the attitude alone"] if alone else []
+    texts = ["nothing else of the state than the attitude is seen to change it"] if alone else []
     return "; ".join(text for text in (*texts, dependence_text(rest)) if text)
 
 
