@@ -42,6 +42,7 @@ from omegadot.reference_impl.system import State, System
 VAIN, VAIN_BESIDE_ORDER = 8, 3
 IN_THE_FIRST = "at the start of a run alone"
 FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
+OBSERVED = "observed_order"
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
 
@@ -98,7 +99,7 @@ class IntegratorCauses:
                 due = orders_for(integrator, case.system)
                 found = order_lost(case.system, probe, stepped, eps, due)
                 if found is not None:
-                    over.lost[case.name] = found
+                    over.lost[case.name] = found.over(_observed(runs))
 
     def release(self, wanted: bool) -> None:
         """Work out what needs the trajectories, where it is wanted, and let go of them."""
@@ -129,9 +130,9 @@ class IntegratorCauses:
         if steps is None or steps.sound:
             found = self._of_trajectories()
             own = self._over.lost.get(self._case.name)
-            lost = [own.with_others(self._over.lost.values()).text] if own else []
+            lost = own.with_others(self._over.lost.values()).text if own and own.orders else ""
             if not found or any(OF_ONE_FIELD in text for text in found):
-                found = lost or found
+                found = either([lost]) or found
             return found or self._known_of_runs()
         if self._over.again:  # what is left over from a run spoils the short ones that follow
             return [self._over.again]
@@ -236,6 +237,15 @@ class IntegratorCauses:
                 over[self._case.name] = (self._of_runs.texts, self._of_runs.decisive)
         known = {name: texts for name, (texts, _) in over.items()}
         return either([over_run(text, known) for text in agreed(self._of_runs.texts, over)])
+
+
+def _observed(runs: Sequence[JudgedRun]) -> dict[str, float]:
+    """The lowest order that whole runs show of each channel, where it is settled."""
+    found = dict[str, float]()
+    for row in (row for run in runs for row in run.rows if row.metric == OBSERVED):
+        if row.verdict in ("pass", "fail"):
+            found[row.channel] = min(row.value, found.get(row.channel, row.value))
+    return found
 
 
 def _kept_runs(

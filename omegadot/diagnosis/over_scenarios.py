@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.candidate import Candidate
+from omegadot.diagnosis.equations.siblings import Siblings
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.kept_run import KeptRun
@@ -64,9 +65,13 @@ class OverScenarios:
 
 @dataclass
 class EngineOverScenarios:
-    """Of one engine. across: the equations that its scenarios show.  integrators: by name."""
+    """Of one engine. across: the equations that its scenarios show.  integrators: by name.
+
+    siblings: what the same systems show with one thing changed.
+    """
 
     across: Across = field(default_factory=Across)
+    siblings: Siblings = field(default_factory=Siblings)
     integrators: dict[str, OverScenarios] = field(
         default_factory=lambda: defaultdict(OverScenarios)
     )

@@ -145,7 +145,7 @@ def test_a_torque_along_principal_axes_is_named() -> None:
 
 
 def test_what_is_lost_in_several_channels_is_one_sentence() -> None:
-    free = OrderLost({"omega": (1, 2), "position": (1, 2)}, ("omega moves late",))
+    free = OrderLost({"omega": (1, 2), "position": (1, 2)}, {"omega": "omega moves late"})
     held = OrderLost({"omega": (1, 2), "attitude": (1, 2)})
     assert free.with_others([held]).text == held.with_others([free]).text
     assert "step^2 in omega, the attitude and the position" in held.with_others([free]).text

@@ -100,6 +100,11 @@ class Across:
                 self._texts[name, source] = self._cause(name, source)
         return self._texts[name, source]
 
+    def plain(self, name: str, source: str) -> str:
+        """A cause on one scenario that is quickly found; "" where none fits that holds on all."""
+        scene = self.scenes[name]
+        return self._shared(scene, source, QUICK) if scene.evidence[source].clear else ""
+
     def known(self, name: str, source: str) -> str:
         """What is seen of the scenarios on which nothing fits; "" on one that is hardly off."""
         if not self.scenes[name].evidence[source].clear:
