@@ -23,10 +23,10 @@ from omegadot.diagnosis.stepping.kinematics import (
     still_cause,
     velocity_share_cause,
 )
-from omegadot.diagnosis.stepping.order_lost import order_lost
+from omegadot.diagnosis.stepping.order_lost import OrderLost, order_lost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
-from omegadot.diagnosis.wording.kinds import agreed, either, is_of_one_run, over_run
+from omegadot.diagnosis.wording.kinds import agreed, either, is_of_one_run, kind_of, over_run
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import orders_for
@@ -130,9 +130,9 @@ class IntegratorCauses:
         if steps is None or steps.sound:
             found = self._of_trajectories()
             own = self._over.lost.get(self._case.name)
-            lost = own.with_others(self._over.lost.values()).text if own and own.orders else ""
-            if not found or any(OF_ONE_FIELD in text for text in found):
-                found = either([lost]) or found
+            lost = own.with_others(self._over.lost.values()) if own and own.orders else None
+            if not found or any(OF_ONE_FIELD in text for text in found) or self._beyond(lost):
+                found = [lost.text] if lost is not None else found
             return found or self._known_of_runs()
         if self._over.again:  # what is left over from a run spoils the short ones that follow
             return [self._over.again]
@@ -146,6 +146,19 @@ class IntegratorCauses:
             return last
         slight = either([slight_jump_cause(steps)])
         return slight or self._known(steps) or self._known_of_runs()
+
+    def _beyond(self, lost: OrderLost | None) -> bool:
+        """Whether what makes single steps lose their order explains scenarios that no run does."""
+        if lost is None or not lost.by:
+            return False
+        here = set(map(kind_of, self._of_runs.texts)) if self._of_runs is not None else set()
+        shown = dict[str, bool]()  # by scenario: whether its runs are made by what makes these
+        for name, (texts, _) in self._over.causes.items():
+            shown[name] = bool(here & set(map(kind_of, texts)))
+        losing = {name for name, one in self._over.lost.items() if one.orders}
+        return all(name in losing for name, same in shown.items() if same) and any(
+            name in losing for name, same in shown.items() if not same
+        )
 
     def _of_steps(self, steps: VanishingSteps) -> list[str]:
         """Where every state is off by the steps alone, the more basic first."""
@@ -227,7 +240,8 @@ class IntegratorCauses:
         if self._of_runs is None:
             self._of_runs = NOTHING
             vain = sum(not texts for texts, _ in over.values())
-            most = VAIN_BESIDE_ORDER if self._case.name in self._over.lost else VAIN
+            lost = self._over.lost.get(self._case.name)
+            most = VAIN_BESIDE_ORDER if lost is not None and lost.orders else VAIN
             looked = any(texts for texts, _ in over.values()) or vain < most
             if self._result is not None and looked:
                 # a wrong equation shows in steps that vanish, and from more states
