@@ -12,8 +12,8 @@ from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
-from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, keeps_pace
-from omegadot.diagnosis.stepping.jumps import jump_cause, jumps, slight_jump_cause
+from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, begins_turned, keeps_pace
+from omegadot.diagnosis.stepping.jumps import first_turn, jump_cause, jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
 from omegadot.diagnosis.stepping.kinematics import (
     kinematic_causes,
@@ -26,7 +26,14 @@ from omegadot.diagnosis.stepping.kinematics import (
 from omegadot.diagnosis.stepping.order_lost import OrderLost, order_lost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
-from omegadot.diagnosis.wording.kinds import agreed, either, is_of_one_run, kind_of, over_run
+from omegadot.diagnosis.wording.kinds import (
+    agreed,
+    either,
+    is_fact,
+    is_of_one_run,
+    kind_of,
+    over_run,
+)
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import orders_for
@@ -95,6 +102,11 @@ class IntegratorCauses:
             tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
             stepped = State(**answer.result)
             self.steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
+            angle = None if self.steps.sound else first_turn(self.steps)
+            if angle is not None:
+                first = self._beginning
+                alone = first is not None and begins_turned(first, angle)
+                over.turned[case.name] = angle, alone
             if any(map(fails, runs)) and self.steps.sound:
                 due = orders_for(integrator, case.system)
                 found = order_lost(case.system, probe, stepped, eps, due)
@@ -137,6 +149,9 @@ class IntegratorCauses:
         if self._over.again:  # what is left over from a run spoils the short ones that follow
             return [self._over.again]
         found = self._of_steps(steps) or self._of_trajectories()
+        if self._case.name in self._over.turned and all(map(is_fact, found)):
+            begins = self._over.begins
+            found = [begins] if begins else found
         jumped = either([jump_cause(steps, self._beginning)])
         if any(OF_ONE_FIELD in text for text in found):
             found = jumped or found
@@ -286,5 +301,7 @@ def _beginning_of(
         times, state = run.sweep.times, State(**answer.result["state"])
         if len(state.position) == len(times):
             first = slice(0, SAMPLES + 1)
-            return Beginning(system, times[first], state[first], truth.at(run.sweep)[first])
+            steps = int(run.sweep.sample_steps[first][-1])
+            exact = truth.at(run.sweep)[first]
+            return Beginning(system, times[first], state[first], exact, steps)
     return None

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.candidate import Candidate
@@ -22,7 +24,8 @@ class OverScenarios:
 
     causes: each alone explains the runs, and whether these are decisive.  fails: whether a run
     does.  again: what shows where two answers to one request differ.  lost: orders.  seen: what is
-    off.  beginnings: of the failed runs.  kept: the first samples of every run.
+    off.  beginnings: of the failed runs.  kept: the first samples of every run.  turned: by what
+    angle in rad first steps turn the body, and whether later ones are seen not to.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -32,6 +35,7 @@ class OverScenarios:
     seen: dict[str, Known] = field(default_factory=dict)
     beginnings: dict[str, Beginning] = field(default_factory=dict)
     kept: list[KeptRun] = field(default_factory=list)
+    turned: dict[str, tuple[float, bool]] = field(default_factory=dict)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool] = (0, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
@@ -51,6 +55,14 @@ class OverScenarios:
         if self._likely[0] != failing:
             self._likely = failing, bool(failing > 1 and causes_over_runs(integrator, self.kept))
         return self._likely[1]
+
+    @property
+    def begins(self) -> str:
+        """At which other attitude runs begin; "" where none is seen to."""
+        if not any(alone for _, alone in self.turned.values()):
+            return ""
+        angle = float(np.median([angle for angle, _ in self.turned.values()]))
+        return f"runs begin at an attitude that is some {angle:.0e} rad from the one given"
 
     def followed(self, one: Candidate, names: set[str], eps: float) -> set[Followed | None]:
         """Which equation the failed runs follow where a cause fits the steps as they vanish.

@@ -69,6 +69,8 @@ class Known:
 def known_of_runs(truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]) -> Known | None:
     """Of the first channel that is off beyond rounding: attitude follows omega, and place both."""
     failed = {row.channel for run in runs for row in run.rows if row.verdict == "fail"}
+    if "attitude" in failed and not failed & {"omega", "energy"}:
+        failed.discard("angular_momentum")  # in world axes, which the attitude turns
     errors = [found for run in runs if (found := _errors(truth, result, run)) is not None]
     for channel in (c for c, names in CHANNELS.items() if failed & names):
         shown = [(run, e[channel]) for run, e in errors if np.any(e[channel].clear)]
