@@ -11,44 +11,45 @@ from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, Schem
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
 
-MISSED = 0.2  # of the failing runs, that no length need explain: other rounding may be in them
+MISSED, MOST_MISSED = 0.2, 2  # of the runs that fail: in some there may be other rounding
 LEAST = 2  # runs that fail
 DELTA, MOST_TRIES = 1e-6, 8  # a part of the step
 ALIKE = 1e-3  # relative: parts that are one, which a run by itself shows
-WHOLE = 1e-6  # of a number of steps a second, beside how far the requested one is from a whole one
+OTHER = 1e-6  # a part that is not seen in few steps, or by which two laws are one
 
 
 def length_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     """What the steps' lengths are instead; none where they are right, or off by one part."""
     failing, sound = ([run for run in runs if run.fails is fails] for fails in (True, False))
     taken, missed = list[tuple[float, float]](), 0
-    for run in failing:
-        part = _part(run, by)
+    for number, run in enumerate(failing):
+        part = _part(run.short, by)
         missed += part is None
-        if missed > MISSED * len(failing):
+        if missed > MOST_MISSED + MISSED * number:
             return []
         if part is not None:
             taken.append((run.sweep.timestep, part))
     steps, parts = np.array(taken).reshape(-1, 2).T
-    if len(parts) < LEAST or np.ptp(parts) <= ALIKE * np.max(np.abs(parts)):
+    other = np.abs(parts) > OTHER
+    largest = float(np.max(np.abs(parts), initial=0.0))
+    if np.count_nonzero(other) < LEAST or np.ptp(parts[other]) <= ALIKE * largest:
         return []
-    right = np.array([run.sweep.timestep for run in sound])
-    if _whole_rate(steps, parts, right):
+    most = float(np.max(steps[other]))
+    right = [run.sweep.timestep for run in sound if run.sweep.timestep <= most]
+    upto = steps <= most
+    if _whole_rates(np.append(steps[upto], right), np.append(parts[upto], np.zeros(len(right)))):
         return ["the step is rounded to a whole number of steps in a second"]
-    shown = " to ".join(f"{100 * part:.2g}" for part in (np.min(parts), np.max(parts)))
     return [
-        f"all of the state moves by steps of another length than the one requested, by a part that "
-        f"depends on it: {shown} %"
+        f"steps are up to {100 * largest:.2g} % longer or shorter than requested: by another part "
+        "at each step size"
     ]
 
 
-def _whole_rate(steps: Array, parts: Array, right: Array) -> bool:
-    """Whether every step is ``1 / round(1 / h)``; longer ones may be as requested."""
-    due = 1.0 / np.round(1.0 / steps) / steps - 1.0 if np.max(steps) < 1.0 else np.full(1, np.nan)
-    short = right[right < np.max(steps)]
-    rates = 1.0 / short
-    whole = np.abs(rates - np.round(rates)) <= WHOLE * rates
-    return bool(np.all(np.abs(parts - due) <= WHOLE) and np.all(whole))
+def _whole_rates(steps: Array, parts: Array) -> bool:
+    """Whether every step is ``1 / round(1 / h)``."""
+    with np.errstate(all="ignore"):
+        due = 1.0 / np.round(1.0 / steps) / steps - 1.0
+    return bool(np.all(np.abs(parts - due) <= OTHER))
 
 
 def _part(run: KeptRun, by: SchemeOf) -> float | None:

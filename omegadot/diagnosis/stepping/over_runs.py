@@ -54,7 +54,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         if by is None:
             return []
         chosen = [run.short for run in _chosen(runs)]
-        found = length_causes(by, chosen)
+        found = length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         return found or solved_causes(by, runs) or place_causes(by, runs)
 
