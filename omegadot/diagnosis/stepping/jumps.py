@@ -115,13 +115,14 @@ def _slightly_off(steps: VanishingSteps, name: str) -> tuple[Array | None, Array
     seen = norm(off) > allowed
     if np.count_nonzero(seen) < len(seen) // 2 or not np.all(np.isfinite(off)):
         return None, allowed
-    # the two shortest steps alone must show it, to second order, and longer ones as well: where
-    # steps are not smooth, the limit of five is another
-    short, moved = getattr(steps.start, name), norm(getattr(steps.moved, name))
-    left = moved**2 / np.where(size > 0.0, size, np.inf) + allowed
-    shown = norm(short - now) <= CLOSE * norm(off) + left
+    # longer steps must show it as well, or the two shortest alone, to second order: where steps are
+    # not smooth, the limit of five is another
     if steps.longer is not None:
-        shown &= norm(getattr(steps.longer, name) - now) <= CLOSE * norm(off) + allowed
+        shown = norm(getattr(steps.longer, name) - now) <= CLOSE * norm(off) + allowed
+    else:
+        short, moved = getattr(steps.start, name), norm(getattr(steps.moved, name))
+        left = moved**2 / np.where(size > 0.0, size, np.inf) + allowed
+        shown = norm(short - now) <= CLOSE * norm(off) + left
     return (off if np.all(shown) else None), allowed
 
 
