@@ -37,6 +37,7 @@ from omegadot.diagnosis.wording.kinds import (
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import orders_for
+from omegadot.gates.steps import restart
 from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
@@ -111,13 +112,15 @@ class IntegratorCauses:
                 due = orders_for(integrator, case.system)
                 found = order_lost(case.system, probe, stepped, eps, due)
                 if found is not None:
-                    over.lost[case.name] = found.over(_observed(runs))
+                    found = found.over(_observed(runs))
+                    over.lost[case.name] = found.of_first if _has_past(runs) else found
 
     def release(self, wanted: bool) -> None:
         """Work out what needs the trajectories, where it is wanted, and let go of them."""
         if wanted and any(map(fails, self._runs)) and self._result is not None:
             failed = [run for run in self._runs if fails(run)]
-            seen = known_of_runs(self._truth, self._result, failed)
+            shortest = min(run.sweep.timestep for run in self._runs)
+            seen = known_of_runs(self._truth, self._result, failed, shortest)
             if seen is not None:
                 self._over.seen[self._case.name] = seen
             if self._again or not self._over.likely(self._integrator):
@@ -220,7 +223,11 @@ class IntegratorCauses:
         if not text:
             return []
         alike = self._across.explained(*where)
-        followed = self._over.followed(one, alike, steps.eps) if one is not None else set()
+        scenes = self._across.scenes
+        evidence = {
+            n: scenes[n].evidence[where[1]] for n in alike if where[1] in scenes[n].evidence
+        }
+        followed = self._over.followed(one, evidence, steps.eps) if one is not None else set()
         if "between" in followed or {"right", "wrong"} <= followed:
             later = "later steps come nearer to the right equation"
             return [f"at the start of a run, {text}; {later}"]
@@ -275,6 +282,12 @@ def _observed(runs: Sequence[JudgedRun]) -> dict[str, float]:
         if row.verdict in ("pass", "fail"):
             found[row.channel] = min(row.value, found.get(row.channel, row.value))
     return found
+
+
+def _has_past(runs: Sequence[JudgedRun]) -> bool:
+    """Whether a run that is restarted at one of its samples is another: what first steps do is."""
+    rows = (row for run in runs for row in run.rows if row.metric == restart.METRIC)
+    return any(row.verdict == "fail" for row in rows)
 
 
 def _kept_runs(

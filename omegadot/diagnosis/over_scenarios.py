@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.across import Across, fitting
 from omegadot.diagnosis.equations.candidate import Candidate
+from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.siblings import Siblings
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
@@ -64,14 +66,20 @@ class OverScenarios:
         angle = float(np.median([angle for angle, _ in self.turned.values()]))
         return f"runs begin at an attitude that is some {angle:.0e} rad from the one given"
 
-    def followed(self, one: Candidate, names: set[str], eps: float) -> set[Followed | None]:
+    def followed(
+        self, one: Candidate, evidence: Mapping[str, Evidence], eps: float
+    ) -> set[Followed | None]:
         """Which equation the failed runs follow where a cause fits the steps as they vanish.
 
-        One mistake is made in every run, or in the first steps of every run.
+        One mistake is made in every run, or in the first steps of every run. evidence: of these
+        steps by scenario, where the cause may have other numbers.
         """
-        for name in names & self.beginnings.keys():
+        names = evidence.keys() & self.beginnings.keys()
+        for name in names:
             if (one.key, name) not in self._followed:
-                self._followed[one.key, name] = follows(self.beginnings[name], one, eps)
+                here = fitting(one, evidence[name])
+                answer = follows(self.beginnings[name], here, eps) if here is not None else None
+                self._followed[one.key, name] = answer
         return {v for (key, name), v in self._followed.items() if key == one.key and name in names}
 
 

@@ -80,6 +80,11 @@ class OrderLost:
         orders = {c: one for c, one in self.orders.items() if c not in wrong}
         return replace(self, orders=orders, against=self.against | wrong)
 
+    @property
+    def of_first(self) -> OrderLost:
+        """Without what makes it: of steps that depend on the past the first is another."""
+        return replace(self, by={}, held=None)
+
     def with_others(self, others: Iterable[OrderLost]) -> OrderLost:
         """One mistake shows in the channels that a scenario has: all of them over a run.
 
