@@ -112,7 +112,7 @@ class IntegratorCauses:
                 due = orders_for(integrator, case.system)
                 found = order_lost(case.system, probe, stepped, eps, due)
                 if found is not None:
-                    found = found.over(_observed(runs))
+                    found = found.over(_observed(runs), due)
                     over.lost[case.name] = found.of_first if _has_past(runs) else found
 
     def release(self, wanted: bool) -> None:
@@ -287,7 +287,7 @@ def _observed(runs: Sequence[JudgedRun]) -> dict[str, float]:
 def _has_past(runs: Sequence[JudgedRun]) -> bool:
     """Whether a run that is restarted at one of its samples is another: what first steps do is."""
     rows = (row for run in runs for row in run.rows if row.metric == restart.METRIC)
-    return any(row.verdict == "fail" for row in rows)
+    return any(not row.value <= 1.0 for row in rows)
 
 
 def _kept_runs(

@@ -69,7 +69,7 @@ class OrderLost:
     held: tuple[frozenset[str], frozenset[str]] | None = None
     against: frozenset[str] = frozenset()
 
-    def over(self, observed: Mapping[str, float]) -> OrderLost:
+    def over(self, observed: Mapping[str, float], declared: Mapping[str, int | None]) -> OrderLost:
         """Without what whole runs contradict. observed: their orders, where these are settled.
 
         What is lost in a single step and not in a run is lost in the report, or in a first step.
@@ -78,7 +78,12 @@ class OrderLost:
             c for c, (order, _) in self.orders.items() if observed.get(c, order) > order + HALF
         }
         orders = {c: one for c, one in self.orders.items() if c not in wrong}
-        return replace(self, orders=orders, against=self.against | wrong)
+        sound = {
+            channel
+            for channel, due in declared.items()
+            if channel not in orders and due is not None and observed.get(channel, 0.0) > due - HALF
+        }
+        return replace(self, orders=orders, against=self.against | wrong | sound)
 
     @property
     def of_first(self) -> OrderLost:
