@@ -61,13 +61,14 @@ class OrderLost:
 
     by: what makes it, of each channel.  held: the terms of omega-dot that change in a step, and of
     these the ones that do not change in the engine's.  against: channels that single steps or whole
-    runs show to be of a higher order.
+    runs show to be of a higher order.  has_past: the first step of a run is another than the rest.
     """
 
     orders: Mapping[str, tuple[int, int]]
     by: Mapping[str, str] = field(default_factory=dict)
     held: tuple[frozenset[str], frozenset[str]] | None = None
     against: frozenset[str] = frozenset()
+    has_past: bool = False
 
     def over(self, observed: Mapping[str, float], declared: Mapping[str, int | None]) -> OrderLost:
         """Without what whole runs contradict. observed: their orders, where these are settled.
@@ -88,7 +89,7 @@ class OrderLost:
     @property
     def of_first(self) -> OrderLost:
         """Without what makes it: of steps that depend on the past the first is another."""
-        return replace(self, by={}, held=None)
+        return replace(self, by={}, held=None, has_past=True)
 
     def with_others(self, others: Iterable[OrderLost]) -> OrderLost:
         """One mistake shows in the channels that a scenario has: all of them over a run.
@@ -109,7 +110,8 @@ class OrderLost:
         held = [one.held for one in every if "omega" in one.orders and one.held is not None]
         if "omega" in orders and held:
             by["omega"] = _held_over(held)
-        by = {c: text for c, text in by.items() if text}
+        past = any(one.has_past for one in every)
+        by = {c: text for c, text in by.items() if text and not past}
         return OrderLost(orders, by, None, self.against)
 
     @property
