@@ -151,6 +151,37 @@ def test_what_is_lost_in_several_channels_is_one_sentence() -> None:
     assert "step^2 in omega, the attitude and the position" in held.with_others([free]).text
 
 
+def test_an_order_that_a_scenario_has_kept_is_not_lost_on_another() -> None:
+    driven = OrderLost({"omega": (3, 4), "attitude": (2, 4)})
+    free = OrderLost({"attitude": (2, 4)}).over({"omega": 3.99}, {"omega": 4, "attitude": 4})
+    assert driven.with_others([free]).text == free.with_others([driven]).text
+    assert "omega" not in driven.with_others([free]).text
+
+
+def test_an_order_that_whole_runs_contradict_is_not_lost() -> None:
+    reported = OrderLost({"omega": (1, 4)}).over({"omega": 2.0}, {"omega": 4})
+    assert not reported.orders
+    assert "omega" in reported.against
+
+
+def test_a_term_that_steps_hold_explains_every_scenario() -> None:
+    """Without loads it is all of omega-dot; where a load acts, it is not."""
+    gyroscopic, pulled = "the gyroscopic term", "the torque of gravity"
+    free = OrderLost({"omega": (1, 2)}, {}, (frozenset({gyroscopic}), frozenset({gyroscopic})))
+    top = OrderLost(
+        {"omega": (1, 2)}, {}, (frozenset({gyroscopic, pulled}), frozenset({gyroscopic}))
+    )
+    late = replace(top, held=(frozenset({gyroscopic, pulled}), frozenset({gyroscopic, pulled})))
+    assert "either" in free.with_others([]).text
+    for one, other in ((free, top), (top, free)):
+        assert one.with_others([other]).text.endswith(
+            "gyroscopic term keeps the value of its start"
+        )
+    assert free.with_others([late]).text.endswith("omega moves by omega-dot of the step's start")
+    assert "start" not in top.with_others([late]).text
+    assert "start" not in free.with_others([top.of_first]).text
+
+
 def test_what_is_off_is_that_of_the_most_basic_channel() -> None:
     late = Known("position", frozenset("z"), 1.0, 2.0)
     first = Known("omega", frozenset("xz"), 1.0, None)
