@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 from test_causes import causes_over
 from wrong_equations import CASES, GRAVITY, PIVOT, case, gyroscopic, with_torque
 
 from omegadot.diagnosis.equations.candidate import Candidate
+from omegadot.diagnosis.equations.evidence import of_forward_dynamics
+from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.hypotheses import hypotheses
 from omegadot.diagnosis.equations.same_cause import same_cause
+from omegadot.diagnosis.equations.siblings import AFTER_ANOTHER, Siblings
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.stepping.order_lost import OrderLost
+from omegadot.diagnosis.wording.features import features_of
 from omegadot.diagnosis.wording.kinds import over_run
 from omegadot.gates.case import Case
+from omegadot.gates.states.equation import random_states
+from omegadot.harness.requests.siblings import siblings_of
 from omegadot.reference_impl.inertia import parallel_axis
+from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.loads import damping_torque, gravity_torque
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Acceleration, Body, State, System
@@ -193,3 +202,42 @@ def test_numbers_of_other_scenarios_make_no_other_cause() -> None:
     over = {"a": ["steps are 2 % too long"], "b": ["steps are 3 % too short"], "c": []}
     assert over_run(over["a"][0], over) == over_run(over["b"][0], over)
     assert over_run("the body sleeps", over) == "the body sleeps"
+
+
+Answer = Callable[[System, System, State], Acceleration]
+
+
+def siblings(answer: Answer, gravities: Sequence[Sequence[float]]) -> list[str]:
+    """Of tops, each right by itself, the causes of what another system loaded after it shows."""
+    loads = [{"gravity": gravity, "pivot": PIVOT} for gravity in gravities]
+    found, tops = Siblings(), [case(f"top-{k}", load) for k, load in enumerate(loads)]
+    for top in tops:
+        states = random_states(top, 8, [1])
+        right = of_forward_dynamics(top.system, states, forward_dynamics(top.system, states))
+        features = features_of(top.system, top.initial)
+        asked = {}
+        for what, other in siblings_of(top):
+            placed = place_on_pivot(other.system, states)
+            made = answer(top.system, other.system, placed)
+            asked[what] = (other.system, placed, SimpleNamespace(ok=True, result=vars(made)))
+        result: Any = SimpleNamespace(siblings=asked, precision="float64")
+        found.add(Scene(top.name, top.system, features, {"forward": right}), top, result)
+    return found.causes(tops[0])
+
+
+def test_a_gravity_of_which_the_direction_is_ignored_shows_in_a_sibling() -> None:
+    def down(first: System, other: System, states: State) -> Acceleration:
+        g = np.array([0.0, 0.0, -np.linalg.norm(other.load.gravity)])
+        return forward_dynamics(replace(other, load=replace(other.load, gravity=g)), states)
+
+    (text,) = siblings(down, [[0.0, 0.0, -9.81]])
+    ignored = "gravity points along -z, whatever direction was requested"
+    assert text == f"either {ignored}, or {AFTER_ANOTHER}"
+
+
+def test_what_is_left_over_of_a_first_system_is_named() -> None:
+    def kept(first: System, other: System, states: State) -> Acceleration:
+        load = replace(other.load, gravity=first.load.gravity)
+        return forward_dynamics(replace(other, load=load), states)
+
+    assert siblings(kept, [[0.0, 0.0, -9.81], [3.0, 0.0, -8.0]]) == [AFTER_ANOTHER]

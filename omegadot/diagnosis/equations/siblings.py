@@ -49,20 +49,19 @@ class Siblings:
     def causes(self, case: Case) -> list[str]:
         """A wrong equation that shows in the siblings alone, what is left over, or either."""
         failing = dict[str, bool]()  # by what is changed: whether the answer is the first system's
-        for what, _ in siblings.siblings_of(case):
+        for what in (what for what, _ in siblings.siblings_of(case) if what != SCALE):
             scene = self._across.scenes.get(_name(case, what))
             if scene is not None and not np.all((one := scene.evidence[FORWARD]).sound):
                 failing[what] = one.fits(forward_dynamics(case.system, one.states))
         texts = [self._across.plain(_name(case, what), FORWARD) for what in failing]
         found = list(dict.fromkeys(filter(None, texts)))
-        kept = bool(failing) and all(failing.values())
+        kept = all(failing.values())  # also where numbers that differ slightly are wrong alone
         if kept and all(self._right_with_others(what) for what in failing):
             return [AFTER_ANOTHER]
-        named = [what.replace("_", " ") for what in failing if what != SCALE]
-        with_another = f"with another {listed(named)}" if named else "with other numbers"
         if len(found) == 1 and all(texts):
             return [f"either {found[0]}, or {AFTER_ANOTHER}" if kept else found[0]]
-        return [f"either forward dynamics are wrong {with_another}, or {AFTER_ANOTHER}"]
+        named = listed([what.replace("_", " ") for what in failing])
+        return [f"either forward dynamics are wrong with another {named}, or {AFTER_ANOTHER}"]
 
     def _right_with_others(self, what: str) -> bool:
         """Whether scenarios that differ in this are right where they are loaded by themselves."""
@@ -77,7 +76,7 @@ def _name(case: Case, what: str) -> str:
 def _value(system: System, what: str) -> Array | None:
     """What a sibling has another of: a vector or a tensor by direction; None where it is zero."""
     body, load = system.body, system.load
-    if what in ("mass", SCALE):
+    if what == "mass":
         return np.asarray(np.log(body.mass), dtype=float).reshape(1)
     value = getattr(load if hasattr(load, what) else body, what)
     if value is None or not np.any(value):
