@@ -15,6 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from omegadot.diagnosis.equations.siblings import AFTER_ANOTHER
 from omegadot.diagnosis.equations.wrong_equation import (
     ALONG,
     FORWARD,
@@ -71,6 +72,8 @@ class CaseCauses:
             if integrator.steps is not None:
                 scene.evidence[source_of(name)] = integrator.steps.evidence
         engine.across.add(scene)
+        self._siblings = engine.siblings
+        engine.siblings.add(scene, case, result)
 
     def release(self) -> None:
         """Work out what needs the trajectories, and let go of them."""
@@ -123,7 +126,8 @@ class CaseCauses:
         if ("equation", siblings.METRIC) in failed:
             # Where a first system is wrong elsewhere, the sibling may be so by itself.
             first = (scene.evidence.get(FORWARD) for scene in across.scenes.values())
-            return [] if any(one is not None and one.clear for one in first) else [AFTER_ANOTHER]
+            wrong = any(one is not None and one.clear for one in first)
+            return [] if wrong else self._siblings.causes(self._case)
         if torques and answers.inverse.ok:
             torque = answers.inverse.result["torque"]
             eps = eps_of(answers.precision)
@@ -134,7 +138,6 @@ class CaseCauses:
 
 
 ALONE = ", in forward dynamics alone: steps are right"
-AFTER_ANOTHER = "something of a system that was loaded before is left over"
 
 
 class Causes:

@@ -12,8 +12,8 @@ from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
-from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, keeps_pace
-from omegadot.diagnosis.stepping.jumps import jump_cause, jumps, slight_jump_cause
+from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, begins_turned, keeps_pace
+from omegadot.diagnosis.stepping.jumps import first_turn, jump_cause, jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
 from omegadot.diagnosis.stepping.kinematics import (
     kinematic_causes,
@@ -23,13 +23,21 @@ from omegadot.diagnosis.stepping.kinematics import (
     still_cause,
     velocity_share_cause,
 )
-from omegadot.diagnosis.stepping.order_lost import order_lost
+from omegadot.diagnosis.stepping.order_lost import OrderLost, order_lost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
-from omegadot.diagnosis.wording.kinds import agreed, either, is_of_one_run, over_run
+from omegadot.diagnosis.wording.kinds import (
+    agreed,
+    either,
+    is_fact,
+    is_of_one_run,
+    kind_of,
+    over_run,
+)
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import orders_for
+from omegadot.gates.steps import restart
 from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
@@ -42,6 +50,7 @@ from omegadot.reference_impl.system import State, System
 VAIN, VAIN_BESIDE_ORDER = 8, 3
 IN_THE_FIRST = "at the start of a run alone"
 FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
+OBSERVED = "observed_order"
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
 
@@ -94,17 +103,24 @@ class IntegratorCauses:
             tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
             stepped = State(**answer.result)
             self.steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
+            angle = None if self.steps.sound else first_turn(self.steps)
+            if angle is not None:
+                first = self._beginning
+                alone = first is not None and begins_turned(first, angle)
+                over.turned[case.name] = angle, alone
             if any(map(fails, runs)) and self.steps.sound:
                 due = orders_for(integrator, case.system)
                 found = order_lost(case.system, probe, stepped, eps, due)
                 if found is not None:
-                    over.lost[case.name] = found
+                    found = found.over(_observed(runs), due)
+                    over.lost[case.name] = found.of_first if _has_past(runs) else found
 
     def release(self, wanted: bool) -> None:
         """Work out what needs the trajectories, where it is wanted, and let go of them."""
         if wanted and any(map(fails, self._runs)) and self._result is not None:
             failed = [run for run in self._runs if fails(run)]
-            seen = known_of_runs(self._truth, self._result, failed)
+            shortest = min(run.sweep.timestep for run in self._runs)
+            seen = known_of_runs(self._truth, self._result, failed, shortest)
             if seen is not None:
                 self._over.seen[self._case.name] = seen
             if self._again or not self._over.likely(self._integrator):
@@ -129,13 +145,16 @@ class IntegratorCauses:
         if steps is None or steps.sound:
             found = self._of_trajectories()
             own = self._over.lost.get(self._case.name)
-            lost = [own.with_others(self._over.lost.values()).text] if own else []
-            if not found or any(OF_ONE_FIELD in text for text in found):
-                found = lost or found
+            lost = own.with_others(self._over.lost.values()) if own and own.orders else None
+            if not found or any(OF_ONE_FIELD in text for text in found) or self._beyond(lost):
+                found = [lost.text] if lost is not None else found
             return found or self._known_of_runs()
         if self._over.again:  # what is left over from a run spoils the short ones that follow
             return [self._over.again]
         found = self._of_steps(steps) or self._of_trajectories()
+        if self._case.name in self._over.turned and all(map(is_fact, found)):
+            begins = self._over.begins
+            found = [begins] if begins else found
         jumped = either([jump_cause(steps, self._beginning)])
         if any(OF_ONE_FIELD in text for text in found):
             found = jumped or found
@@ -145,6 +164,19 @@ class IntegratorCauses:
             return last
         slight = either([slight_jump_cause(steps)])
         return slight or self._known(steps) or self._known_of_runs()
+
+    def _beyond(self, lost: OrderLost | None) -> bool:
+        """Whether what makes single steps lose their order explains scenarios that no run does."""
+        if lost is None or not lost.by:
+            return False
+        here = set(map(kind_of, self._of_runs.texts)) if self._of_runs is not None else set()
+        shown = dict[str, bool]()  # by scenario: whether its runs are made by what makes these
+        for name, (texts, _) in self._over.causes.items():
+            shown[name] = bool(here & set(map(kind_of, texts)))
+        losing = {name for name, one in self._over.lost.items() if one.orders}
+        return all(name in losing for name, same in shown.items() if same) and any(
+            name in losing for name, same in shown.items() if not same
+        )
 
     def _of_steps(self, steps: VanishingSteps) -> list[str]:
         """Where every state is off by the steps alone, the more basic first."""
@@ -191,7 +223,11 @@ class IntegratorCauses:
         if not text:
             return []
         alike = self._across.explained(*where)
-        followed = self._over.followed(one, alike, steps.eps) if one is not None else set()
+        scenes = self._across.scenes
+        evidence = {
+            n: scenes[n].evidence[where[1]] for n in alike if where[1] in scenes[n].evidence
+        }
+        followed = self._over.followed(one, evidence, steps.eps) if one is not None else set()
         if "between" in followed or {"right", "wrong"} <= followed:
             later = "later steps come nearer to the right equation"
             return [f"at the start of a run, {text}; {later}"]
@@ -226,7 +262,8 @@ class IntegratorCauses:
         if self._of_runs is None:
             self._of_runs = NOTHING
             vain = sum(not texts for texts, _ in over.values())
-            most = VAIN_BESIDE_ORDER if self._case.name in self._over.lost else VAIN
+            lost = self._over.lost.get(self._case.name)
+            most = VAIN_BESIDE_ORDER if lost is not None and lost.orders else VAIN
             looked = any(texts for texts, _ in over.values()) or vain < most
             if self._result is not None and looked:
                 # a wrong equation shows in steps that vanish, and from more states
@@ -236,6 +273,21 @@ class IntegratorCauses:
                 over[self._case.name] = (self._of_runs.texts, self._of_runs.decisive)
         known = {name: texts for name, (texts, _) in over.items()}
         return either([over_run(text, known) for text in agreed(self._of_runs.texts, over)])
+
+
+def _observed(runs: Sequence[JudgedRun]) -> dict[str, float]:
+    """The lowest order that whole runs show of each channel, where it is settled."""
+    found = dict[str, float]()
+    for row in (row for run in runs for row in run.rows if row.metric == OBSERVED):
+        if row.verdict in ("pass", "fail"):
+            found[row.channel] = min(row.value, found.get(row.channel, row.value))
+    return found
+
+
+def _has_past(runs: Sequence[JudgedRun]) -> bool:
+    """Whether a run that is restarted at one of its samples is another: what first steps do is."""
+    rows = (row for run in runs for row in run.rows if row.metric == restart.METRIC)
+    return any(not row.value <= 1.0 for row in rows)
 
 
 def _kept_runs(
@@ -262,5 +314,7 @@ def _beginning_of(
         times, state = run.sweep.times, State(**answer.result["state"])
         if len(state.position) == len(times):
             first = slice(0, SAMPLES + 1)
-            return Beginning(system, times[first], state[first], truth.at(run.sweep)[first])
+            steps = int(run.sweep.sample_steps[first][-1])
+            exact = truth.at(run.sweep)[first]
+            return Beginning(system, times[first], state[first], exact, steps)
     return None

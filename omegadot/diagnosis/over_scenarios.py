@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.across import Across, fitting
 from omegadot.diagnosis.equations.candidate import Candidate
+from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.siblings import Siblings
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.kept_run import KeptRun
@@ -21,7 +26,8 @@ class OverScenarios:
 
     causes: each alone explains the runs, and whether these are decisive.  fails: whether a run
     does.  again: what shows where two answers to one request differ.  lost: orders.  seen: what is
-    off.  beginnings: of the failed runs.  kept: the first samples of every run.
+    off.  beginnings: of the failed runs.  kept: the first samples of every run.  turned: by what
+    angle in rad first steps turn the body, and whether later ones are seen not to.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -31,6 +37,7 @@ class OverScenarios:
     seen: dict[str, Known] = field(default_factory=dict)
     beginnings: dict[str, Beginning] = field(default_factory=dict)
     kept: list[KeptRun] = field(default_factory=list)
+    turned: dict[str, tuple[float, bool]] = field(default_factory=dict)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool] = (0, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
@@ -51,22 +58,40 @@ class OverScenarios:
             self._likely = failing, bool(failing > 1 and causes_over_runs(integrator, self.kept))
         return self._likely[1]
 
-    def followed(self, one: Candidate, names: set[str], eps: float) -> set[Followed | None]:
+    @property
+    def begins(self) -> str:
+        """At which other attitude runs begin; "" where none is seen to."""
+        if not any(alone for _, alone in self.turned.values()):
+            return ""
+        angle = float(np.median([angle for angle, _ in self.turned.values()]))
+        return f"runs begin at an attitude that is some {angle:.0e} rad from the one given"
+
+    def followed(
+        self, one: Candidate, evidence: Mapping[str, Evidence], eps: float
+    ) -> set[Followed | None]:
         """Which equation the failed runs follow where a cause fits the steps as they vanish.
 
-        One mistake is made in every run, or in the first steps of every run.
+        One mistake is made in every run, or in the first steps of every run. evidence: of these
+        steps by scenario, where the cause may have other numbers.
         """
-        for name in names & self.beginnings.keys():
+        names = evidence.keys() & self.beginnings.keys()
+        for name in names:
             if (one.key, name) not in self._followed:
-                self._followed[one.key, name] = follows(self.beginnings[name], one, eps)
+                here = fitting(one, evidence[name])
+                answer = follows(self.beginnings[name], here, eps) if here is not None else None
+                self._followed[one.key, name] = answer
         return {v for (key, name), v in self._followed.items() if key == one.key and name in names}
 
 
 @dataclass
 class EngineOverScenarios:
-    """Of one engine. across: the equations that its scenarios show.  integrators: by name."""
+    """Of one engine. across: the equations that its scenarios show.  integrators: by name.
+
+    siblings: what the same systems show with one thing changed.
+    """
 
     across: Across = field(default_factory=Across)
+    siblings: Siblings = field(default_factory=Siblings)
     integrators: dict[str, OverScenarios] = field(
         default_factory=lambda: defaultdict(OverScenarios)
     )

@@ -59,8 +59,12 @@ def kept(one: Case, step: Step, h: float, every: int) -> KeptRun:
     return KeptRun(one.name, system, sweep, sweep.times, state, bounds, True)
 
 
-def causes(step: Step, scheme: str = "semi-implicit-euler") -> list[str]:
-    runs = [kept(one, step, h, every) for one in CASES for h, every in ((0.02, 1), (0.009, 2))]
+def causes(
+    step: Step,
+    scheme: str = "semi-implicit-euler",
+    plans: tuple[tuple[float, int], ...] = ((0.02, 1), (0.009, 2)),
+) -> list[str]:
+    runs = [kept(one, step, h, every) for one in CASES for h, every in plans]
     runs = [replace(run, fails=not bool(np.all(_sound(run, scheme)))) for run in runs]
     return causes_over_runs(Integrator("own", scheme, dict.fromkeys(CHANNELS, 1)), runs)
 
@@ -98,6 +102,28 @@ def test_how_a_load_goes_over_a_run_is_named(share: Share, phrase: str) -> None:
     (text,) = causes(driven(share))
     assert phrase in text
     assert "the applied torque" in text
+
+
+@pytest.mark.parametrize(
+    ("length", "phrase"),
+    [
+        (lambda h: 1.0 / round(1.0 / h), "rounded to a whole number of steps in a second"),
+        (lambda h: h * (1.0 + h), "by another part at each step size"),
+        (lambda h: 1.01 * h, ""),
+    ],
+)
+def test_steps_of_another_length_in_each_run_are_named(
+    length: Callable[[float], float], phrase: str
+) -> None:
+    """One part in all of them is known from a run by itself."""
+
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        return euler(motion, q, v, length(h), np.zeros(3))
+
+    found = causes(step, plans=((0.02, 1), (0.009, 2), (0.0123, 1)))
+    assert phrase in found[0] if phrase else found == []
 
 
 def test_a_load_that_is_wrong_by_one_factor_goes_by_no_law() -> None:

@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 from test_causes import causes_over
 from wrong_equations import CASES, GRAVITY, PIVOT, case, gyroscopic, with_torque
 
 from omegadot.diagnosis.equations.candidate import Candidate
+from omegadot.diagnosis.equations.evidence import of_forward_dynamics
+from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.hypotheses import hypotheses
 from omegadot.diagnosis.equations.same_cause import same_cause
+from omegadot.diagnosis.equations.siblings import AFTER_ANOTHER, Siblings
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.stepping.order_lost import OrderLost
+from omegadot.diagnosis.wording.features import features_of
 from omegadot.diagnosis.wording.kinds import over_run
 from omegadot.gates.case import Case
+from omegadot.gates.states.equation import random_states
+from omegadot.harness.requests.siblings import siblings_of
 from omegadot.reference_impl.inertia import parallel_axis
+from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.loads import damping_torque, gravity_torque
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Acceleration, Body, State, System
@@ -145,10 +154,41 @@ def test_a_torque_along_principal_axes_is_named() -> None:
 
 
 def test_what_is_lost_in_several_channels_is_one_sentence() -> None:
-    free = OrderLost({"omega": (1, 2), "position": (1, 2)}, ("omega moves late",))
+    free = OrderLost({"omega": (1, 2), "position": (1, 2)}, {"omega": "omega moves late"})
     held = OrderLost({"omega": (1, 2), "attitude": (1, 2)})
     assert free.with_others([held]).text == held.with_others([free]).text
     assert "step^2 in omega, the attitude and the position" in held.with_others([free]).text
+
+
+def test_an_order_that_a_scenario_has_kept_is_not_lost_on_another() -> None:
+    driven = OrderLost({"omega": (3, 4), "attitude": (2, 4)})
+    free = OrderLost({"attitude": (2, 4)}).over({"omega": 3.99}, {"omega": 4, "attitude": 4})
+    assert driven.with_others([free]).text == free.with_others([driven]).text
+    assert "omega" not in driven.with_others([free]).text
+
+
+def test_an_order_that_whole_runs_contradict_is_not_lost() -> None:
+    reported = OrderLost({"omega": (1, 4)}).over({"omega": 2.0}, {"omega": 4})
+    assert not reported.orders
+    assert "omega" in reported.against
+
+
+def test_a_term_that_steps_hold_explains_every_scenario() -> None:
+    """Without loads it is all of omega-dot; where a load acts, it is not."""
+    gyroscopic, pulled = "the gyroscopic term", "the torque of gravity"
+    free = OrderLost({"omega": (1, 2)}, {}, (frozenset({gyroscopic}), frozenset({gyroscopic})))
+    top = OrderLost(
+        {"omega": (1, 2)}, {}, (frozenset({gyroscopic, pulled}), frozenset({gyroscopic}))
+    )
+    late = replace(top, held=(frozenset({gyroscopic, pulled}), frozenset({gyroscopic, pulled})))
+    assert "either" in free.with_others([]).text
+    for one, other in ((free, top), (top, free)):
+        assert one.with_others([other]).text.endswith(
+            "gyroscopic term keeps the value of its start"
+        )
+    assert free.with_others([late]).text.endswith("omega moves by omega-dot of the step's start")
+    assert "start" not in top.with_others([late]).text
+    assert "start" not in free.with_others([top.of_first]).text
 
 
 def test_what_is_off_is_that_of_the_most_basic_channel() -> None:
@@ -162,3 +202,42 @@ def test_numbers_of_other_scenarios_make_no_other_cause() -> None:
     over = {"a": ["steps are 2 % too long"], "b": ["steps are 3 % too short"], "c": []}
     assert over_run(over["a"][0], over) == over_run(over["b"][0], over)
     assert over_run("the body sleeps", over) == "the body sleeps"
+
+
+Answer = Callable[[System, System, State], Acceleration]
+
+
+def siblings(answer: Answer, gravities: Sequence[Sequence[float]]) -> list[str]:
+    """Of tops, each right by itself, the causes of what another system loaded after it shows."""
+    loads = [{"gravity": gravity, "pivot": PIVOT} for gravity in gravities]
+    found, tops = Siblings(), [case(f"top-{k}", load) for k, load in enumerate(loads)]
+    for top in tops:
+        states = random_states(top, 8, [1])
+        right = of_forward_dynamics(top.system, states, forward_dynamics(top.system, states))
+        features = features_of(top.system, top.initial)
+        asked = {}
+        for what, other in siblings_of(top):
+            placed = place_on_pivot(other.system, states)
+            made = answer(top.system, other.system, placed)
+            asked[what] = (other.system, placed, SimpleNamespace(ok=True, result=vars(made)))
+        result: Any = SimpleNamespace(siblings=asked, precision="float64")
+        found.add(Scene(top.name, top.system, features, {"forward": right}), top, result)
+    return found.causes(tops[0])
+
+
+def test_a_gravity_of_which_the_direction_is_ignored_shows_in_a_sibling() -> None:
+    def down(first: System, other: System, states: State) -> Acceleration:
+        g = np.array([0.0, 0.0, -np.linalg.norm(other.load.gravity)])
+        return forward_dynamics(replace(other, load=replace(other.load, gravity=g)), states)
+
+    (text,) = siblings(down, [[0.0, 0.0, -9.81]])
+    ignored = "gravity points along -z, whatever direction was requested"
+    assert text == f"either {ignored}, or {AFTER_ANOTHER}"
+
+
+def test_what_is_left_over_of_a_first_system_is_named() -> None:
+    def kept(first: System, other: System, states: State) -> Acceleration:
+        load = replace(other.load, gravity=first.load.gravity)
+        return forward_dynamics(replace(other, load=load), states)
+
+    assert siblings(kept, [[0.0, 0.0, -9.81], [3.0, 0.0, -8.0]]) == [AFTER_ANOTHER]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ import pytest
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
 from omegadot.diagnosis.reported.clock import clock_cause
+from omegadot.diagnosis.reported.of_steps import ways_of_steps
 from omegadot.diagnosis.reported.requests import again_cause, place_cause
 from omegadot.diagnosis.stepping.slips import OF_SCHEME, slipped
 from omegadot.diagnosis.wording.conditions import only_where
@@ -23,6 +26,7 @@ from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.one_body.body_motion import attitude_motion
 from omegadot.reference_impl.rotations import quaternion_product, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.scenarios import scenario
 
@@ -175,3 +179,24 @@ def test_every_slip_makes_another_scheme(name: str) -> None:
         unseen = text.startswith("the position moves") or "loads" in text
         end = np.concatenate(scheme.step(motion, q, v, 0.05))
         assert (np.max(np.abs(end - due)) < 1e-13) == unseen, text
+
+
+@pytest.mark.parametrize("tau", [0.002, 0.5])
+def test_the_time_constant_of_a_filter_is_found_in_its_samples(tau: float) -> None:
+    sweep, share = Sweep(0.02, 60, 3), float(np.exp(-0.02 / tau))
+    scheme = SCHEMES["rk4-quaternion"]
+    every = step_body(scheme, body().system, body().initial, sweep.timestep, sweep.steps, 1)[1]
+    logged = every.angular_velocity.copy()
+    for k in range(1, len(logged)):
+        logged[k] = share * logged[k - 1] + (1.0 - share) * logged[k]
+    state = every[sweep.sample_steps]
+    came = replace(state, angular_velocity=logged[sweep.sample_steps])
+    reported: Any = SimpleNamespace(sweep=sweep, state=came)
+    ways = {text: made for text, made, _ in ways_of_steps(reported, every, "angular_velocity", "w")}
+    text = f"w is reported through a low-pass of the first order with a time constant of {tau:g} s"
+    assert np.max(np.abs(ways[text] - came.angular_velocity)) < 1e-12
+
+
+def test_the_constant_of_a_filter_is_one_over_all_runs() -> None:
+    text = "omega is reported through a low-pass of the first order with a time constant of {} s"
+    assert kind_of(text.format(0.002)) != kind_of(text.format(0.003))

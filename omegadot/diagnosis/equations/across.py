@@ -100,6 +100,12 @@ class Across:
                 self._texts[name, source] = self._cause(name, source)
         return self._texts[name, source]
 
+    def plain(self, name: str, source: str) -> str:
+        """A cause on one scenario that is quickly found; "" where none fits that holds on all."""
+        scene = self.scenes[name]
+        with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+            return self._shared(scene, source, QUICK) if scene.evidence[source].clear else ""
+
     def known(self, name: str, source: str) -> str:
         """What is seen of the scenarios on which nothing fits; "" on one that is hardly off."""
         if not self.scenes[name].evidence[source].clear:
@@ -228,7 +234,7 @@ class Across:
         """What fits by numbers that are others on each scenario, with those of the first."""
         evidence = scene.evidence[source]
         for one in self._weak.setdefault(source, []):
-            fitted = _fitting(one.candidate, evidence)
+            fitted = fitting(one.candidate, evidence)
             if fitted and scene.name in one.names:
                 self._chosen[scene.name, source] = fitted
                 return self._text_of([one], source)
@@ -251,7 +257,7 @@ class Across:
         """What was found on another scenario, if it fits this one and holds on all."""
         evidence = scene.evidence[source]
         for group in self._accepted:
-            fits = [one for one in (_fitting(one, evidence) for one in group) if one]
+            fits = [one for one in (fitting(one, evidence) for one in group) if one]
             held = [self._all.held(one, scene, source) for one in fits]
             whole = [one for one in held if one.holds and one.strong]
             text = self._text_of(whole, source)
@@ -324,7 +330,7 @@ def _add_wrong(nested: Across, scene: Scene, source: str) -> None:
     nested.add(replace(scene, evidence={source: wrong}))
 
 
-def _fitting(one: Candidate, evidence: Evidence) -> Candidate | None:
+def fitting(one: Candidate, evidence: Evidence) -> Candidate | None:
     """A candidate with its own numbers or with those of another scenario, where it fits there."""
     made = one.predicted(evidence)
     if made is not None and one.fits(evidence, made):

@@ -11,16 +11,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from omegadot.diagnosis.reported.of_steps import SLACK, Way, ways_of_steps
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import conjugate, quaternion_product, rotation_between
 from omegadot.reference_impl.system import Array, State
 
-SLACK = 4.0
 LEAST = 5  # samples
 NEAR = 1e-6  # a share that is none, or all
-Way = tuple[str, Array, float]  # a cause, what it makes of the quantity, the bounds allowed
 QUANTITIES = {
     "angular_velocity": ("omega", "rad/s"),
     "linear_velocity": ("the linear velocity", "m/s"),
@@ -57,15 +56,16 @@ def _ways(reported: ReportedRun, name: str, what: str, unit: str) -> Iterator[Wa
     clip = f"is reported within {number(float(f'{largest:.9g}'))} {unit}"
     yield f"each component of {what} {clip}", np.clip(due, -largest, largest), SLACK
     yield f"{what} is reported below {number(float(f'{longest:.9g}'))} {unit}", short, SLACK
-    yield from _quotients(reported, name, what)
+    every = reported.stepped(every_step=True)
+    yield from _quotients(reported, every, name, what)
     yield from _shares(due, came, what)
+    yield from ways_of_steps(reported, every, name, what)
 
 
-def _quotients(reported: ReportedRun, name: str, what: str) -> Iterator[Way]:
+def _quotients(reported: ReportedRun, every: State, name: str, what: str) -> Iterator[Way]:
     """Over the sample or the step before, and about the sample."""
     if name == "position":
         return
-    every = reported.stepped(every_step=True)
     numbers, h = reported.sweep.sample_steps, reported.sweep.timestep
     before = np.maximum(numbers - 1, 0)
     of = "the attitude" if name == "angular_velocity" else "the position"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,17 +63,26 @@ class Known:
         powers = {"step": self.step, "time": self.time}
         goes = [f"as {k}^{p:g}" for k, p in powers.items() if p]
         text += f", by an error that goes {listed(goes)}" if goes else ""
-        return text + (", whatever the step" if self.step == 0.0 else "")
+        return text + (", as far by the shortest steps as by the longest" * (self.step == 0.0))
 
 
-def known_of_runs(truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]) -> Known | None:
-    """Of the first channel that is off beyond rounding: attitude follows omega, and place both."""
+def known_of_runs(
+    truth: Truth, result: CaseResult, runs: Sequence[JudgedRun], shortest: float
+) -> Known | None:
+    """Of the first channel that is off beyond rounding: attitude follows omega, and place both.
+
+    runs: those that fail.  shortest: of all steps that were taken, in s.
+    """
     failed = {row.channel for run in runs for row in run.rows if row.verdict == "fail"}
+    if "attitude" in failed and not failed & {"omega", "energy"}:
+        failed.discard("angular_momentum")  # in world axes, which the attitude turns
     errors = [found for run in runs if (found := _errors(truth, result, run)) is not None]
     for channel in (c for c, names in CHANNELS.items() if failed & names):
         shown = [(run, e[channel]) for run, e in errors if np.any(e[channel].clear)]
         if shown:
-            return _known(channel, shown)
+            seen = _known(channel, shown)
+            tried = min(run.sweep.timestep for run, _ in shown) <= shortest
+            return seen if tried or seen.step != 0.0 else replace(seen, step=None)
     return None
 
 
@@ -145,6 +154,8 @@ def _of_step(shown: Sequence[tuple[JudgedRun, _Error]]) -> float | None:
         if all(abs(e.time[k] - t) <= 1e-9 * t and e.clear[k] for (_, e), k in pairs):
             steps = np.array([run.sweep.timestep for (run, _), _ in pairs])
             sizes = np.array([e.lengths[k] for (_, e), k in pairs])
+            if any(e.lengths[k] > EARLY * e.size for (_, e), k in pairs):
+                return None  # what has grown so far shows no order
             return _near(np.diff(np.log(sizes)) / np.diff(np.log(steps)))
     return None
 

@@ -14,7 +14,7 @@ from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, common_f
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.one_body.body_motion import motion_over
-from omegadot.reference_impl.rotations import rotation_between
+from omegadot.reference_impl.rotations import attitude_angle, rotation_between
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_through
 from omegadot.reference_impl.system import Acceleration, Array, State, System
@@ -26,17 +26,22 @@ BETWEEN = 0.2  # by how much the distances to both may add up to another than th
 NEAR, FAR = 0.3, 0.7  # of the distance of the two solutions
 GROWS, CLEAR = 3.0, 0.05  # of the part of that distance which a run that leaves a solution has left
 CONVERGED = 0.1  # of the distance of the two solutions
+STAYS = 4.0  # times the angle that a run begins at
 SEEN = 1e-4  # relative: what the steps here leave
 
 
 @dataclass(frozen=True)
 class Beginning:
-    """The first samples of a run of a system, and the exact solution there. times: (n,) s."""
+    """The first samples of a run of a system, and the exact solution there. times: (n,) s.
+
+    steps: to the last of them.
+    """
 
     system: System
     times: Array
     reported: State
     exact: State
+    steps: int = 0
 
 
 def follows(beginning: Beginning, candidate: Candidate, eps: float) -> Followed | None:
@@ -99,6 +104,16 @@ def keeps_pace(beginning: Beginning, steps: VanishingSteps) -> bool:
         )
         pace = float(np.median(came / due)) if len(came) else np.nan
     return k is None or not np.isfinite(pace) or abs(pace - 1.0) > NEAR * abs(k - 1.0)
+
+
+def begins_turned(beginning: Beginning, angle: float) -> bool:
+    """Whether a run stays as far off as it begins, in rad: if every step turned it, it would not.
+
+    What every step adds grows as the root of their number at least.
+    """
+    with np.errstate(all="ignore"):
+        off = attitude_angle(beginning.exact.orientation, beginning.reported.orientation)[1:]
+    return beginning.steps > (2.0 * STAYS) ** 2 and bool(np.all(off < STAYS * angle))
 
 
 def _solved(

@@ -78,28 +78,52 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
 
 def slight_jump_cause(steps: VanishingSteps) -> str:
     """What a first step adds to a state however short it is, if that is little; "" without any."""
-    before, after = steps.states, steps.limit
-    rate = norm(before.angular_velocity)
     for name, what, unit in QUANTITIES:
-        was, now = getattr(before, name), getattr(after, name)
-        off, size = now - was, norm(was)
-        allowed = SLIGHT * steps.eps * (size + rate + norm(before.linear_velocity))
-        seen = norm(off) > allowed
-        if np.count_nonzero(seen) < len(seen) // 2 or not np.all(np.isfinite(off)):
+        off, allowed = _slightly_off(steps, name)
+        if off is None:
             continue
-        # the two shortest steps alone must show it, to second order: where steps are not smooth,
-        # the limit of five is another
-        short, moved = getattr(steps.start, name), norm(getattr(steps.moved, name))
-        left = moved**2 / np.where(size > 0.0, size, np.inf) + allowed
-        if not np.all(norm(short - now) <= CLOSE * norm(off) + left):
-            continue
+        was, size = getattr(steps.states, name), norm(getattr(steps.states, name))
         k = float(np.sum(off * was) / np.sum(was * was))
         if np.all(norm(off - k * was) <= CLOSE * abs(k) * size + allowed):
             times = factor(1.0 + k)
             return f"{what} is multiplied by {times} in the first step, however short it is"
-        middle = float(np.median(norm(off)))
-        return f"the first step changes {what} by some {middle:.0e} {unit}, however short it is"
+        some = f"{float(np.median(norm(off))):.0e} {unit}".strip()
+        return f"the first step changes {what} by some {some}, however short it is"
     return ""
+
+
+def first_turn(steps: VanishingSteps) -> float | None:
+    """The slight angle in rad by which a run's first step turns the body however short it is.
+
+    None where there is none, or where another quantity jumps as well.
+    """
+    off, _ = _slightly_off(steps, "orientation")
+    free = steps.system.load.pivot is None
+    others = ("angular_velocity", *(("linear_velocity", "position") if free else ()))
+    if off is None or any(_slightly_off(steps, name)[0] is not None for name in others):
+        return None
+    turned = attitude_angle(steps.states.orientation, steps.limit.orientation)
+    return float(np.median(turned)) if np.median(turned) > np.median(norm(off)) else None
+
+
+def _slightly_off(steps: VanishingSteps, name: str) -> tuple[Array | None, Array]:
+    """How far the limit of a quantity is off, None where it is not clearly; and the rounding."""
+    was, now = getattr(steps.states, name), getattr(steps.limit, name)
+    rate = norm(steps.states.angular_velocity)
+    off, size = now - was, norm(was)
+    allowed = SLIGHT * steps.eps * (size + rate + norm(steps.states.linear_velocity))
+    seen = norm(off) > allowed
+    if np.count_nonzero(seen) < len(seen) // 2 or not np.all(np.isfinite(off)):
+        return None, allowed
+    # longer steps must show it as well, or the two shortest alone, to second order: where steps are
+    # not smooth, the limit of five is another
+    if steps.longer is not None:
+        shown = norm(getattr(steps.longer, name) - now) <= CLOSE * norm(off) + allowed
+    else:
+        short, moved = getattr(steps.start, name), norm(getattr(steps.moved, name))
+        left = moved**2 / np.where(size > 0.0, size, np.inf) + allowed
+        shown = norm(short - now) <= CLOSE * norm(off) + left
+    return (off if np.all(shown) else None), allowed
 
 
 def _along(one: Misreading, beginning: Beginning | None) -> str:

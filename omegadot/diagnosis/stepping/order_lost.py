@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -38,6 +38,7 @@ RATES = {
     "position": "the velocity",
     "linear_momentum": "the acceleration",
 }
+HALF = 0.5  # an order
 EVEN = 0.05  # how near a part lies to the plain number that it is taken for
 TERMS = {
     "the gyroscopic term": gyroscopic,
@@ -56,22 +57,62 @@ NAMED = {
 
 @dataclass(frozen=True)
 class OrderLost:
-    """Which channels are of a lower order than declared: (order, declared). by: what makes it."""
+    """Which channels are of a lower order than declared: (order, declared).
+
+    by: what makes it, of each channel.  held: the terms of omega-dot that change in a step, and of
+    these the ones that do not change in the engine's.  against: channels that single steps or whole
+    runs show to be of a higher order.  has_past: the first step of a run is another than the rest.
+    """
 
     orders: Mapping[str, tuple[int, int]]
-    by: tuple[str, ...] = ()
+    by: Mapping[str, str] = field(default_factory=dict)
+    held: tuple[frozenset[str], frozenset[str]] | None = None
+    against: frozenset[str] = frozenset()
+    has_past: bool = False
+
+    def over(self, observed: Mapping[str, float], declared: Mapping[str, int | None]) -> OrderLost:
+        """Without what whole runs contradict. observed: their orders, where these are settled.
+
+        What is lost in a single step and not in a run is lost in the report, or in a first step.
+        """
+        wrong = {
+            c for c, (order, _) in self.orders.items() if observed.get(c, order) > order + HALF
+        }
+        orders = {c: one for c, one in self.orders.items() if c not in wrong}
+        sound = {
+            channel
+            for channel, due in declared.items()
+            if channel not in orders and due is not None and observed.get(channel, 0.0) > due - HALF
+        }
+        return replace(self, orders=orders, against=self.against | wrong | sound)
+
+    @property
+    def of_first(self) -> OrderLost:
+        """Without what makes it: of steps that depend on the past the first is another."""
+        return replace(self, by={}, held=None, has_past=True)
 
     def with_others(self, others: Iterable[OrderLost]) -> OrderLost:
         """One mistake shows in the channels that a scenario has: all of them over a run.
 
-        Of a channel the lowest order counts; what some scenarios have no term for, others show.
+        Of a channel the lowest order counts; what some scenarios have no term for, others show. A
+        channel that some show to be sound follows one that none does, where there is one.
         """
-        orders, by = dict(self.orders), dict.fromkeys(self.by)
-        for other in others:
-            by |= dict.fromkeys(other.by)
-            for channel, one in other.orders.items():
-                orders[channel] = min(one, orders.get(channel, one))
-        return OrderLost(orders, tuple(by))
+        every = [self, *others]
+        orders = dict[str, tuple[int, int]]()
+        for one in every:
+            for channel, lost in one.orders.items():
+                orders[channel] = min(lost, orders.get(channel, lost))
+        sound = frozenset().union(*(one.against for one in every))
+        unopposed = orders.keys() - sound
+        kept = unopposed if unopposed & self.orders.keys() else set(self.orders)
+        orders = {c: lost for c, lost in orders.items() if c in kept}
+        by = {c: _agreed(c, every) for c in orders}
+        held = [one.held for one in every if "omega" in one.orders and one.held is not None]
+        if "omega" in orders and held:
+            by["omega"] = _held_over(held)
+        past = any(one.has_past for one in every)
+        by = {c: text for c, text in by.items() if text and not past}
+        return OrderLost(orders, by, None, self.against)
 
     @property
     def text(self) -> str:
@@ -84,7 +125,30 @@ class OrderLost:
             f"{order}, where {due} is declared"
             for (order, due), names in named.items()
         ]
-        return "; ".join([*texts, *self.by])
+        return "; ".join([*texts, *(self.by[c] for c in OF_CHANNEL if c in self.by)])
+
+
+def _agreed(channel: str, every: Sequence[OrderLost]) -> str:
+    """What makes a channel's error on half of the scenarios at least, none being against it."""
+    losing = [one for one in every if channel in one.orders]
+    texts = [one.by[channel] for one in losing if channel in one.by]
+    return texts[0] if len(set(texts)) == 1 and 2 * len(texts) >= len(losing) else ""
+
+
+def _held_over(every: Sequence[tuple[frozenset[str], frozenset[str]]]) -> str:
+    """The terms that steps keep from their start, on every scenario that has them."""
+    there = frozenset().union(*(kept for kept, _ in every))
+    held = frozenset().union(*(one for _, one in every))
+    if not held or any(held & kept != one for kept, one in every):
+        return ""
+    names = [name for name in TERMS if name in held]
+    terms = (
+        f"in a step {listed(names)} {'keep' if len(held) > 1 else 'keeps'} the value of its start"
+    )
+    whole = _moves("omega", 0.0)
+    if held != there:
+        return terms
+    return whole if len(there) > 1 else f"either {whole}, or {terms}"
 
 
 def order_lost(
@@ -94,16 +158,19 @@ def order_lost(
 
     stepped: (m, k, ...), the ends of the probe's steps (m, k).
     """
-    lost, by = dict[str, tuple[int, int]](), list[str]()
+    lost, by = dict[str, tuple[int, int]](), dict[str, str]()
+    held, sound = None, set[str]()
     for channel, (order, part) in _orders(system, probe, stepped, eps).items():
         due = declared.get(channel)
-        if due is not None and order < due:
-            lost[channel] = order, due
-            if part is not None:
-                by.append(_moves(channel, part))
-            elif channel == "omega" and order == 1:
-                by += _held_terms(system, probe, stepped)
-    return OrderLost(lost, tuple(by)) if lost else None
+        if due is None or order >= due:
+            sound.add(channel)
+            continue
+        lost[channel] = order, due
+        if part is not None:
+            by[channel] = _moves(channel, part)
+        if channel == "omega" and order == 1:
+            held = _held_terms(system, probe, stepped)
+    return OrderLost(lost, by, held, frozenset(sound)) if lost else None
 
 
 def _moves(channel: str, part: float) -> str:
@@ -115,8 +182,10 @@ def _moves(channel: str, part: float) -> str:
     return f"the second-order term of {what} is {factor(part)} times that of the equation"
 
 
-def _held_terms(system: System, probe: Probe, stepped: State) -> list[str]:
-    """Terms of omega-dot that a step takes at its start, or moves too far, if these explain it.
+def _held_terms(
+    system: System, probe: Probe, stepped: State
+) -> tuple[frozenset[str], frozenset[str]] | None:
+    """Terms of omega-dot that change, and those that a step takes at its start; None if it is open.
 
     The second-order term of omega is ``h^2/2`` of the derivatives of all terms: those of a term
     that is held are left out of it.
@@ -143,18 +212,14 @@ def _held_terms(system: System, probe: Probe, stepped: State) -> list[str]:
     lines = np.stack([np.ravel(one * weight) for one in kept.values()], axis=-1)
     target = np.ravel(second * weight)
     if not (lines.size and np.isfinite(lines).all() and np.isfinite(target).all()):
-        return []
+        return None
     parts = np.linalg.lstsq(lines, target, rcond=None)[0]
     left = np.max(np.abs(lines @ parts - target))
-    if left > EVEN or len(kept) < 2:
-        return []
-    held = [name for name, part in zip(kept, parts, strict=True) if abs(part) < EVEN]
+    held = frozenset(name for name, part in zip(kept, parts, strict=True) if abs(part) < EVEN)
     sound = [part for part in parts if abs(part - 1.0) < EVEN]
-    if not held or len(held) + len(sound) < len(kept):
-        return []
-    return [
-        f"in a step {listed(held)} {'keep' if len(held) > 1 else 'keeps'} the value of its start"
-    ]
+    if left > EVEN or len(held) + len(sound) < len(kept):
+        return None
+    return frozenset(kept), held
 
 
 def _orders(

@@ -9,6 +9,7 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
+from omegadot.diagnosis.stepping.lengths import length_causes
 from omegadot.diagnosis.stepping.old_operands import old_operands
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.share_laws import laws_of, points_of
@@ -53,7 +54,8 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         if by is None:
             return []
         chosen = [run.short for run in _chosen(runs)]
-        found = law_causes(by, chosen) or either(old_operands(by, chosen))
+        found = length_causes(by, runs)
+        found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         return found or solved_causes(by, runs) or place_causes(by, runs)
 
 

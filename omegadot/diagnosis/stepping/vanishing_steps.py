@@ -29,7 +29,7 @@ class VanishingSteps:
     """The rates at no step, by channel, and where a step of no length leads.
 
     start and moved: from the two shortest steps.  limit: from the shortest five, which knows it to
-    rounding where the steps are smooth.
+    rounding where the steps are smooth.  longer: from the five before, in double precision.
     """
 
     system: System
@@ -39,6 +39,7 @@ class VanishingSteps:
     moved: State
     limit: State
     eps: float = EPS
+    longer: State | None = None
 
     @property
     def evidence(self) -> Evidence:
@@ -98,7 +99,9 @@ def vanishing_steps(
     moved = [f[:, -1] - f[:, -2] for f in vars(stepped).values()]
     limit = [extrapolated(f[:, -RANGE:]) for f in vars(stepped).values()]
     states = (State(*ends), State(*moved), State(*limit))
-    return VanishingSteps(system, probe.states, rates, *states, eps)
+    before = [f[:, -RANGE - 1 : -1] for f in vars(stepped).values()]
+    longer = State(*map(extrapolated, before)) if before[0].shape[1] == RANGE else None
+    return VanishingSteps(system, probe.states, rates, *states, eps, longer)
 
 
 def better(limit: Limit) -> tuple[Array, Array]:

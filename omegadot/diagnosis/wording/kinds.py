@@ -27,6 +27,8 @@ FACTS = (
     "does not move in the run",
     "is stepped in full",
 )
+# One number in every run, or it is another cause.
+CONSTANTS = ("low-pass", "it is filtered")
 MOST_NAMED = 3  # between which nothing decides
 SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
 
@@ -35,6 +37,8 @@ def kind_of(text: str) -> str:
     """A cause without its numbers, and without where it shows."""
     for end in (", but only where", ": it is wrong only where", ", at steps of", ", on "):
         text = text.partition(end)[0]
+    if any(one in text for one in CONSTANTS):
+        return text
     same = text.replace("too short", "too long").partition(": rounded to")[0]
     return NUMBER.sub("#", same)
 
