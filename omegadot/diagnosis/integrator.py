@@ -119,7 +119,8 @@ class IntegratorCauses:
         """Work out what needs the trajectories, where it is wanted, and let go of them."""
         if wanted and any(map(fails, self._runs)) and self._result is not None:
             failed = [run for run in self._runs if fails(run)]
-            shortest = min(run.sweep.timestep for run in self._runs)
+            steps = [r.sweep.timestep for r in self._runs if r.sweep.accuracy is None]
+            shortest = min(steps, default=0.0)
             seen = known_of_runs(self._truth, self._result, failed, shortest)
             if seen is not None:
                 self._over.seen[self._case.name] = seen

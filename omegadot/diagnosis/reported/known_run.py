@@ -27,6 +27,7 @@ CHANNELS = {
     "linear velocity": {"linear_momentum"},
     "position": {"position"},
 }
+ORDERED = ("omega", "attitude", "linear_momentum", "position")  # channels of a declared order
 AXES = {"omega": "the body", "attitude": "the body", "position": "the world"}
 
 
@@ -82,6 +83,9 @@ def known_of_runs(
         if shown:
             seen = _known(channel, shown)
             tried = min(run.sweep.timestep for run, _ in shown) <= shortest
+            due = runs[0].integrator.orders.get(min(CHANNELS[channel] & {*ORDERED}))
+            if seen.step is not None and due is not None and seen.step >= due:
+                return replace(seen, step=None, time=None)  # until there it is a sound scheme's own
             return seen if tried or seen.step != 0.0 else replace(seen, step=None)
     return None
 
