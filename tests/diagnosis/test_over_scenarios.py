@@ -215,12 +215,12 @@ def siblings(answer: Answer, gravities: Sequence[Sequence[float]]) -> list[str]:
         states = random_states(top, 8, [1])
         right = of_forward_dynamics(top.system, states, forward_dynamics(top.system, states))
         features = features_of(top.system, top.initial)
-        asked = {}
+        answers = {}
         for what, other in siblings_of(top):
             placed = place_on_pivot(other.system, states)
             made = answer(top.system, other.system, placed)
-            asked[what] = (other.system, placed, SimpleNamespace(ok=True, result=vars(made)))
-        result: Any = SimpleNamespace(siblings=asked, precision="float64")
+            answers[what] = (other.system, placed, SimpleNamespace(ok=True, result=vars(made)))
+        result: Any = SimpleNamespace(siblings=answers, precision="float64")
         found.add(Scene(top.name, top.system, features, {"forward": right}), top, result)
     return found.causes(tops[0])
 
