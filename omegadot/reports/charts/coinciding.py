@@ -10,7 +10,7 @@ import numpy as np
 from omegadot.reference_impl.system import Array
 from omegadot.reports.charts.deviations import Chart, Series
 from omegadot.reports.charts.packing import CEILING_DECADE, FLOOR
-from omegadot.reports.summary.summary import YARDSTICKS
+from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.text.numbers import magnitude
 
 # Curves no farther apart than a line is broad cover each other: px, of a plot so many px high.

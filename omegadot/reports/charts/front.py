@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from omegadot.reports.charts.sweeps import Sweep
-from omegadot.reports.summary.summary import YARDSTICKS
+from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.text.numbers import plain, short
 
 

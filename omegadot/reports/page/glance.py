@@ -9,11 +9,11 @@ from typing import Any
 
 import polars as pl
 
-from omegadot.reports.record.schema import GATES
+from omegadot.reports.record.schema import GATES, YARDSTICKS
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.matrix import MARKS, origin_of
 from omegadot.reports.summary.provenance import Sources
-from omegadot.reports.summary.summary import YARDSTICKS, Cell, Column, Summary, worst
+from omegadot.reports.summary.summary import Cell, Column, Summary, worst
 from omegadot.reports.text.numbers import grouped, knob, short, times
 
 # A cell: the value, its details, which may be folded away, and what stands beside it in any case.

@@ -25,6 +25,8 @@ CHANNELS = (
     "model",
     "time",
 )
+# Engines that every run is judged by: they are no part of a comparison.
+YARDSTICKS = ("exact", "reference")
 GATES = ("model", "equation", "scheme", "invariants", "trajectory", "cost")
 VERDICTS = ("fail", "declared", "pass", "info")
 OUTCOMES = (

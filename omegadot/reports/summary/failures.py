@@ -10,7 +10,7 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.record.schema import GATES
+from omegadot.reports.record.schema import GATES, YARDSTICKS
 from omegadot.reports.text.numbers import (
     engine_name,
     knob,
@@ -23,11 +23,12 @@ from omegadot.reports.text.numbers import (
 UNKNOWN = "none is known"
 # Of a metric that is measured after another system was loaded, which its note names.
 OF_SIBLING = " of sibling"
+WHO = ("engine", "engine_version", "setup")
 
 
 def failures_of(record: Record) -> tuple[str, ...]:
     """Of every failing engine, the first gate that fails and its worst measure."""
-    who = ("engine", "engine_version", "setup")
+    who = WHO
     rows = record.metrics.filter(pl.col("verdict") == "fail").to_dicts()
     several = Counter(name for name, *_ in {tuple(row[key] for key in who) for row in rows})
     found: dict[tuple[str, ...], list[dict[str, Any]]] = {}
@@ -37,7 +38,8 @@ def failures_of(record: Record) -> tuple[str, ...]:
     for (engine, version, setup), own in found.items():
         name = engine_name(engine, version if several[engine] > 1 else "", setup)
         tasks = [t for t in record.run["tasks"] if t["engine"] == engine]
-        sentences.append(f"{name}: {_worst(own)}{_extent(tasks)}{_likeliest(tasks)}.")
+        worth = _worth(record.metrics, (engine, version, setup), own)
+        sentences.append(f"{name}: {_worst(own)}{_extent(tasks)}{worth}{_likeliest(tasks)}.")
     return tuple(sentences)
 
 
@@ -91,6 +93,36 @@ def _excess(row: Mapping[str, Any]) -> float:
 def _extent(tasks: list[Mapping[str, Any]]) -> str:
     failing = [t for t in tasks if "fail" in (t.get("gates") or {}).values()]
     return f" ({len(failing)} of {times(len(tasks), 'run')} fail)" if failing else ""
+
+
+def _worth(metrics: pl.DataFrame, who: tuple[str, ...], rows: list[dict[str, Any]]) -> str:
+    """What a failure costs: the attitude at the finest step there, next to engines that pass."""
+    judged = pl.col("gate") == "trajectory"
+    stepped = [row for row in rows if row["integrator"] is not None]
+    if not stepped:
+        of_engine = pl.all_horizontal(
+            pl.col(k).eq_missing(v) for k, v in zip(WHO, who, strict=True)
+        )
+        passes = metrics.filter(judged & of_engine)["verdict"].to_list()
+        return ". Its trajectories pass" if "pass" in passes else ""
+    worst = _worst_row(stepped)
+    where = judged & (pl.col("channel") == "attitude") & (pl.col("metric") == "error_max")
+    where &= (pl.col("scenario") == worst["scenario"]) & ~pl.col("engine").is_in(YARDSTICKS)
+    known = [row for row in metrics.filter(where).to_dicts() if row["timestep"]]
+    finest = min((row["timestep"] for row in known), default=None)
+    known = [row for row in known if row["timestep"] == finest and isfinite(row["value"])]
+    own = [r["value"] for r in known if tuple(map(r.get, WHO)) == who and _is_of(r, worst)]
+    theirs = [r["value"] for r in known if tuple(map(r.get, WHO)) != who and r["verdict"] == "pass"]
+    if not own or not theirs:
+        return ""
+    ends = [quantity(end, "rad") for end in dict.fromkeys((min(theirs), max(theirs)))]
+    others = f"that of engines that pass by {' to '.join(ends)}"
+    off = f"its attitude errs by {quantity(max(own), 'rad')}"
+    return f". On {worst['scenario']} {off}, {others} ({knob(finest, None)})"
+
+
+def _is_of(row: Mapping[str, Any], worst: Mapping[str, Any]) -> bool:
+    return bool(row["integrator"] == worst["integrator"])
 
 
 def _likeliest(tasks: list[Mapping[str, Any]]) -> str:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.figures import Figure, size
-from omegadot.reports.summary.summary import YARDSTICKS, Cell, Summary
+from omegadot.reports.summary.summary import Cell, Summary
 from omegadot.reports.text.numbers import knob, listed, quantity, times
 
 _FEW = 3  # names in one sentence

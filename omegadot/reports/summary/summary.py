@@ -15,6 +15,7 @@ import polars as pl
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.run_json import impossible_bodies
+from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.failures import failing_cells, failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
 from omegadot.reports.text.numbers import times
@@ -34,7 +35,6 @@ STATUSES = (
     "pass",
     "absent",
 )
-YARDSTICKS = ("exact", "reference")
 
 
 @dataclass(frozen=True)

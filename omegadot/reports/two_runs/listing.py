@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from omegadot.reports.summary.summary import YARDSTICKS
+from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.text.numbers import engine_name, first, knob, plain, times
 from omegadot.reports.two_runs.change import Change, from_to, grouped, name_of
 from omegadot.reports.two_runs.comparison import Comparison
