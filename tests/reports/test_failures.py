@@ -41,8 +41,8 @@ def test_a_failing_engine_is_one_sentence(record: Record) -> None:
     assert line == (
         "dart: the equation gate fails on sphere semi-implicit, omega-dot residual 2.0e-3, 2.0e10 "
         "times its bound (3 of 6 runs fail). On sphere its attitude errs by 6.0e-3 rad, that of "
-        "engines that pass by 7.5e-10 rad to 6.0e-3 rad (step 0.005 s). Likely cause: the gyroscopic "
-        "term is missing."
+        "engines that pass by 7.5e-10 rad to 6.0e-3 rad (step 0.005 s). Likely cause: the "
+        "gyroscopic term is missing."
     )
     assert summarise(record).failures == ()
 
