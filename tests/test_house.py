@@ -138,3 +138,17 @@ def test_every_place_that_contributing_names_is_there() -> None:
         engines = ["mujoco", "pinocchio", "dart"] if "ENGINE" in place else [""]
         for engine in engines:
             assert (ROOT / place.replace("ENGINE", engine)).exists(), place
+
+
+# Each takes longer to import than a command takes to begin.
+SLOW = ("scipy.signal", "scipy.stats", "scipy.interpolate", "scipy.ndimage", "matplotlib", "pandas")
+
+
+def test_what_is_slow_to_import_is_imported_where_it_is_needed() -> None:
+    """Caught: a start of every command that takes twice as long for what one function needs."""
+    own = ROOT / "commands" / "fit"
+    for file in ROOT.rglob("*.py"):
+        top = [node for node in parsed(file).body if isinstance(node, ast.Import | ast.ImportFrom)]
+        names = {name for node in top for name in imported(ast.Module([node], []))}
+        slow = {name for name in names if name.startswith(SLOW)}
+        assert own in file.parents or not slow, f"{file.relative_to(ROOT)}: {slow}"

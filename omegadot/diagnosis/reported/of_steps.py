@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.signal import lfilter
 
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.wording.digits import number
@@ -59,6 +58,8 @@ def ways_of_steps(reported: ReportedRun, every: State, name: str, what: str) -> 
 
 def _filtered(values: Array, share: float) -> Array:
     """(n, 3): from the first value on, which a filter begins at."""
+    from scipy.signal import lfilter  # its import takes longer than all of a command's own
+
     return np.asarray(
         lfilter([1.0 - share], [1.0, -share], values, axis=0, zi=share * values[:1])[0]
     )
@@ -66,6 +67,8 @@ def _filtered(values: Array, share: float) -> Array:
 
 def _share(due: Array, came: Array, numbers: Array) -> float | None:
     """The a of a filter, by Gauss-Newton from the nearest of a few; None where none is found."""
+    from scipy.signal import lfilter
+
     tried = [float(np.exp(-1.0 / steps)) for steps in GRID]
     found = min(tried, key=lambda a: float(np.sum((_filtered(due, a)[numbers] - came) ** 2)))
     best, before = found, np.inf
