@@ -134,6 +134,8 @@ def test_rounding_grows_with_steps_and_growth() -> None:
     _, found, amount, theta = bounds(DOWN, STATES)
     speed = amount * (5.0 + 3.0 * 0.1 * STEPS)
     speed += 5.0 * theta * np.minimum(1.0, 0.1 * 2.0**2 * 0.1 * STEPS)
+    # A lever between two places 3 m off is accelerated by |omega|^2 = 1, 1, 4 rad^2/s^2 of itself.
+    speed += 16 * EPS * 3.0 * (np.array([0.0, 1.0, 13.0]) + 0.1 * 4.0)
     reach = amount * 3.0 + 0.1 * STEPS * speed
     close = {"rtol": 8 * EPS}
     np.testing.assert_allclose(found["omega"], theta, **close)
@@ -195,3 +197,13 @@ def test_squares_that_overflow_have_no_bound() -> None:
     yardstick = Yardstick(DOWN, TIMES, STATES)
     steps, growth = np.array([0.0, 10.0, 40.0]), np.array([1.0, 1e200, 1e300])
     assert np.isinf(yardstick.round_off(0.1, steps, growth)["energy"][1:]).all()
+
+
+def test_a_scheme_that_turns_by_more_than_half_a_turn_in_a_step_has_no_bound_from_there() -> None:
+    """Caught: two sound charts of the rotation, of which the one is accused by the other."""
+    yardstick = Yardstick(DOWN, TIMES, STATES)
+    fast = rows((0, 0, 8.0))  # 4, 4, 8 rad/s, of which the last is beyond pi in 0.5 s
+    assert np.isfinite(yardstick.faster(fast, 0.3)).all()
+    assert np.isinf(yardstick.faster(fast, 0.5)).tolist() == [False, False, True]
+    coarse = rows((0, 0, 2.0))  # as fast as the exact motion, which turns by 4 rad in 2 s
+    assert np.isfinite(yardstick.faster(coarse, 2.0)).all()

@@ -59,7 +59,7 @@ def like_schemes(truth: Truth, sweep: Sweep, state: State) -> dict[SchemeKey, Li
     found, yardstick = {}, truth.yardstick
     for (key, timestep), own in truth.companions.items():
         if timestep == sweep.timestep:
-            faster = yardstick.faster(own.state)
+            faster = yardstick.faster(own.state, timestep)
             bounds = yardstick.round_off(timestep, sweep.sample_steps, own.growth, faster)
             distances = {c: yardstick.distance(c, state, own.state) for c in CHANNELS}
             found[key] = likeness(distances, {c: 2.0 * bounds[c] for c in CHANNELS})

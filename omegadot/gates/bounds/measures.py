@@ -52,6 +52,11 @@ class Yardstick:
         self.speed = float(np.max(norm(exact.linear_velocity))) + self.rate * self.scale.lever
         self.reach = float(np.max(norm(exact.position))) + self.scale.lever
         self.gravity = float(norm(system.load.gravity))
+        # What accelerates a lever from the body's place to itself, over it, and its integral.
+        turns = norm(exact.angular_velocity) ** 2 + norm(acceleration.angular)
+        turns = turns * (system.load.pivot is None)
+        steps = np.maximum(turns[1:], turns[:-1]) * np.diff(times)
+        self._turns, self._sharpest = np.append(0.0, np.cumsum(steps)), float(np.max(turns))
         kinetic = float(np.max(kinetic_energy(system, exact)))
         turning = float(np.max(norm(angular_momentum(system, exact))))
         moving = float(np.max(norm(linear_momentum(system, exact))))
@@ -132,11 +137,17 @@ class Yardstick:
                 gap = norm(next(turned) - next(turned))
             return np.asarray(gap / self.sizes[channel])
 
-    def faster(self, state: State) -> Array:
-        """(n,): how many times faster than in the exact motion the body has been, at least one."""
+    def faster(self, state: State, timestep: float = 0.0) -> Array:
+        """(n,): how many times faster than in the exact motion the body has been, at least one.
+
+        Infinite from where a scheme that diverges turns by more than half a turn in a step, which
+        the exact motion does not: charts of the rotation differ by whole turns there.
+        """
         with np.errstate(over="ignore", invalid="ignore"):
             times: Array = norm(state.linear_velocity) / (self.speed or np.inf)
-        times = np.where(np.isfinite(times), times, np.inf)
+            turn = timestep * norm(state.angular_velocity)
+        lost = turn > np.maximum(np.pi, timestep * self.rate)
+        times = np.where(np.isfinite(times) & ~lost, times, np.inf)
         return np.maximum.accumulate(np.maximum(times, 1.0))
 
     @np.errstate(over="ignore", invalid="ignore")  # a motion may be where squares overflow
@@ -154,8 +165,10 @@ class Yardstick:
         at most `growth`: ``theta = c eps (n + 1) (k + h A / rate) growth``, for attitude in rad and
         for omega / rate alike. The others follow from it to first order; a velocity that is kept in
         body axes is turned by theta, as far as steps do not turn it back: ``h rate`` of it a
-        radian. faster: of a scheme whose velocity grows beyond the exact one,
-        and rounding with it, see `faster`; ``m |v|^2`` may be among the terms of omega-dot.
+        radian. An engine's lever that is the difference of two places in the world is off by a
+        rounding of x, of which ``|omega|^2 + |omega-dot|`` is an acceleration. faster: of a scheme
+        whose velocity grows beyond the exact one, and rounding with it, see `faster`; ``m |v|^2``
+        may be among the terms of omega-dot.
         """
         amount = ROUNDINGS_PER_STEP * self.eps * (steps + 1.0)
         turning = timestep * self.acceleration * faster**2 / self.rate
@@ -165,6 +178,8 @@ class Yardstick:
         swift = self.speed * faster
         speed = amount * (swift + self.gravity * time) + theta * self.rate * self.scale.lever
         speed = speed + theta * swift * np.minimum(1.0, timestep * self.rate**2 * time)
+        turned = np.interp(time, self.times, self._turns) + timestep * self._sharpest
+        speed = speed + ROUNDINGS_PER_STEP * self.eps * self.reach * turned * faster**2
         reach = amount * self.reach + time * speed + theta * self.scale.lever
         return {
             "omega": theta,

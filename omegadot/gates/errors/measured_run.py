@@ -79,7 +79,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
         return {c: _sizes(yardstick.distance(c, state, other)) for c in CHANNELS}
 
     growth = own.growth if own else truth.growth[rows]
-    faster = yardstick.faster(own.state) if own else 1.0
+    faster = yardstick.faster(own.state, sweep.timestep) if own else 1.0
     how = (sweep.timestep, sweep.sample_steps, growth, faster)
     bounds = yardstick.round_off(*how)
     momentum = yardstick.of_momentum().round_off(*how) if own is None else bounds
