@@ -57,7 +57,7 @@ def test_a_class_that_no_process_can_import_is_refused(monkeypatch: pytest.Monke
     monkeypatch.setattr(HereAdapter, "__module__", "__main__")
     with pytest.raises(api.UsageError, match="a notebook or the script itself"):
         api.check(HereAdapter)
-    with pytest.raises(api.UsageError, match="not an engine"):
+    with pytest.raises(api.UsageError, match="give a text or a class or a list of such"):
         api.run("sphere", HereAdapter())  # type: ignore[arg-type]
 
 

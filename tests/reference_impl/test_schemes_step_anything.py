@@ -127,18 +127,22 @@ def test_accelerations_may_be_written_over_by_the_next(name: str, on: object) ->
         assert np.array_equal(one, other)
 
 
+WRONG_ON_PURPOSE = ("slips", "old_operands", "solved", "acting", "explicit_schemes")
+
+
 def test_only_schemes_step() -> None:
     """What moves a configuration is called in `schemes` alone: there is no second copy of any.
 
-    But for `slips`, schemes that are wrong on purpose, each the cause of a run that is, and for
-    `explicit_schemes`, which runs of no declared scheme are held against.
+    But for `slips`, `old_operands`, `solved` and `acting`, which step what is wrong on purpose, each
+    the cause of a run that is, and for `explicit_schemes`, which runs of no declared scheme are held
+    against.
     """
     package = Path(omegadot.__file__).parent
     moving = {"retract", "rate", "rate_to_second_order", "cayley", "coordinate_rate", "turned_by"}
     found = []
     for path in package.rglob("*.py"):
         where = path.relative_to(package).as_posix()
-        own = ("slips.py", "explicit_schemes.py")
+        own = tuple(f"{n}.py" for n in WRONG_ON_PURPOSE)
         if (
             where.startswith("reference_impl/schemes/")
             or where.removeprefix("diagnosis/stepping/") in own
