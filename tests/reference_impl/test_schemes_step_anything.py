@@ -133,9 +133,8 @@ WRONG_ON_PURPOSE = ("slips", "old_operands", "solved", "acting", "explicit_schem
 def test_only_schemes_step() -> None:
     """What moves a configuration is called in `schemes` alone: there is no second copy of any.
 
-    But for `slips`, `old_operands`, `solved` and `acting`, which step what is wrong on purpose, each
-    the cause of a run that is, and for `explicit_schemes`, which runs of no declared scheme are held
-    against.
+    But for files of causes, which step what is wrong on purpose, and for `explicit_schemes`, which
+    runs of no declared scheme are held against.
     """
     package = Path(omegadot.__file__).parent
     moving = {"retract", "rate", "rate_to_second_order", "cayley", "coordinate_rate", "turned_by"}
