@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.equations.across import Across, fitting
+from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.siblings import Siblings
@@ -77,7 +77,7 @@ class OverScenarios:
         names = evidence.keys() & self.beginnings.keys()
         for name in names:
             if (one.key, name) not in self._followed:
-                here = fitting(one, evidence[name])
+                here = one.fitting(evidence[name])
                 answer = follows(self.beginnings[name], here, eps) if here is not None else None
                 self._followed[one.key, name] = answer
         return {v for (key, name), v in self._followed.items() if key == one.key and name in names}

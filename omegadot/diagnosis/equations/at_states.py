@@ -3,14 +3,72 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import FAR_FROM_ROUNDING, SLACK, Evidence
+from omegadot.diagnosis.equations.held import Scene, Scenes
+from omegadot.diagnosis.equations.searched import PLAIN, Searched
+from omegadot.diagnosis.equations.worded import worded
 from omegadot.diagnosis.wording.conditions import only_where
 from omegadot.reference_impl.system import State, System
+
+
+class AtSomeStates:
+    """Plain causes at the states at which an engine is wrong, where others are right.
+
+    These are looked at of all scenarios together: few states of one fit much.
+    """
+
+    def __init__(self, scenes: Scenes) -> None:
+        self._scenes = scenes
+        self._wrong: dict[str, Searched] = {}  # by source: scenarios of the wrong states alone
+        self._conditions: dict[tuple[tuple[str, ...], str], str] = {}
+
+    def add(self, scene: Scene) -> None:
+        """One more scenario."""
+        for source, searched in self._wrong.items():
+            _add_wrong(searched, scene, source)
+        self._conditions = {}
+
+    def cause(self, scene: Scene, source: str) -> str:
+        """What acts at the wrong states, and which these are; "" where nothing plain does."""
+        every = [s for s in self._scenes.by_name.values() if source in s.evidence]
+        every = [s for s in every if s.evidence[source].finite]
+        shown = [s for s in every if not np.all(s.evidence[source].sound)]
+        if not any(np.any(s.evidence[source].sound) for s in shown):
+            return ""
+        if source not in self._wrong:
+            self._wrong[source] = Searched(Scenes())
+            for one in shown:
+                _add_wrong(self._wrong[source], one, source)
+        best = self._wrong[source].best(scene, source, PLAIN)
+        where = {one.candidate.key: self._where(one.candidate, source) for one in best}
+        sorted_ = [one for one in best if where[one.candidate.key]]
+        text = worded(sorted_ or best, source, self._scenes)
+        if not text:
+            return ""
+        if not sorted_:
+            return f"{text}, but not always"
+        return f"{text}: it is wrong only where {where[sorted_[0].candidate.key]}"
+
+    def _where(self, one: Candidate, source: str) -> str:
+        if (one.key, source) not in self._conditions:
+            found = where_of(one, self._scenes.evidence(source))
+            self._conditions[one.key, source] = found
+        return self._conditions[one.key, source]
+
+
+def _add_wrong(searched: Searched, scene: Scene, source: str) -> None:
+    """The states of a scenario at which the engine is wrong, as a scenario of their own."""
+    evidence = scene.evidence.get(source)
+    if evidence is None or not evidence.finite or np.all(evidence.sound):
+        return
+    wrong = evidence.at(np.flatnonzero(~evidence.sound))
+    searched.add(replace(scene, evidence={source: wrong}))
 
 
 def where_of(one: Candidate, every: Sequence[Evidence]) -> str:

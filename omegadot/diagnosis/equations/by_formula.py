@@ -66,6 +66,30 @@ def by_formula(scenes: Scenes, source: str, before: ByFormula | None = None) -> 
     return ByFormula((), tuple(partly), tuple(own[:1]), angular.along, hopeless)
 
 
+class Formulas:
+    """By source of evidence, worked out when they are first needed; of fewer scenarios before."""
+
+    def __init__(self, scenes: Scenes) -> None:
+        self._scenes = scenes
+        self._known: dict[str, ByFormula] = {}
+        self._before: dict[str, ByFormula] = {}
+
+    def add(self) -> None:
+        """One more scenario; what was found before may not hold any more."""
+        self._before |= self._known
+        self._known = {}
+
+    def of(self, source: str) -> ByFormula:
+        """Those of all scenarios so far."""
+        if source not in self._known:
+            self._known[source] = by_formula(self._scenes, source, self._before.get(source))
+        return self._known[source]
+
+    def along(self, source: str) -> str:
+        """What all that is added is along; "" where nothing is, or has not been looked for."""
+        return self._known[source].along if source in self._known else ""
+
+
 def _plainer(one: Held, other: Held) -> bool:
     """Whether one that holds under a condition is likelier than another that holds everywhere."""
     costs = [

@@ -99,6 +99,14 @@ class Candidate:
         form = self.form(evidence.system)
         return None if form is None else accelerations(form, evidence.states)
 
+    def fitting(self, evidence: Evidence) -> Candidate | None:
+        """The same with its own numbers, or else with those of another scenario, if it fits there.
+
+        None where it fits by none.
+        """
+        made = self.predicted(evidence)
+        return self if made is not None and self.fits(evidence, made) else self.refitted(evidence)
+
     def refitted(self, evidence: Evidence) -> Candidate | None:
         """The same with the numbers of another scenario; None where none fit."""
         if self.terms is not None:

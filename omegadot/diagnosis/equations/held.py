@@ -102,6 +102,15 @@ class Scenes:
         self._with_another: dict[tuple[tuple[str, ...], str, str], frozenset[str]] = {}
         self._tried: dict[tuple[str, str], Tried] = {}
 
+    @property
+    def pivoted(self) -> bool:
+        """Whether one of them is."""
+        return any(scene.system.load.pivot is not None for scene in self.by_name.values())
+
+    def evidence(self, source: str) -> list[Evidence]:
+        """Of all scenarios that have it."""
+        return [e for one in self.by_name.values() if (e := one.evidence.get(source))]
+
     def tried(self, scene: Scene, source: str) -> Tried:
         """The hypotheses on one scenario, worked out once."""
         key = (scene.name, source)

@@ -3,21 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
+from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.equation_form import same_form
-from omegadot.diagnosis.equations.held import Held
+from omegadot.diagnosis.equations.held import Held, Scenes
 from omegadot.diagnosis.equations.same_cause import same_cause
 from omegadot.diagnosis.wording.features import in_common
 
 MOST_NAMED = 3  # causes between which a scenario does not decide
 
 
-def worded(whole: Sequence[Held], source: str, pivoted: bool) -> str:
+@dataclass(frozen=True)
+class Named:
+    """The cause on one scenario as text; "" where there is none.
+
+    candidate: the first of those that it names.  names: the scenarios that this explains.
+    """
+
+    text: str = ""
+    candidate: Candidate | None = None
+    names: frozenset[str] = frozenset()
+
+
+def named(whole: Sequence[Held], source: str, scenes: Scenes) -> Named:
+    """Causes that hold everywhere, with the first of them."""
+    text = worded(whole, source, scenes)
+    return Named(text, whole[0].candidate, frozenset(whole[0].names)) if text else Named()
+
+
+def worded(whole: Sequence[Held], source: str, scenes: Scenes) -> str:
     """Causes that hold everywhere; several where no scenario decides between them.
 
-    pivoted: whether a scenario of the run is.
+    scenes: those of the run, or some of them.
     """
-    kept = list[Held]()
+    kept, pivoted = list[Held](), scenes.pivoted
     for one in whole:
         if not any(same_cause(one.candidate, other.candidate, pivoted) for other in kept):
             kept.append(one)
