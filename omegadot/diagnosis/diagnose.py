@@ -24,7 +24,8 @@ from omegadot.diagnosis.equations.wrong_equation import (
     inverse_causes,
     scene_of,
 )
-from omegadot.diagnosis.integrator import IntegratorCauses, fails, source_of
+from omegadot.diagnosis.integrator import IntegratorCauses
+from omegadot.diagnosis.kept_case import source_of
 from omegadot.diagnosis.models.wrong_model import lever_causes, model_causes
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import batch_cause, kept_causes
@@ -196,7 +197,7 @@ def diagnose(
     shared = shared_rows(case, evaluation_states, result)
     causes = CaseCauses(EngineOverScenarios(), case, truth, evaluation_states, result, shared, runs)
     found = causes.sentences(None)
-    names = dict.fromkeys(run.integrator.name for run in _by_length(runs) if fails(run))
+    names = dict.fromkeys(run.integrator.name for run in _by_length(runs) if run.fails)
     for name in names if not found else ():
         found = causes.sentences(name)
         if found:

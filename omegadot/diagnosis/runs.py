@@ -68,7 +68,7 @@ def run_causes(
     equations: whether the equation that is stepped may be another than the right one.
     """
     guesses = Guesses(case, truth.in_precision(result.precision), result)
-    failed = [run for run in runs if any(row.verdict == "fail" for row in run.rows)]
+    failed = [run for run in runs if run.fails]
     for run in failed:
         answer = result.runs.get((run.integrator.name, run.sweep.knob))
         if answer is not None and answer.ok:
@@ -122,8 +122,7 @@ def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
     What acts in every step alike is not the cause then, and a limit is one on any motion.
     """
     failed, sound = (
-        [r.sweep.timestep for r in runs if any(row.verdict == "fail" for row in r.rows) is wrong]
-        for wrong in (True, False)
+        [r.sweep.timestep for r in runs if r.fails is wrong] for wrong in (True, False)
     )
     if not failed or not sound or max(sound) >= min(failed):
         return found

@@ -211,12 +211,7 @@ class Runner:
     def _schemes_of(self, judged: JudgedCase, truth: Truth) -> StepSchemes:
         """Steps the schemes that a case's failing runs may equal. No verdict depends on them."""
         case = judged.case
-        failing = [
-            run.integrator
-            for engine in judged.engines
-            for run in engine.runs
-            if any(row.verdict == "fail" for row in run.rows)
-        ]
+        failing = [run.integrator for engine in judged.engines for run in engine.runs if run.fails]
         every = {key for one in failing for key in comparison_keys(one, case.system)}
 
         def step(sweep: Sweep, keys: Sequence[SchemeKey] | None) -> dict[SchemeKey, Companion]:

@@ -13,7 +13,7 @@ from wrong_equations import CASES, gyroscopic, with_torque
 from omegadot.diagnosis.equations.dependence import dependence
 from omegadot.diagnosis.equations.evidence import Evidence, of_forward_dynamics
 from omegadot.diagnosis.stepping.explicit_schemes import on_quaternion
-from omegadot.diagnosis.stepping.order_lost import order_lost
+from omegadot.diagnosis.stepping.step_orders import order_lost
 from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.states.equation import random_states
 from omegadot.gates.steps.probe import DOUBLE, Probe

@@ -39,6 +39,11 @@ class JudgedRun:
     unresolved: bool = False
     finer: Sweep | None = None
 
+    @property
+    def fails(self) -> bool:
+        """Whether a gate fails on it."""
+        return any(row.verdict == "fail" for row in self.rows)
+
 
 def is_finite(state: State) -> bool:
     """Whether every number of a trajectory is finite."""

@@ -1,0 +1,108 @@
+"""Causes in the steps of one integrator as they vanish: their length, motion and equation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.wrong_equation import known_difference
+from omegadot.diagnosis.kept_case import KeptCase
+from omegadot.diagnosis.over_scenarios import OverScenarios
+from omegadot.diagnosis.stepping.follows import keeps_pace
+from omegadot.diagnosis.stepping.jumps import jump_cause, jumps
+from omegadot.diagnosis.stepping.kinematics import (
+    kinematic_causes,
+    moves_by_cause,
+    omega_share_cause,
+    omega_still_cause,
+    velocity_share_cause,
+)
+from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
+from omegadot.diagnosis.wording.kinds import either
+
+IN_THE_FIRST = "at the start of a run alone"
+FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
+
+
+class StepCauses:
+    """Of one integrator on one case.
+
+    of_trajectories: what makes its runs, which may show more than the steps do.
+    """
+
+    def __init__(
+        self,
+        across: Across,
+        over: OverScenarios,
+        kept: KeptCase,
+        of_trajectories: Callable[[], list[str]],
+    ) -> None:
+        self._across, self._over, self._kept = across, over, kept
+        self._of_trajectories = of_trajectories
+
+    def sentences(self, steps: VanishingSteps) -> list[str]:
+        """Where every state is off by the steps alone, the more basic first."""
+        common = steps.common_cause()
+        if common:
+            first = self._kept.beginning is not None and not keeps_pace(self._kept.beginning, steps)
+            if not first:
+                return [common]
+            seen = [one for one in self._of_trajectories() if not one.startswith(FIRST_ALONE)]
+            return seen or [f"{IN_THE_FIRST}: {common}"]
+        if jumps(steps):
+            return [] if self._kept.declares else either([jump_cause(steps, self._kept.beginning)])
+        if steps.still:
+            return []
+        moved = moves_by_cause(steps)
+        if moved:  # where it is either of two, a whole run may show which
+            return (self._of_trajectories() if moved.startswith("either") else []) or [moved]
+        return either(kinematic_causes(steps)) or self._of_omega(steps)
+
+    def _of_omega(self, steps: VanishingSteps) -> list[str]:
+        """Omega is of another time than the rest, or the equation that it follows is another."""
+        if not steps.evidence.clear:
+            return []
+        share = omega_share_cause(steps)
+        if share and not self._kept.turned_wrong and not self._kept.brief:
+            return [share]
+        found = self._of_equation(steps)
+        if any(one.startswith(IN_THE_FIRST) or f"or {IN_THE_FIRST}" in one for one in found):
+            seen = [one for one in self._of_trajectories() if not one.startswith(FIRST_ALONE)]
+            found = seen or found
+        if share and not self._kept.turned_wrong:
+            return either([share, *found])
+        return found
+
+    def _of_equation(self, steps: VanishingSteps) -> list[str]:
+        """By which equation the limit of vanishing steps is another; nothing where it is right."""
+        if np.all(steps.evidence.sound) or not steps.turns:
+            return []
+        where = (self._kept.name, self._kept.source)
+        still = omega_still_cause(steps)
+        if still:
+            return self._of_trajectories() or [still]
+        text, one = self._across.cause(*where), self._across.chosen(*where)
+        if not text:
+            return []
+        alike = self._across.explained(*where)
+        scenes = self._across.scenes
+        evidence = {
+            n: scenes[n].evidence[where[1]] for n in alike if where[1] in scenes[n].evidence
+        }
+        followed = self._over.followed(one, evidence, steps.eps) if one is not None else set()
+        if "between" in followed or {"right", "wrong"} <= followed:
+            later = "later steps come nearer to the right equation"
+            return [f"at the start of a run, {text}; {later}"]
+        if "right" in followed:
+            first = f"{IN_THE_FIRST}, {text}"
+            return either([velocity_share_cause(steps), first])
+        return [f"in the steps, {text}"]
+
+    def known(self, steps: VanishingSteps) -> list[str]:
+        """What is known of the steps' equation where nothing fits."""
+        if np.all(steps.evidence.sound):
+            return []
+        known = known_difference(self._across, self._kept.name, self._kept.source)
+        return [f"in the steps, {one}" for one in known]
