@@ -9,22 +9,19 @@ from typing import Literal
 import numpy as np
 
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
+from omegadot.diagnosis.equations.formula.factored import Factored, legend_of, with_angular
 from omegadot.diagnosis.equations.formula.facts import (
-    MATRICES,
-    SIZES,
     TORQUE,
-    VECTORS,
     Facts,
     Unit,
     facts_of,
     product,
     terms_of,
 )
-from omegadot.diagnosis.equations.formula.law import NO_LAW, Law, symbols_of
-from omegadot.diagnosis.equations.formula.rows import ROUNDINGS, factors, rows_of
+from omegadot.diagnosis.equations.formula.law import NO_LAW, Law
+from omegadot.diagnosis.equations.formula.rows import ROUNDINGS, Rows, rows_of
 from omegadot.diagnosis.equations.formula.vectors import Vector
 from omegadot.diagnosis.equations.formula.wording import with_factor
-from omegadot.reference_impl.motion import center_of_mass_acceleration
 from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.system import Acceleration, Array, System
 
@@ -34,7 +31,7 @@ UNITS: dict[Kind, Unit] = {"torque": TORQUE, "rate": (0, 0, -2), "linear": (0, 1
 
 
 @dataclass(frozen=True)
-class Formula:
+class Formula(Factored):
     """``found = right + k law(sizes) vector``, or this in place of one of the right torques.
 
     kind: a torque, through the inertia; a rate; or a linear acceleration, of a free body, a
@@ -56,11 +53,6 @@ class Formula:
             + (1.5 if self.instead else 0.0)
             + (0.3 if self.kind == "rate" else 0.0)
         )
-
-    @property
-    def ones(self) -> Array:
-        """A factor of one."""
-        return np.ones(1)
 
     @property
     def name(self) -> str:
@@ -88,6 +80,15 @@ class Formula:
             return 0.0 * facts.vectors["omega"]
         return self._solved(facts, terms_of(facts)[self.instead])
 
+    def rows(self, every: Sequence[Evidence]) -> Rows:
+        """What is added, with what it stands in place of."""
+        rows = rows_of(every, self.kind == "linear")
+        return replace(rows, due=rows.due + self.replaced(rows.facts))
+
+    def line(self, rows: Rows) -> Array:
+        """What a factor of one adds, (n, 3)."""
+        return self.accelerations(rows.facts)
+
     def made(self, evidence: Evidence, p: Array) -> Acceleration:
         """The accelerations with this factor."""
         facts, true = facts_of(evidence), evidence.true
@@ -97,11 +98,7 @@ class Formula:
             turned = rotate(evidence.states.orientation, more)
             acts = self.where in (here, "any")
             return Acceleration(true.angular, true.linear + (turned if acts else 0.0 * turned))
-        angular = true.angular + more
-        if evidence.system.load.pivot is None:
-            return Acceleration(angular, true.linear)
-        linear = center_of_mass_acceleration(evidence.system, evidence.states, angular)
-        return Acceleration(angular, linear)
+        return with_angular(evidence, true.angular + more)
 
     def slack(self, evidence: Evidence, p: Array) -> Array:
         """(n,): in bounds, what the rounding of its own products may be off by."""
@@ -110,19 +107,6 @@ class Formula:
         bound = evidence.linear_bound if self.kind == "linear" else evidence.angular_bound
         own = ROUNDINGS * evidence.eps * size
         return SLACK + np.where(own > 0.0, own / np.where(bound > 0.0, bound, own), 0.0)
-
-    def fit(self, evidence: Evidence) -> Array | None:
-        """The factor with which this is the engine's equation; None where none is."""
-        k = self.factor([evidence])
-        if not np.isfinite(k) or not k[0]:
-            return None
-        return k if evidence.fits(self.made(evidence, k), self.slack(evidence, k)) else None
-
-    def factor(self, every: Sequence[Evidence]) -> Array:
-        """The factor that fits these best, (1,)."""
-        rows = rows_of(every, self.kind == "linear")
-        rows = replace(rows, due=rows.due + self.replaced(rows.facts))
-        return np.array([factors(self.accelerations(rows.facts), rows)])
 
     def text(self, _: System, p: Array) -> str:
         """The cause, with its factor."""
@@ -149,9 +133,5 @@ class Formula:
 
     def _legend(self) -> list[str]:
         """What the symbols are."""
-        used = symbols_of([self.vector.text, self.law.text])
-        known = {**VECTORS, **MATRICES, **SIZES}
-        extra = {"o": "component by component"} if " o " in self.vector.text else {}
-        return [f"{k} {known[k][1]}" for k in known if k in used and known[k][1]] + [
-            f"{k} {v}" for k, v in extra.items()
-        ]
+        extra = ["o component by component"] if " o " in self.vector.text else []
+        return legend_of([self.vector.text, self.law.text]) + extra

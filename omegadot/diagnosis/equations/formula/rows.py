@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.equations.formula.facts import Facts, at, facts_of, together
-from omegadot.diagnosis.equations.formula.law import Seen
+from omegadot.diagnosis.equations.formula.law_search import Seen
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.system import Array

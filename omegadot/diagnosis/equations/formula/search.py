@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.equations.evidence import INVERSE, SLACK, Evidence
 from omegadot.diagnosis.equations.formula.facts import product, terms_of
 from omegadot.diagnosis.equations.formula.formula import Formula, Kind, Where
-from omegadot.diagnosis.equations.formula.law import laws
+from omegadot.diagnosis.equations.formula.law_search import laws
 from omegadot.diagnosis.equations.formula.rows import Rows, across, rows_of
 from omegadot.diagnosis.equations.formula.tensors import OtherInertia, other_inertias, with_law
 from omegadot.diagnosis.equations.formula.vectors import blocks

@@ -8,21 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
+from omegadot.diagnosis.equations.formula.factored import Factored, legend_of, with_angular
 from omegadot.diagnosis.equations.formula.facts import (
     INERTIA,
-    MATRICES,
     SIZES,
-    VECTORS,
     Facts,
     Unit,
     facts_of,
     product,
 )
-from omegadot.diagnosis.equations.formula.law import NO_LAW, Law, laws, symbols_of
-from omegadot.diagnosis.equations.formula.rows import Rows, across, factors, rows_of
+from omegadot.diagnosis.equations.formula.law import NO_LAW, Law
+from omegadot.diagnosis.equations.formula.law_search import laws
+from omegadot.diagnosis.equations.formula.rows import Rows, across, rows_of
 from omegadot.diagnosis.equations.formula.wording import with_factor
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.motion import center_of_mass_acceleration
 from omegadot.reference_impl.system import Acceleration, Array, System
 
 LENGTHS = ("r", "c", "p")
@@ -82,7 +81,7 @@ def values_of(one: Tensor, facts: Facts) -> Array:
 
 
 @dataclass(frozen=True)
-class OtherInertia:
+class OtherInertia(Factored):
     """``(I + k L E) omega-dot = tau - omega x (I + k L E) omega``, or one of the two alone."""
 
     tensor: Tensor
@@ -95,14 +94,13 @@ class OtherInertia:
         return self.tensor.cost + self.law.cost + 0.5 + 0.5 * (len(self.parts) < 2)
 
     @property
-    def ones(self) -> Array:
-        """A factor of one."""
-        return np.ones(1)
-
-    @property
     def name(self) -> str:
         """What it is, whatever the factor."""
         return f"inertia {self.parts} {self.law.text} {self.tensor.text}"
+
+    def rows(self, every: Sequence[Evidence]) -> Rows:
+        """What is added to omega-dot."""
+        return rows_of(every, linear=False)
 
     def line(self, rows: Rows) -> Array:
         """What a factor of one adds to omega-dot where omega-dot is what was found, (n, 3)."""
@@ -127,33 +125,17 @@ class OtherInertia:
             angular = product(np.linalg.inv(solved), torque)
         except np.linalg.LinAlgError:
             angular = np.full_like(w, np.nan)
-        if evidence.system.load.pivot is None:
-            return Acceleration(angular, true.linear)
-        linear = center_of_mass_acceleration(evidence.system, evidence.states, angular)
-        return Acceleration(angular, linear)
+        return with_angular(evidence, angular)
 
     def slack(self, evidence: Evidence, p: Array) -> Array:
         """(n,): in bounds."""
-        return SLACK + 0.0 * evidence.angular_bound
-
-    def fit(self, evidence: Evidence) -> Array | None:
-        """The factor with which this is the engine's equation; None where none is."""
-        k = self.factor([evidence])
-        good = np.isfinite(k) and k != 0.0
-        return k if good and evidence.fits(self.made(evidence, k)) else None
-
-    def factor(self, every: Sequence[Evidence]) -> Array:
-        """The one that fits these best, (1,)."""
-        rows = rows_of(every, linear=False)
-        return np.array([factors(self.line(rows), rows)])
+        return np.full_like(evidence.angular_bound, SLACK)
 
     def text(self, _: System, p: Array) -> str:
         """The cause, with its factor."""
         left = np.array(INERTIA) - np.array(self.tensor.unit) - np.array(self.law.unit)
         shown, factor = with_factor(float(p[0]), self.law.text, self.tensor.text, left)
-        used = symbols_of([self.tensor.text, self.law.text])
-        known = {**VECTORS, **MATRICES, **SIZES}
-        legend = [*factor, *(f"{k} {known[k][1]}" for k in known if k in used and known[k][1])]
+        legend = [*factor, *legend_of([self.tensor.text, self.law.text])]
         held = f", with {', '.join(legend)}" if legend else ""
         return f"{shown} is added to the inertia{WHERE[self.parts]}{held}"
 

@@ -7,15 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.diagnosis.equations.evidence import SCREENED, SLACK, Evidence
+from omegadot.diagnosis.equations.operators.numbered import with_numbers
 from omegadot.diagnosis.equations.operators.operands import Operand, acting
-from omegadot.diagnosis.equations.operators.operators import (
-    Operator,
-    Seen,
-    flips,
-    of_quaternions,
-    of_vectors,
-    with_numbers,
-)
+from omegadot.diagnosis.equations.operators.operator import Operator, Seen
+from omegadot.diagnosis.equations.operators.plain import flips, of_quaternions, of_vectors
 from omegadot.reference_impl.system import Acceleration, Array, System
 
 TRIES = 6

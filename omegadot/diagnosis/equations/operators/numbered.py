@@ -1,115 +1,19 @@
-"""What is made of a vector by mistake: other axes, limits, thresholds, powers, rounding, places."""
+"""Operators with a number or two: limits, thresholds and powers, and a first guess of each."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orders
+from omegadot.diagnosis.equations.operators.operator import Operator, Seen
 from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, State
 
-DECIMALS = range(9)
 NOT_ZERO = 1e-3  # an exponent that is one
 NEAR = 1e-5  # a fitted exponent or factor is the plain number that is meant
-
-
-@dataclass(frozen=True)
-class Seen:
-    """What is known when a number is looked for, at states (n,).
-
-    due: the right vectors.  came: the engine's, None where they are hidden.  sound: whether the
-    engine is right.  bound: what rounding makes of its answer.
-    """
-
-    due: Array
-    came: Array | None
-    states: State
-    sound: NDArray[np.bool_]
-    bound: Array
-
-
-@dataclass(frozen=True)
-class Operator:
-    """One change of a vector.
-
-    change: of vectors (n, k) at states with numbers (p,).  text: with what it changes, its unit and
-    the numbers.  guess: the numbers, nearly; None of an operator without any.  turns: it makes
-    another vector of a constant one, too.  among: it depends on the other states of the request.
-    """
-
-    change: Callable[[Array, State, Array], Array]
-    text: Callable[[str, str, Array], str]
-    guess: Callable[[Seen], Array | None] | None = None
-    turns: bool = False
-    among: bool = False
-
-
-def _plain(
-    change: Callable[[Array, State], Array], text: str, turns: bool = False, among: bool = False
-) -> Operator:
-    return Operator(
-        lambda v, x, p: change(v, x), lambda what, unit, p: f"{what} {text}", None, turns, among
-    )
-
-
-def _ordered(order: list[int], signs: Array) -> Operator:
-    held = order_text(order, signs)
-    return Operator(
-        lambda v, x, p: signs * v[:, order],
-        lambda what, unit, p: f"the components of {what.rstrip(',')} are others: {held}",
-    )
-
-
-def _decimal(digits: int, how: Callable[[Array], Array], what: str) -> Operator:
-    scale = 10.0**digits
-    return _plain(lambda v, x: how(v * scale) / scale, f"is {what} to {digits} decimals")
-
-
-def of_vectors() -> Iterator[Operator]:
-    """Those without numbers, of vectors in body axes."""
-    yield _plain(lambda v, x: rotate(x.orientation, v), "is turned by R", turns=True)
-    yield _plain(lambda v, x: rotate_inverse(x.orientation, v), "is turned by R^T", turns=True)
-    yield _plain(
-        lambda v, x: np.abs(v), "loses its signs: the absolute value of each component is taken"
-    )
-    for order, signs in signed_orders():
-        if order != [0, 1, 2]:
-            yield _ordered(order, signs)
-    yield from of_any()
-
-
-def flips() -> Iterator[Operator]:
-    """Signs of single components."""
-    for order, signs in signed_orders():
-        if order == [0, 1, 2]:
-            yield _ordered(order, signs)
-
-
-def of_quaternions() -> Iterator[Operator]:
-    """Those without numbers, of an attitude on its way into a term."""
-    identity = np.array([1.0, 0.0, 0.0, 0.0])
-    yield _plain(lambda q, x: 0.0 * q + identity, "is left out: it is taken for the identity")
-    yield _plain(lambda q, x: conjugate(q), "is transposed")
-    yield from of_any()
-
-
-def of_any() -> Iterator[Operator]:
-    """Those without numbers, of vectors and quaternions."""
-    yield _plain(lambda v, x: v.astype(np.float32).astype(float), "is rounded to single precision")
-    together = "among those that are requested together"
-    yield _plain(lambda v, x: v[:1] + 0 * v, f"is that of the first state {together}", among=True)
-    yield _plain(
-        lambda v, x: np.roll(v, 1, axis=0), f"is that of the state before {together}", among=True
-    )
-    for digits in DECIMALS:
-        yield _decimal(digits, np.round, "rounded")
-        yield _decimal(digits, np.trunc, "cut")
 
 
 def with_numbers() -> Sequence[Operator]:

@@ -1,0 +1,76 @@
+"""Operators without numbers: other axes and signs, rounding, places of other states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from omegadot.diagnosis.equations.operators.operator import Operator
+from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orders
+from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
+from omegadot.reference_impl.system import Array, State
+
+DECIMALS = range(9)
+
+
+def _plain(
+    change: Callable[[Array, State], Array], text: str, turns: bool = False, among: bool = False
+) -> Operator:
+    return Operator(
+        lambda v, x, p: change(v, x), lambda what, unit, p: f"{what} {text}", None, turns, among
+    )
+
+
+def _ordered(order: list[int], signs: Array) -> Operator:
+    held = order_text(order, signs)
+    return Operator(
+        lambda v, x, p: signs * v[:, order],
+        lambda what, unit, p: f"the components of {what.rstrip(',')} are others: {held}",
+    )
+
+
+def _decimal(digits: int, how: Callable[[Array], Array], what: str) -> Operator:
+    scale = 10.0**digits
+    return _plain(lambda v, x: how(v * scale) / scale, f"is {what} to {digits} decimals")
+
+
+def of_vectors() -> Iterator[Operator]:
+    """Those without numbers, of vectors in body axes."""
+    yield _plain(lambda v, x: rotate(x.orientation, v), "is turned by R", turns=True)
+    yield _plain(lambda v, x: rotate_inverse(x.orientation, v), "is turned by R^T", turns=True)
+    yield _plain(
+        lambda v, x: np.abs(v), "loses its signs: the absolute value of each component is taken"
+    )
+    for order, signs in signed_orders():
+        if order != [0, 1, 2]:
+            yield _ordered(order, signs)
+    yield from of_any()
+
+
+def flips() -> Iterator[Operator]:
+    """Signs of single components."""
+    for order, signs in signed_orders():
+        if order == [0, 1, 2]:
+            yield _ordered(order, signs)
+
+
+def of_quaternions() -> Iterator[Operator]:
+    """Those without numbers, of an attitude on its way into a term."""
+    identity = np.array([1.0, 0.0, 0.0, 0.0])
+    yield _plain(lambda q, x: 0.0 * q + identity, "is left out: it is taken for the identity")
+    yield _plain(lambda q, x: conjugate(q), "is transposed")
+    yield from of_any()
+
+
+def of_any() -> Iterator[Operator]:
+    """Those without numbers, of vectors and quaternions."""
+    yield _plain(lambda v, x: v.astype(np.float32).astype(float), "is rounded to single precision")
+    together = "among those that are requested together"
+    yield _plain(lambda v, x: v[:1] + 0 * v, f"is that of the first state {together}", among=True)
+    yield _plain(
+        lambda v, x: np.roll(v, 1, axis=0), f"is that of the state before {together}", among=True
+    )
+    for digits in DECIMALS:
+        yield _decimal(digits, np.round, "rounded")
+        yield _decimal(digits, np.trunc, "cut")
