@@ -120,9 +120,8 @@ class ReportedRun:
         """Its first samples."""
         if count >= len(self.time):
             return self
-        steps = int(self.sweep.sample_steps[count - 1])
         first = {name: getattr(self, name)[:count] for name in ("time", "state", "own", "growth")}
-        return replace(self, sweep=replace(self.sweep, steps=steps), **first)
+        return replace(self, sweep=self.sweep.until(count), **first)
 
     def is_made(self, made: Callable[[ReportedRun], State], slack: float = 1.0) -> bool:
         """Whether this is how the run is made: in its beginning, then in the whole of it."""
