@@ -18,7 +18,7 @@ from omegadot.gates.errors.orders import (
     highest_order,
     order_of,
 )
-from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN, Evidence, Finding, judge
+from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN, OF_EITHER, Evidence, Finding, judge
 from omegadot.gates.truth import Companion, Truth, scheme_key
 from omegadot.reference_impl.energy import total_energy
 from omegadot.reference_impl.schemes import SCHEMES
@@ -53,7 +53,7 @@ class MeasuredRun:
     @property
     def beside_scheme(self) -> dict[str, Array]:
         """How far rounding may take it from its scheme's run: each of the two may be off."""
-        return {channel: 2.0 * bound for channel, bound in self.round_off.items()}
+        return {channel: OF_EITHER * bound for channel, bound in self.round_off.items()}
 
     @property
     def saturating_error(self) -> Array:

@@ -19,6 +19,7 @@ ONE_STEP = "one step size cannot show an order"
 UNSETTLED = "the sweep does not resolve the order"
 STIFF = "the steps are too long for so thin a body to show the order"
 NOT_FINITE = "not finite"
+OF_EITHER = 2.0  # a run and the reference's of its scheme: each may be off by its rounding
 UNDECIDED = (ONE_STEP, UNSETTLED, STIFF)
 """How the notes begin of failures that a finer step could lift."""
 
@@ -83,7 +84,7 @@ class Evidence:
     @property
     def equals_scheme(self) -> bool:
         """Whether rounding alone, of either, tells the run from the reference's of its scheme."""
-        return self.left is not None and bool(np.all(self.left <= 2.0 * self.round_off))
+        return self.left is not None and bool(np.all(self.left <= OF_EITHER * self.round_off))
 
     @property
     def may_be_rounding(self) -> bool:
