@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from omegadot.diagnosis.stepping.on_quaternion import Rows, on_quaternion
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.schemes.scheme import Step, every_channel
 from omegadot.reference_impl.system import Array
 
-Rows = Sequence[Sequence[float]]
 # Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.1.
 TABLEAUS: Mapping[str, tuple[int, Rows, Sequence[float]]] = {
     "explicit Euler": (1, ((),), (1.0,)),
@@ -27,23 +27,6 @@ TABLEAUS: Mapping[str, tuple[int, Rows, Sequence[float]]] = {
         (1 / 8, 3 / 8, 3 / 8, 1 / 8),
     ),
 }
-
-
-def on_quaternion(rows: Rows, weights: Sequence[float]) -> Step:
-    """A Runge-Kutta method on the quaternion's own equation, made unit after the step."""
-
-    def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
-        slopes = list[tuple[Array, Array]]()
-        for row in rows:
-            at_q = q + sum((a * h) * k for a, (k, _) in zip(row, slopes, strict=True))
-            at_v = v + sum((a * h) * k for a, (_, k) in zip(row, slopes, strict=True))
-            acceleration = np.array(motion.acceleration(motion.normalize(at_q), at_v))
-            slopes.append((motion.coordinate_rate(at_q, at_v), acceleration))
-        q = q + h * sum(b * k for b, (k, _) in zip(weights, slopes, strict=True))
-        v = v + h * sum(b * k for b, (_, k) in zip(weights, slopes, strict=True))
-        return motion.normalize(q), np.asarray(v)
-
-    return step
 
 
 def by_exponential(rows: Rows, weights: Sequence[float]) -> Step:

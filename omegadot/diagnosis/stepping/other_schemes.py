@@ -8,9 +8,10 @@ from functools import partial
 import numpy as np
 
 from omegadot.diagnosis.reported.run import ReportedRun
-from omegadot.diagnosis.stepping.slips import damping_ends, slipped
+from omegadot.diagnosis.stepping.slips import slipped
 from omegadot.diagnosis.stepping.step_ends import (
     End,
+    damping_ends,
     kept_ends,
     left_multiplied,
     second_order_turn,

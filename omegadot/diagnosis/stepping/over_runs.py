@@ -12,7 +12,8 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
 from omegadot.diagnosis.stepping.old_operands import old_operands
 from omegadot.diagnosis.stepping.places import place_causes
-from omegadot.diagnosis.stepping.share_laws import laws_of, points_of
+from omegadot.diagnosis.stepping.share_laws import laws_of
+from omegadot.diagnosis.stepping.share_points import points_of
 from omegadot.diagnosis.stepping.solved import solved_causes
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array

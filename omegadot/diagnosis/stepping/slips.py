@@ -2,57 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.stepping.step_ends import End
-from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.diagnosis.stepping.on_quaternion import Rate, Rows, at_unit, on_quaternion
 from omegadot.reference_impl.rotations import quaternion_product
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.schemes.scheme import Step
-from omegadot.reference_impl.symmetric import apply, inverse
-from omegadot.reference_impl.system import Array, State, System
+from omegadot.reference_impl.system import Array
 
-Rows = Sequence[Sequence[float]]
-Rate = Callable[[Motion, Array, Array], Array]
 HALF_TURNS = np.eye(4)  # no turn, and half a turn about each axis: they leave no vector in the mean
 CLASSIC: Rows = ((), (0.5,), (0.0, 0.5), (0.0, 0.0, 1.0))
-WEIGHTS = (1 / 6, 1 / 3, 1 / 3, 1 / 6)
-
-
-def _runge_kutta(
-    rows: Rows = CLASSIC,
-    weights: Sequence[float] = WEIGHTS,
-    held: str = "",
-    loads_of: Sequence[int] = (),
-    rate: Rate = lambda motion, q, v: motion.acceleration(motion.normalize(q), v),
-) -> Step:
-    """Four stages on the quaternion's own equation. held: what keeps its value of the start.
-
-    loads_of: of each stage, the one at whose attitude it takes the loads.
-    """
-
-    def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
-        q_dot, v_dot = list[Array](), list[Array]()
-        places = list[Array]()
-        for stage, row in enumerate(rows):
-            at_q, at_v = q, v
-            for a, one, two in zip(row, q_dot, v_dot, strict=True):
-                at_q, at_v = at_q + (a * h) * one, at_v + (a * h) * two
-            places.append(at_q)
-            place = places[loads_of[stage]] if loads_of else q if held == "attitude" else at_q
-            q_dot.append(motion.coordinate_rate(at_q, at_v))
-            if held == "omega-dot" and v_dot:
-                v_dot.append(v_dot[0])
-            else:
-                v_dot.append(rate(motion, place, at_v))
-        q = q + h * sum(b * one for b, one in zip(weights, q_dot, strict=True))
-        v = v + h * sum(b * one for b, one in zip(weights, v_dot, strict=True))
-        return motion.normalize(q), np.asarray(v)
-
-    return step
+AT_START = (0, 0, 0, 0)
 
 
 def _by_square(motion: Motion, q: Array, v: Array) -> Array:
@@ -80,46 +43,54 @@ def _turned(q: Array, turn: Array) -> Array:
     return np.concatenate((q[..., :-4], turned), axis=-1)
 
 
-def _rows(**changed: Sequence[float]) -> Rows:
-    """The classical rows, but for ``a2``, ``a3`` or ``a4``."""
-    return tuple(changed.get(f"a{k + 1}", row) for k, row in enumerate(CLASSIC))
+def _classical(
+    weights: Sequence[float] = (1 / 6, 1 / 3, 1 / 3, 1 / 6),
+    loads_of: Sequence[int] = (),
+    rates_of: Sequence[int] = (),
+    rate: Rate = at_unit,
+    **changed: Sequence[float],
+) -> Step:
+    """The classical method, but for its weights, for its rows ``a2``, ``a3`` or ``a4``, or more.
+
+    See `on_quaternion`.
+    """
+    rows = tuple(changed.get(f"a{k + 1}", row) for k, row in enumerate(CLASSIC))
+    return on_quaternion(rows, weights, loads_of, rates_of, rate)
 
 
 RUNGE_KUTTA: dict[str, Step] = {
-    "its second stage is taken at the whole step": _runge_kutta(_rows(a2=(1.0,))),
-    "its third stage is taken at the whole step": _runge_kutta(_rows(a3=(0.0, 1.0))),
-    "its third stage starts from the first slope": _runge_kutta(_rows(a3=(0.5, 0.0))),
-    "its fourth stage is taken at half the step": _runge_kutta(_rows(a4=(0.0, 0.0, 0.5))),
-    "its fourth stage starts from the second slope": _runge_kutta(_rows(a4=(0.0, 1.0, 0.0))),
-    "its fourth stage starts from the first slope": _runge_kutta(_rows(a4=(1.0, 0.0, 0.0))),
-    "its four slopes have equal weights": _runge_kutta(weights=(0.25,) * 4),
-    "its weights are 2, 1, 1, 2": _runge_kutta(weights=(1 / 3, 1 / 6, 1 / 6, 1 / 3)),
-    "its weights are 1, 3, 3, 1": _runge_kutta(weights=(1 / 8, 3 / 8, 3 / 8, 1 / 8)),
-    "its weights are 1, 4, 0, 1": _runge_kutta(weights=(1 / 6, 2 / 3, 0.0, 1 / 6)),
-    "its weights are 1, 0, 4, 1": _runge_kutta(weights=(1 / 6, 0.0, 2 / 3, 1 / 6)),
-    "its second slope alone is used": _runge_kutta(weights=(0.0, 1.0, 0.0, 0.0)),
-    "its third slope alone is used": _runge_kutta(weights=(0.0, 0.0, 1.0, 0.0)),
-    "the mean of its first and last slopes is used": _runge_kutta(weights=(0.5, 0.0, 0.0, 0.5)),
-    "its first slope alone is used: explicit Euler on the quaternion": _runge_kutta(
+    "its second stage is taken at the whole step": _classical(a2=(1.0,)),
+    "its third stage is taken at the whole step": _classical(a3=(0.0, 1.0)),
+    "its third stage starts from the first slope": _classical(a3=(0.5, 0.0)),
+    "its fourth stage is taken at half the step": _classical(a4=(0.0, 0.0, 0.5)),
+    "its fourth stage starts from the second slope": _classical(a4=(0.0, 1.0, 0.0)),
+    "its fourth stage starts from the first slope": _classical(a4=(1.0, 0.0, 0.0)),
+    "its four slopes have equal weights": _classical(weights=(0.25,) * 4),
+    "its weights are 2, 1, 1, 2": _classical(weights=(1 / 3, 1 / 6, 1 / 6, 1 / 3)),
+    "its weights are 1, 3, 3, 1": _classical(weights=(1 / 8, 3 / 8, 3 / 8, 1 / 8)),
+    "its weights are 1, 4, 0, 1": _classical(weights=(1 / 6, 2 / 3, 0.0, 1 / 6)),
+    "its weights are 1, 0, 4, 1": _classical(weights=(1 / 6, 0.0, 2 / 3, 1 / 6)),
+    "its second slope alone is used": _classical(weights=(0.0, 1.0, 0.0, 0.0)),
+    "its third slope alone is used": _classical(weights=(0.0, 0.0, 1.0, 0.0)),
+    "the mean of its first and last slopes is used": _classical(weights=(0.5, 0.0, 0.0, 0.5)),
+    "its first slope alone is used: explicit Euler on the quaternion": _classical(
         weights=(1.0, 0.0, 0.0, 0.0)
     ),
-    "the loads are held at the attitude of the step's start": _runge_kutta(held="attitude"),
-    "its fourth stage takes the loads at the attitude of its third": _runge_kutta(
+    "the loads are held at the attitude of the step's start": _classical(loads_of=AT_START),
+    "its fourth stage takes the loads at the attitude of its third": _classical(
         loads_of=(0, 1, 2, 2)
     ),
-    "its third stage takes the loads at the attitude of its second": _runge_kutta(
+    "its third stage takes the loads at the attitude of its second": _classical(
         loads_of=(0, 1, 1, 3)
     ),
-    "each stage takes the loads at the attitude of the stage before": _runge_kutta(
+    "each stage takes the loads at the attitude of the stage before": _classical(
         loads_of=(0, 0, 1, 2)
     ),
-    "its stages take the loads at a quaternion that is not made unit": _runge_kutta(
-        rate=_by_square
-    ),
+    "its stages take the loads at a quaternion that is not made unit": _classical(rate=_by_square),
     "its stages take the loads at a quaternion that is not made unit (as 1 + 2 (...))": (
-        _runge_kutta(rate=_by_rest)
+        _classical(rate=_by_rest)
     ),
-    "omega-dot is held in the step at that of its start": _runge_kutta(held="omega-dot"),
+    "omega-dot is held in the step at that of its start": _classical(rates_of=AT_START),
 }
 
 
@@ -202,22 +173,3 @@ def slipped(name: str) -> dict[str, Scheme]:
     """The schemes that a slip makes of one of the reference, by what is wrong."""
     steps = OF_SCHEME.get(name, {})
     return {text: replace(SCHEMES[name], step=step) for text, step in steps.items()}
-
-
-def damping_ends(system: System) -> dict[str, End]:
-    """Ends of a step in which the damping, left out of the rest of it, acts by itself."""
-    ratio = np.asarray(inverse(moving_inertia(system)), dtype=float) * float(system.load.damping)
-    rates, axes = np.linalg.eigh(ratio)
-
-    def by(share: Callable[[Array], Array]) -> End:
-        def end(before: State, after: State, h: float | Array) -> State:
-            matrix = (axes * share(rates * np.max(h))) @ axes.T
-            return replace(after, angular_velocity=apply(matrix, after.angular_velocity))
-
-        return end
-
-    return {
-        "after the rest of it, by an explicit step": by(lambda x: 1.0 - x),
-        "after the rest of it, by its exponential": by(lambda x: np.exp(-x)),
-        "after the rest of it, by an implicit step": by(lambda x: 1.0 / (1.0 + x)),
-    }

@@ -17,7 +17,7 @@ from omegadot.reference_impl.rotations import (
     turn_in_body,
 )
 from omegadot.reference_impl.schemes import Motion, Scheme
-from omegadot.reference_impl.symmetric import apply
+from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, State, System
 
 End = Callable[[State, State, float | Array], State]
@@ -149,3 +149,22 @@ def speed_below(speed: float) -> End:
         return replace(after, linear_velocity=_shortened(after.linear_velocity, speed))
 
     return end
+
+
+def damping_ends(system: System) -> dict[str, End]:
+    """Ends of a step in which the damping, left out of the rest of it, acts by itself."""
+    ratio = np.asarray(inverse(moving_inertia(system)), dtype=float) * float(system.load.damping)
+    rates, axes = np.linalg.eigh(ratio)
+
+    def by(share: Callable[[Array], Array]) -> End:
+        def end(before: State, after: State, h: float | Array) -> State:
+            matrix = (axes * share(rates * np.max(h))) @ axes.T
+            return replace(after, angular_velocity=apply(matrix, after.angular_velocity))
+
+        return end
+
+    return {
+        "after the rest of it, by an explicit step": by(lambda x: 1.0 - x),
+        "after the rest of it, by its exponential": by(lambda x: np.exp(-x)),
+        "after the rest of it, by an implicit step": by(lambda x: 1.0 / (1.0 + x)),
+    }

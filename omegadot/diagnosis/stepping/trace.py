@@ -21,11 +21,10 @@ from omegadot.diagnosis.equations.equation_form import (
 from omegadot.diagnosis.equations.families import ONE_NUMBER, Family
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.rotations import attitude_angle, normalize
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
-from omegadot.reference_impl.stepping import step_through
+from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
 MOST_SAMPLES = 48  # intervals, spread over the trace
@@ -128,12 +127,12 @@ class _Intervals:
         """(lanes, m, ...): where each equation leads."""
         lanes = stacked(forms)
         motion = motion_over(self.system, "com-world", lambda state: accelerations(lanes, state))
-        q, v = to_coordinates(self.system, self.start, "com-world")
-        q, v = (np.broadcast_to(x, (len(forms), *x.shape)).copy() for x in (q, v))
-        stepped = step_through(
-            self.scheme, motion, q, v, self.length / self.steps, self.steps, self.steps
-        )
-        return from_coordinates(self.system, stepped.q[-1], stepped.v[-1], "com-world")
+        start = {
+            name: np.broadcast_to(x, (len(forms), *x.shape)).copy()
+            for name, x in vars(self.start).items()
+        }
+        plan = (self.length / self.steps, self.steps, self.steps)
+        return step_body(self.scheme, self.system, State(**start), *plan, motion=motion)[1][-1]
 
     def fits(self, forms: Sequence[Form]) -> list[bool]:
         """Whether each equation leads from every sample to the next."""
