@@ -207,3 +207,14 @@ def test_a_scheme_that_turns_by_more_than_half_a_turn_in_a_step_has_no_bound_fro
     assert np.isinf(yardstick.faster(fast, 0.5)).tolist() == [False, False, True]
     coarse = rows((0, 0, 2.0))  # as fast as the exact motion, which turns by 4 rad in 2 s
     assert np.isfinite(yardstick.faster(coarse, 2.0)).all()
+
+
+def test_a_thin_bodys_own_rate_is_that_of_its_moments_and_of_no_lever() -> None:
+    """Caught: a long lever, whose ``m L^2`` would excuse steps from the orders that they show."""
+    system = System((OFFSET,), Load(gravity=GRAVITY))
+    states = rows((0, 0, 2.0))
+    least, most = np.linalg.eigvalsh(OFFSET.inertia)[[0, -1]]
+    for body in (OFFSET, replace(OFFSET, center_of_mass=1e3 * OFFSET.center_of_mass)):
+        yardstick = Yardstick(replace(system, bodies=(body,)), TIMES, states)
+        expected = yardstick.rate * np.sqrt(most / least)
+        assert yardstick.thin_rate == pytest.approx(expected, rel=1e-14)

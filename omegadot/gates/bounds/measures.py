@@ -72,6 +72,15 @@ class Yardstick:
             "linear_momentum": moving or mass * self.rate * gyration,
         }
 
+    @property
+    def thin_rate(self) -> float:
+        """rad/s: ``|omega| sqrt(J / lambda)``, how fast the body may turn about its thinnest axis.
+
+        The energy of |omega| about the axis of the largest moment J, in that of the least, lambda.
+        """
+        moments = np.linalg.eigvalsh(np.asarray(moving_inertia(self.system), dtype=float))
+        return float(self.rate * np.sqrt(moments[-1] / moments[0]))
+
     def with_eps(self, eps: float) -> Yardstick:
         """The same sizes for imitations in another precision.
 
@@ -137,7 +146,7 @@ class Yardstick:
                 gap = norm(next(turned) - next(turned))
             return np.asarray(gap / self.sizes[channel])
 
-    def faster(self, state: State, timestep: float = 0.0) -> Array:
+    def faster(self, state: State, timestep: float) -> Array:
         """(n,): how many times faster than in the exact motion the body has been, at least one.
 
         Infinite from where a scheme that diverges turns by more than half a turn in a step, which

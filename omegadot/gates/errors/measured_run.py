@@ -69,7 +69,6 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
     no bound.
     """
     yardstick, rows, exact = truth.yardstick, truth.rows(sweep), truth.at(sweep)
-    scale = yardstick.scale
 
     with np.errstate(over="ignore", invalid="ignore"):  # an engine may be where squares overflow
         mine, right = (total_energy(yardstick.system, one) for one in (state, exact))
@@ -92,7 +91,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
         gained=gained,
         single=yardstick.eps > EPS,
         of_momentum={channel: _sizes(bound) for channel, bound in momentum.items()},
-        stiffness=sweep.timestep * yardstick.rate * (scale.largest / scale.smallest) ** 0.5,
+        stiffness=sweep.timestep * yardstick.thin_rate,
     )
 
 

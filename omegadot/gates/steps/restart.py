@@ -64,7 +64,7 @@ def row(
     apart = {c: yardstick.distance(c, rest, restarted) for c in CHANNELS}
 
     def alike(growth: Array) -> Likeness:
-        faster = yardstick.faster(state)
+        faster = yardstick.faster(state, sweep.timestep)
         bounds = yardstick.round_off(sweep.timestep, sweep.sample_steps, growth, faster)
         return likeness(apart, {c: 2.0 * bounds[c][again] for c in CHANNELS})
 
