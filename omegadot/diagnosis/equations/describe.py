@@ -67,10 +67,8 @@ def off_text(what: str, off: Off, along: str = "") -> str:
     named = along or next((one for one in ALONG if one in off.along), "")
     if named:
         texts.append(f"by {named}")
-    if off.power is not None:
-        same = abs(off.power) < CLEAN
-        grows = f"by an amount that goes as |omega|^{number(round(off.power, 3))}"
-        texts.append("by the same amount at every omega" if same else grows)
+    if off.power is not None and abs(off.power) >= CLEAN:  # one amount here may grow elsewhere
+        texts.append(f"by an amount that goes as |omega|^{number(round(off.power, 3))}")
     return ", ".join(texts)
 
 

@@ -47,7 +47,10 @@ OF_ANY_STATE = (
         "omega looks like world axes: it matches after R^T",
         _turned("angular_velocity", rotate_inverse),
     ),
-    Misreading("omega looks turned twice: it matches after R", _turned("angular_velocity", rotate)),
+    Misreading(
+        "omega looks turned by R^T: as one set in world axes, or turned twice",
+        _turned("angular_velocity", rotate),
+    ),
     Misreading(
         "omega looks like degrees per second: it matches after pi/180",
         changed("angular_velocity", lambda w: w * (np.pi / 180)),
@@ -114,3 +117,52 @@ def misreadings(system: System) -> tuple[Misreading, ...]:
         ),
     )
     return (*OF_ANY_STATE, IN_BODY_AXES, *of_origin, NOT_UNIT, *by_inertia)
+
+
+def settings(system: System) -> tuple[Misreading, ...]:
+    """How a state may be misread as it is set; `right` leads from what reads back as well."""
+    about = moving_inertia(system)
+
+    def elsewhere(state: State) -> State:
+        return at_point(state, -system.body.center_of_mass)
+
+    def position(state: State) -> State:
+        return replace(state, position=elsewhere(state).position)
+
+    def velocity(state: State) -> State:
+        return replace(state, linear_velocity=elsewhere(state).linear_velocity)
+
+    origin = "is taken as that of the body's origin when it is set"
+    both = f"position and linear velocity {origin}".replace("is taken", "are taken", 1)
+    return (
+        Misreading(
+            "the linear velocity is taken as one in body axes when it is set: R v reads back",
+            _turned("linear_velocity", rotate_inverse),
+        ),
+        Misreading(
+            "the position is taken as one in body axes when it is set: R x reads back",
+            _turned("position", rotate_inverse),
+        ),
+        Misreading(f"the position {origin}", position),
+        Misreading(f"the linear velocity {origin}", velocity),
+        Misreading(both.replace("that of", "those of").replace("it is", "they are"), elsewhere),
+        Misreading(
+            "the quaternion is taken as (x, y, z, w) when it is set",
+            changed("orientation", lambda q: np.roll(q, -1, axis=-1)),
+        ),
+        Misreading(
+            "omega is taken in degrees per second when it is set",
+            changed("angular_velocity", lambda w: w * (180 / np.pi)),
+        ),
+        Misreading(
+            "omega is taken as the angular momentum when it is set: I^-1 omega reads back",
+            changed("angular_velocity", lambda w: apply(about, w)),
+        ),
+        Misreading(
+            "omega is taken as the angular momentum in world axes when it is set",
+            lambda state: replace(
+                state,
+                angular_velocity=rotate(state.orientation, apply(about, state.angular_velocity)),
+            ),
+        ),
+    )

@@ -10,7 +10,7 @@ import numpy as np
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.hypotheses import hypotheses
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
-from omegadot.diagnosis.models.misreadings import misreadings
+from omegadot.diagnosis.models.misreadings import misreadings, settings
 from omegadot.diagnosis.models.tensors import other_tensors
 from omegadot.diagnosis.wording.digits import factor, number, vector
 from omegadot.diagnosis.wording.laws import law_of
@@ -174,7 +174,8 @@ def _state(case: Case, requested: State, back: State, eps: float) -> list[str]:
     failed = failures(back)
     if not failed:
         return []
-    for one in (*misreadings(case.system), *fitted_misreadings(back, requested, together=False)):
+    known = (*misreadings(case.system), *settings(case.system))
+    for one in (*known, *fitted_misreadings(back, requested, together=False)):
         if not failures(one.right(back)):
             return [one.statement]
     single = State(*(f.astype(np.float32).astype(float) for f in vars(requested).values()))

@@ -1,7 +1,8 @@
 """Causes in one quantity of a run, all others being right: what is made of it before it is logged.
 
 What is logged of a quantity is held against values around the same sample: its own, those of the
-sample before, what was logged before, and the difference quotient of what it is the rate of.
+sample before, what was logged before, and the difference quotient of what it is the rate of. An
+attitude is also held against those on the way from the one before.
 """
 
 from __future__ import annotations
@@ -15,7 +16,13 @@ from omegadot.diagnosis.reported.of_steps import SLACK, Way, ways_of_steps
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.rotations import conjugate, quaternion_product, rotation_between
+from omegadot.reference_impl.rotations import (
+    conjugate,
+    exp_quaternion,
+    normalize,
+    quaternion_product,
+    rotation_between,
+)
 from omegadot.reference_impl.system import Array, State
 
 LEAST = 5  # samples
@@ -40,7 +47,12 @@ def field_causes(reported: ReportedRun) -> list[str]:
         if reported.agrees(right[later], own[later], later):
             made = _ways(reported, name, what, unit)
             return [text for text, v, slack in made if _is(reported, name, v, slack)]
-    return []
+    name = "orientation"
+    right = replace(came, orientation=own.orientation)
+    if not reported.agrees(right[later], own[later], later):
+        return []
+    made = _attitude_ways(reported)
+    return list(dict.fromkeys(t for t, v, slack in made if _is(reported, name, v, slack)))
 
 
 def _is(reported: ReportedRun, name: str, values: Array, slack: float) -> bool:
@@ -60,6 +72,45 @@ def _ways(reported: ReportedRun, name: str, what: str, unit: str) -> Iterator[Wa
     yield from _quotients(reported, every, name, what)
     yield from _shares(due, came, what)
     yield from ways_of_steps(reported, every, name, what)
+
+
+def _attitude_ways(reported: ReportedRun) -> Iterator[Way]:
+    """On the way from the attitude of the step or of the sample before to its own, or past it.
+
+    Along the great arc between the two quaternions, or along the chord and normalised.
+    """
+    every = reported.stepped(every_step=True).orientation
+    numbers, came = reported.sweep.sample_steps, reported.state.orientation
+    own, places = every[numbers], np.arange(len(numbers))
+    if not np.isfinite(came).all():
+        return
+    ways = {
+        "step": every[np.maximum(numbers - 1, 0)],
+        "sample": own[np.maximum(places - 1, 0)],
+    }
+    for which, before in ways.items():
+        whole = rotation_between(before, own)
+        gone = rotation_between(before, came)
+        size = float(np.sum(whole * whole))
+        share = float(np.sum(whole * gone)) / size if size > 0.0 else 1.0
+        if abs(share - 1.0) < NEAR or abs(share) < NEAR:
+            continue
+        between = _between(share, f"that of the {which} before")
+        arc = quaternion_product(before, exp_quaternion(share * whole))
+        yield between, arc, SLACK
+        near = own * np.sign(np.sum(own * before, axis=-1, keepdims=True))
+        lines = np.stack([np.ravel(near), np.ravel(before)], axis=-1)
+        signed = came * np.sign(np.sum(came * before, axis=-1, keepdims=True))
+        one, other = np.linalg.lstsq(lines, np.ravel(signed), rcond=None)[0]
+        if abs(one + other) > NEAR:
+            mixed = normalize(one * near + other * before)
+            yield _between(float(one / (one + other)), f"that of the {which} before"), mixed, SLACK
+
+
+def _between(share: float, before: str) -> str:
+    if abs(share - 0.5) < NEAR:
+        return f"the attitude is reported halfway between {before} and its own"
+    return f"the attitude is reported as {share:.4g} of the way from {before} to its own"
 
 
 def _quotients(reported: ReportedRun, every: State, name: str, what: str) -> Iterator[Way]:

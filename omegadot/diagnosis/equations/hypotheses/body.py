@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from omegadot.diagnosis.equations.equation_form import Form
 from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     Hypothesis,
     applied,
@@ -15,6 +16,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     of_load,
     single,
 )
+from omegadot.reference_impl.system import Array
 
 
 def center_hypotheses() -> Iterator[Hypothesis]:
@@ -67,6 +69,17 @@ def precision_hypotheses() -> Iterator[Hypothesis]:
         "precision",
         lambda body, s: {name: single(value) for name, value in vars(body).items()},
     )
+    for what, name in (("inverse of the inertia", "solve"), ("gyroscopic term's inertia", "spin")):
+        yield of_form(
+            f"the {what} {kept}",
+            "precision",
+            given(name, lambda k, f, s: {k: single(getattr(f, k))}),
+        )
+    yield of_form(
+        f"the inertia about the pivot {kept}",
+        "precision",
+        lambda f, s: _about_pivot(f),
+    )
     for name in ("gravity", "damping", "pivot"):
         yield of_load(
             f"the {name} {kept}".replace("the gravity", "gravity"),
@@ -82,3 +95,9 @@ def precision_hypotheses() -> Iterator[Hypothesis]:
         "precision",
         lambda one: {k: None if v is None else single(v) for k, v in vars(one).items()},
     )
+
+
+def _about_pivot(form: Form) -> dict[str, Array]:
+    """The whole inertia rounded, in the solve and in the gyroscopic term."""
+    whole = single(form.spin)
+    return {"solve": np.linalg.inv(whole), "spin": whole}
