@@ -16,6 +16,7 @@ from omegadot.diagnosis.reported.run_causes import (
     SEEN,
     another_start,
     begin_apart,
+    late,
     misread,
 )
 from omegadot.diagnosis.reported.sample_causes import (
@@ -206,7 +207,8 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
     seen = seen or next(filter(None, (cause(reported) for cause in SEEN)), "")
     if seen:
         return RunCauses((seen,))
-    found = [*misread(reported), *filter(None, (cause(reported) for cause in CAUSES_REPORTED))]
+    found = [*misread(reported), *late(reported)]
+    found += filter(None, (cause(reported) for cause in CAUSES_REPORTED))
     found = found or field_causes(reported)
     found += stepping_causes(reported, equations) if clear else ()
     if found:

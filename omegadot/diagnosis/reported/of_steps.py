@@ -46,14 +46,13 @@ def ways_of_steps(reported: ReportedRun, every: State, name: str, what: str) -> 
         if reported.sweep.every > 1:
             shown = f"that keeps {share:.{DIGITS}g} of itself at each step"
             yield f"{text} {shown}", filtered, SLACK
-    if reported.sweep.every > 1:
-        lines = np.stack([np.ravel(due[numbers[1:]]), np.ravel(due[before[1:]])], axis=-1)
-        one, other = np.linalg.lstsq(lines, np.ravel(came[1:]), rcond=None)[0]
-        if min(abs(one), abs(other)) > NEAR:
-            mixed = np.concatenate((came[:1], one * due[numbers[1:]] + other * due[before[1:]]))
-            parts = (number(float(f"{part:.6g}")) for part in (one, other))
-            text = " of itself and ".join(parts)
-            yield f"{what} is reported as {text} of that of the step before", mixed, SLACK
+    lines = np.stack([np.ravel(due[numbers[1:]]), np.ravel(due[before[1:]])], axis=-1)
+    one, other = np.linalg.lstsq(lines, np.ravel(came[1:]), rcond=None)[0]
+    if min(abs(one), abs(other)) > NEAR:
+        mixed = np.concatenate((came[:1], one * due[numbers[1:]] + other * due[before[1:]]))
+        parts = (number(float(f"{part:.6g}")) for part in (one, other))
+        text = " of itself and ".join(parts)
+        yield f"{what} is reported as {text} of that of the step before", mixed, SLACK
 
 
 def _filtered(values: Array, share: float) -> Array:

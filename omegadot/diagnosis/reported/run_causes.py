@@ -78,41 +78,62 @@ def misread(reported: ReportedRun) -> list[str]:
     return plain or found[:1]
 
 
-def _late(reported: ReportedRun) -> str:
+def late(reported: ReportedRun) -> list[str]:
+    """Samples or one quantity of another time; both readings where every step is a sample."""
     n = len(reported.time)
     if n < 3:
-        return ""
+        return []
     after, before = slice(1, None), slice(None, -1)
-    if reported.agrees(reported.state[after], reported.own[before], after):
-        return "every sample is the one before: the run is logged one sample late"
-    if reported.agrees(reported.state[before], reported.own[after], after):
-        return "every sample is the one after: the run is logged one sample early"
     steps, every = reported.sweep.sample_steps, reported.stepped(every_step=True)
     late = every[np.maximum(steps - 1, 0)]
-    if reported.agrees(reported.state, late):
-        return "every sample is the state one step before: the run is logged one step late"
     early = every[np.minimum(steps + 1, steps[-1])]
-    if reported.agrees(reported.state[before], early[before], before):
-        return "every sample is the state one step after: the run is logged one step early"
+    sample_late = reported.agrees(reported.state[after], reported.own[before], after)
+    whole = {
+        "every sample is the one before: the run is logged one sample late": sample_late,
+        "every sample is the one after: the run is logged one sample early": (
+            reported.agrees(reported.state[before], reported.own[after], after)
+        ),
+        "every sample is the state one step before: the run is logged one step late": (
+            reported.agrees(reported.state, late)
+        ),
+        "every sample is the state one step after: the run is logged one step early": (
+            reported.agrees(reported.state[before], early[before], before)
+        ),
+    }
+    found = [text for text, holds in whole.items() if holds]
+    if found:
+        return found
     inner = slice(1, -1)  # the first is the state given
     if n > 3 and reported.agrees(reported.state[inner], early[inner], inner):
-        return "every sample after the first is the state one step after: logged one step early"
-    behind = {
-        "sample": np.maximum(steps - reported.sweep.every, 0),
-        "step": np.maximum(steps - 1, 0),
-    }
-    for what, names in ALONE.items():
-        for when, shifted in behind.items():
-            other = {name: getattr(every, name)[shifted] for name in names}
-            if reported.agrees(reported.state, replace(reported.own, **other)):
-                return f"{what.rstrip(',')} alone is reported one {when} late"
+        return ["every sample after the first is the state one step after: logged one step early"]
+    found = _alone_late(reported, every)
+    if found:
+        return found
     last = slice(-1, None)
     ended = reported.agrees(reported.state[last], late[last], last)
     if ended and reported.agrees(reported.state[before], reported.own[before], before):
-        return "the last step is missing: the end is the state one step before"
+        return ["the last step is missing: the end is the state one step before"]
     if reported.agrees(reported.state[before], reported.own[before], before):
-        return _last_in_full(reported)
-    return ""
+        return [text for text in (_last_in_full(reported),) if text]
+    return []
+
+
+def _alone_late(reported: ReportedRun, every: State) -> list[str]:
+    """One quantity of the sample or of the step before. every: all steps of the right run."""
+    steps = reported.sweep.sample_steps
+    behind = {
+        "step": np.maximum(steps - 1, 0),
+        "sample": np.maximum(steps - reported.sweep.every, 0),
+    }
+    for what, names in ALONE.items():
+        found = list[str]()
+        for when, shifted in behind.items():
+            other = {name: getattr(every, name)[shifted] for name in names}
+            if reported.agrees(reported.state, replace(reported.own, **other)):
+                found.append(f"{what.rstrip(',')} alone is reported one {when} late")
+        if found:
+            return found
+    return []
 
 
 def _last_in_full(reported: ReportedRun) -> str:
@@ -156,4 +177,4 @@ def _rescaled(reported: ReportedRun) -> str:
 
 # What is seen of the numbers, whatever made them.
 SEEN = (not_finite, digits_reported, decimals_reported)
-CAUSES_REPORTED = (_late, half_step, _rescaled)
+CAUSES_REPORTED = (half_step, _rescaled)
