@@ -148,7 +148,7 @@ class Scenes:
         family = one.family if not one.fixed else None
         if family is not None and (held.numbers or held.against):
             family = VECTORS.get(family.name, family)
-        if family is not None and family.name in LAWS:
+        if family is not None and family.name in LAWS and family.unit:  # a factor is its own law
             held.pairs = self._numbers(family, source)
             if held.pairs:
                 held.law = law_of(held.pairs, LAWS[family.name], family.unit)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations, product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.diagnosis.wording.digits import factor, limits, number, vector
 from omegadot.diagnosis.wording.features import Features
@@ -35,6 +36,22 @@ def law_of(pairs: Sequence[tuple[Array, Array]], what: str, unit: str) -> str:
     changed = np.abs(acting - requested) > SAME * np.maximum(np.abs(requested), np.abs(acting))
     if np.count_nonzero(changed.any(axis=-1)) < 2:
         return ""
+    if np.ptp(np.abs(requested[changed])) > SAME * np.max(np.abs(requested[changed])):
+        text = _limit(requested, acting, changed, size, what, unit)
+        if text:
+            return text
+    return _other_law(requested, acting, changed, size, what, unit)
+
+
+def _limit(
+    requested: Array,
+    acting: Array,
+    changed: NDArray[np.bool_],
+    size: Array,
+    what: str,
+    unit: str,
+) -> str:
+    """Of each number or of the size: several that were requested come to one."""
     few = requested.shape[-1] == 1
     each = what if few else f"each component of {what}"
     held = acting[changed]
@@ -51,6 +68,22 @@ def law_of(pairs: Sequence[tuple[Array, Array]], what: str, unit: str) -> str:
         scaled = np.where(due > 0.0, requested * np.minimum(1.0, longest / due), 0.0)
     if not few and _close(scaled, acting, size):
         return f"the size of {what} is limited to {number(longest)} {unit}"
+    return ""
+
+
+def _other_law(
+    requested: Array,
+    acting: Array,
+    changed: NDArray[np.bool_],
+    size: Array,
+    what: str,
+    unit: str,
+) -> str:
+    """Rounding, a least size, an addition, a factor, other axes or one number."""
+    few = requested.shape[-1] == 1
+    each = what if few else f"each component of {what}"
+    held = acting[changed]
+    lengths, due = (np.linalg.norm(v, axis=-1, keepdims=True) for v in (acting, requested))
     for digits in range(MOST_DECIMALS):
         rounded = np.round(requested, digits)
         if _close(rounded, acting, size) and np.max(np.abs(held)) >= 0.5 * 10.0**-digits:
