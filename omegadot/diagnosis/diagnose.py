@@ -15,6 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from omegadot.diagnosis.equations.evidence import INVERSE
 from omegadot.diagnosis.equations.siblings import AFTER_ANOTHER
 from omegadot.diagnosis.equations.wrong_equation import (
     ALONG,
@@ -22,6 +23,7 @@ from omegadot.diagnosis.equations.wrong_equation import (
     RELOADED,
     equation_causes,
     inverse_causes,
+    is_of_a_load,
     scene_of,
 )
 from omegadot.diagnosis.integrator import IntegratorCauses
@@ -68,6 +70,8 @@ class CaseCauses:
             for name, own in by_name.items()
         }
         self._shared_rows = [row for row in shared if row.verdict == "fail"]
+        # Inverse dynamics are no part of a run, which then has causes of its own.
+        self._explains_runs = any(row.channel != "torque" for row in self._shared_rows)
         scene = scene_of(case, evaluation_states, result)
         for name, integrator in self._integrators.items():
             if integrator.steps is not None:
@@ -80,7 +84,7 @@ class CaseCauses:
         """Work out what needs the trajectories, and let go of them."""
         with np.errstate(all="ignore"):
             for one in self._integrators.values():
-                one.release(wanted=not self._shared_rows)
+                one.release(wanted=not self._explains_runs)
 
     def sentences(self, integrator: str | None) -> list[str]:
         """The causes, the most basic first; of one integrator, or of what all runs share.
@@ -89,9 +93,9 @@ class CaseCauses:
         looked at by themselves only where neither gate failed.
         """
         with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-            if self._shared_rows:
-                return self._shared()
-            return [] if integrator is None else self._integrators[integrator].sentences()
+            own = None if integrator is None else self._integrators[integrator]
+            found = own.sentences() if own is not None and not self._explains_runs else []
+            return found or (self._shared() if self._shared_rows else [])
 
     def text(self, run: JudgedRun | None) -> str:
         """The causes of one run, or of what all runs share, as one text."""
@@ -130,12 +134,27 @@ class CaseCauses:
             wrong = any(one is not None and one.clear for one in first)
             return [] if wrong else self._siblings.causes(self._case)
         if torques and answers.inverse.ok:
+            same = self._of_steps_as_well()
+            if same:
+                return [same]
             torque = answers.inverse.result["torque"]
             eps = eps_of(answers.precision)
             known = (self._case.system, states.random, states.acceleration)
             formula = across.of_inverse_dynamics(self._case.name)
             return inverse_causes(*known, torque, eps) or ([formula] if formula else [])
         return lever_causes(*model)
+
+    def _of_steps_as_well(self) -> str:
+        """A load that is wrong in the steps, and by as much in inverse dynamics; "" without any."""
+        scene = self._across.scenes[self._case.name]
+        for name, integrator in self._integrators.items():
+            if integrator.steps is None or integrator.steps.sound:
+                continue
+            where = (scene.name, source_of(name))
+            text, one = self._across.cause(*where), self._across.chosen(*where)
+            if one is not None and is_of_a_load(one, scene.evidence[INVERSE]):
+                return f"in the steps and in inverse dynamics, {text}"
+        return ""
 
 
 ALONE = ", in forward dynamics alone: steps are right"

@@ -12,7 +12,7 @@ from omegadot.diagnosis.equations.evidence import INVERSE
 from omegadot.diagnosis.equations.held import Scene, Scenes
 from omegadot.diagnosis.equations.known import known_over
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
-from omegadot.diagnosis.equations.worded import Named, conditional, named
+from omegadot.diagnosis.equations.worded import Named, named, on_some
 
 
 class Across:
@@ -92,10 +92,10 @@ class Across:
         found = self._shared(scene, source, PLAIN)
         if found.text:
             return found
-        text = conditional(self._searched.quick(scene, source, PLAIN).partial)
-        text = text or self._at_states.cause(scene, source)
-        if text:
-            return Named(text)
+        found = on_some(self._searched.quick(scene, source, PLAIN).partial)
+        found = found if found.text else Named(self._at_states.cause(scene, source))
+        if found.text:
+            return found
         found = self._shared(scene, source, QUICK)
         found = found if found.text else self._by_formula(scene, source)
         if found.text:
@@ -119,10 +119,7 @@ class Across:
         if here:
             return named(here, source, self._all)
         partly = [one for one in found.partly if scene.name in one.names]
-        first = next((one for one in partly if conditional([one])), None)
-        if first is None:
-            return Named()
-        return Named(conditional([first]), first.candidate, frozenset(first.names))
+        return on_some(partly)
 
     def _search_elsewhere(self, name: str, source: str) -> None:
         """For a scenario that is not searched to the end: the causes of those that are."""

@@ -77,6 +77,11 @@ def _like_any(one: Held, others: Sequence[Held]) -> bool:
 
 
 def conditional(held: Sequence[Held], own: bool = False) -> str:
+    """The first cause that holds on the scenarios of one kind alone; see `on_some`."""
+    return on_some(held, own).text
+
+
+def on_some(held: Sequence[Held], own: bool = False) -> Named:
     """The first cause that holds on the scenarios of one kind alone.
 
     own: also one that does so by other numbers on each.
@@ -93,7 +98,7 @@ def conditional(held: Sequence[Held], own: bool = False) -> str:
             evidence = next(iter(one.shown[0].evidence.values()))
             text = one.law or one.candidate.text(evidence.system)
             text = f"{text}, but only where {' or where '.join(common)}"
-            if not one.numbers or one.law:
-                return text
-            return f"{text} ({one.shown[0].name}; other numbers on {len(one.numbers)} more)"
-    return ""
+            if one.numbers and not one.law:
+                text = f"{text} ({one.shown[0].name}; other numbers on {len(one.numbers)} more)"
+            return Named(text, one.candidate, frozenset(one.names))
+    return Named()

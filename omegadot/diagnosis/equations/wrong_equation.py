@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import (
     BEYOND_ROUNDING,
     INVERSE,
@@ -91,6 +92,20 @@ def equation_causes(across: Across, name: str, source: str) -> list[str]:
     if not text and source in (FORWARD, ALONG):
         text = difference_quotient(evidence)
     return [text] if text else known_difference(across, name, source)
+
+
+def is_of_a_load(one: Candidate, evidence: Evidence) -> bool:
+    """Whether inverse dynamics take a load as wrongly as a wrong equation does.
+
+    ``J omega_dot = tau + d`` of the steps leaves ``tau - d`` for inverse dynamics.
+    """
+    states, system = evidence.states, evidence.system
+    made = one.predicted(of_forward_dynamics(system, states, forward_dynamics(system, states)))
+    if made is None:
+        return False
+    load = made.angular - forward_dynamics(system, states).angular
+    off = evidence.found.angular - evidence.true.angular
+    return bool(np.all(norm(off + load) <= SLACK * evidence.angular_bound))
 
 
 def _single(evidence: Evidence) -> str:
