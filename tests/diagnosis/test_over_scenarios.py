@@ -83,7 +83,7 @@ def test_a_cause_at_few_states_is_found_over_all_scenarios() -> None:
 
     causes = causes_over(steady, (*TOPS, *CASES[:2]))
     assert causes
-    found = "the torque of gravity is missing: it is wrong only where omega is along z alone"
+    found = "the torque of gravity is missing, but only where omega is along z alone"
     assert set(causes.values()) == {found}
 
 
@@ -94,7 +94,7 @@ def test_a_threshold_is_narrowed_by_all_scenarios() -> None:
 
     (text,) = set(causes_over(slow, CASES[:4]).values())
     assert text.startswith(
-        "the gyroscopic term is missing: it is wrong only where |omega| is below"
+        "the gyroscopic term is missing, but only where |omega| is below"
     )
 
 

@@ -255,7 +255,7 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "spatial": (spatial, "the linear acceleration is the spatial one"),
     "fast": (
         no_gyroscopic_term_when_fast,
-        "the gyroscopic term is missing: it is wrong only where |omega| is above",
+        "the gyroscopic term is missing, but only where |omega| is above",
     ),
     "row": (gyroscopic_without_x, "of the gyroscopic term the x component is missing"),
     "world-omega": (gyroscopic_of_world_omega, "formed with omega in world axes"),

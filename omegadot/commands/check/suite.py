@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from functools import partial
 from pathlib import Path
 
 from omegadot.commands.check.baseline import answered, figures_of, updated
@@ -136,9 +137,10 @@ class Suite:
                 raise
             for found in judged.engines:
                 if judged.truth is not None:
-                    causes = self._causes.of_case(judged, found, SEED)
+                    causes = self._causes.add(judged, found, SEED)
                     drawn = case.name in self.selection.drawn
-                    results = results_of(judged, found, causes.text, drawn=drawn)
+                    cause = partial(self._causes.text, found.engine.name, case.name)
+                    results = results_of(judged, found, cause, drawn=drawn)
                     self._results |= dict(results)
                     causes.release()
                 kept = judged.truth is not None and case.name not in self.selection.drawn

@@ -53,7 +53,7 @@ class AtSomeStates:
             return ""
         if not sorted_:
             return f"{text}, but not always"
-        return f"{text}: it is wrong only where {where[sorted_[0].candidate.key]}"
+        return f"{text}, but only where {where[sorted_[0].candidate.key]}"
 
     def _where(self, one: Candidate, source: str) -> str:
         if (one.key, source) not in self._conditions:

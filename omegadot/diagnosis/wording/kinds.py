@@ -35,7 +35,7 @@ SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
 
 def kind_of(text: str) -> str:
     """A cause without its numbers, and without where it shows."""
-    for end in (", but only where", ": it is wrong only where", ", at steps of", ", on "):
+    for end in (", but only where", ", at steps of", ", on "):
         text = text.partition(end)[0]
     if any(one in text for one in CONSTANTS):
         return text
@@ -46,6 +46,11 @@ def kind_of(text: str) -> str:
 def is_fact(text: str) -> bool:
     """Whether it states what is seen in a run, not what makes it."""
     return any(fact in text for fact in FACTS)
+
+
+def is_named(text: str) -> bool:
+    """Whether a cause is named, and not only what is seen."""
+    return bool(text) and not is_fact(text) and "none is known" not in text
 
 
 def is_of_one_run(text: str) -> bool:
