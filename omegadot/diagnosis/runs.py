@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
+from omegadot.diagnosis.models.fitted_misreadings import ADDED
 from omegadot.diagnosis.reported.clock import clock_cause
 from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.guesses import Guesses
@@ -209,7 +210,8 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
         return RunCauses((seen,))
     found = [*misread(reported), *late(reported)]
     found += filter(None, (cause(reported) for cause in CAUSES_REPORTED))
-    found = found or field_causes(reported)
+    if all(ADDED in text for text in found):  # which on other motions is no constant
+        found = [*field_causes(reported), *found]
     found += stepping_causes(reported, equations) if clear else ()
     if found:
         return RunCauses(tuple(dict.fromkeys(found)), is_decisive(reported))
