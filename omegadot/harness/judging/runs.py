@@ -40,7 +40,7 @@ from omegadot.harness.judging.no_solution import (
     unjudged_row,
 )
 from omegadot.harness.requests.repeats import rows_again
-from omegadot.harness.requests.step_probes import rows_of_probes
+from omegadot.harness.requests.step_probes import roundings_in, rows_of_probes
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 
@@ -152,5 +152,6 @@ def judge_case(
     for integrator in result.integrators:
         finer = refinements.get(integrator.name, {}).values()
         judge = judge_accuracies if integrator.knob == "accuracy" else _judge_steps
-        found += judge(truth, integrator, case.sweeps_of(integrator), result, finer)
+        own = truth.of_roundings(roundings_in(case.system, result, integrator))
+        found += judge(own, integrator, case.sweeps_of(integrator), result, finer)
     return found
