@@ -7,7 +7,7 @@ steps (Richardson 1911); what a scheme adds vanishes in it, and what a fault add
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -45,6 +45,7 @@ def extrapolated(values: Array) -> Array:
     return np.asarray(_extrapolants(values)[0])
 
 
+FEWEST = 3  # states that show of which kind rounding is
 FARTHER = 64.0  # times: half way, by factors, from 16 to 256
 _WEIGHTS = np.abs(_extrapolants(np.eye(5))[0])
 _AMPLIFIED = float(np.sum(_WEIGHTS))  # what the extrapolation makes of roundings of the rates
@@ -57,12 +58,14 @@ class Limit:
     bound: (r, m), how far the extrapolants differ, and what rounding makes of it. Where they
     converge, the difference of two is the error of the worse.
     jump: (m,), by how much the quantity changes in steps that vanish; zero where that vanishes too.
+    rounding: (r, m), what rounding alone makes of the limit.
     """
 
     found: Array
     expected: Array
     bound: Array
     jump: Array | None = None
+    rounding: Array = field(default_factory=lambda: np.zeros((2, 1)))
 
     def shares(self, factor: float = 1.0) -> Array:
         """(m,): the distance from `factor` times the equation's rate, in parts of its bound."""
@@ -191,9 +194,11 @@ def roundings_of(
     found = limits(system, probe, stepped, eps)
     taken = dict[str, bool]()
     for channel in ("linear_momentum", "omega"):
-        off = found[channel].found - found[channel].expected
-        long, short = (float(norm(np.ravel(one))) for one in off[:2])  # at rest nothing is seen
-        taken[channel] = 0.0 < FARTHER * long < short
+        one = found[channel]
+        long, short = norm(one.found - one.expected)[:2]
+        seen = (long > 0.0) & (short > one.rounding[1])  # of what is stepped nothing is this far
+        ratios = np.log(short[seen] / long[seen])
+        taken[channel] = len(ratios) >= FEWEST and bool(np.mean(ratios) > np.log(FARTHER))
     return Roundings(taken["linear_momentum"], taken["omega"], per_step)
 
 
@@ -214,13 +219,15 @@ def _limit(
     per_rate: Array,
 ) -> Limit:
     """rounding: (m, k), of what changes in each of the steps."""
-    found, bounds = [], []
+    found, bounds, rounded = [], [], []
     for steps in ranges:
         best, worse, worst = _extrapolants(change[:, steps] / h[:, steps, None])
-        rounded = np.sum(rounding[:, steps] * _WEIGHTS / h[:, steps], axis=-1)
         found.append(best)
-        bounds.append(norm(best - worse) + norm(worse - worst) + rounded + per_rate * _AMPLIFIED)
+        own = np.sum(rounding[:, steps] * _WEIGHTS / h[:, steps], axis=-1)
+        rounded.append(own + per_rate * _AMPLIFIED)
+        bounds.append(norm(best - worse) + norm(worse - worst) + rounded[-1])
     left = norm(extrapolated(change[:, ranges[0]]))
     jumps = left > 0.5 * norm(change[:, ranges[0].start])  # of the longest of these steps
     jumps &= left > np.sum(rounding[:, ranges[0]] * _WEIGHTS, axis=-1)
-    return Limit(np.array(found), expected, np.array(bounds), np.where(jumps, left, 0.0))
+    jump = np.where(jumps, left, 0.0)
+    return Limit(np.array(found), expected, np.array(bounds), jump, np.array(rounded))
