@@ -11,6 +11,7 @@ import polars as pl
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import GATES, YARDSTICKS
+from omegadot.reports.summary.reasons import cause_of, failing_gates
 from omegadot.reports.text.numbers import (
     engine_name,
     knob,
@@ -91,7 +92,7 @@ def _excess(row: Mapping[str, Any]) -> float:
 
 
 def _extent(tasks: list[Mapping[str, Any]]) -> str:
-    failing = [t for t in tasks if "fail" in (t.get("gates") or {}).values()]
+    failing = list(filter(failing_gates, tasks))
     return f" ({len(failing)} of {times(len(tasks), 'run')} fail)" if failing else ""
 
 
@@ -127,7 +128,7 @@ def _is_of(row: Mapping[str, Any], worst: Mapping[str, Any]) -> bool:
 
 def _likeliest(tasks: list[Mapping[str, Any]]) -> str:
     """The cause that explains most runs, with how many others there are."""
-    causes = Counter(t["cause"] for t in tasks if t.get("cause"))
+    causes = Counter(filter(None, map(cause_of, tasks)))
     known = [(cause, n) for cause, n in causes.most_common() if not cause.startswith(UNKNOWN)]
     if not known:
         return ""

@@ -6,6 +6,7 @@ from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.provenance import command_of
+from omegadot.reports.summary.reasons import reason_of
 from omegadot.reports.summary.summary import STATUSES, Cell, Summary, counts, summarise, task_status
 from omegadot.reports.text.markdown_text import COMMENT, code, escape, folded, table
 from omegadot.reports.text.numbers import first, times
@@ -67,8 +68,8 @@ def _failures(record: Record, room: int) -> list[str]:
         status = task_status(task)
         if status in _FAILING:
             gates = [gate for gate, v in (task.get("gates") or {}).items() if v == status]
-            why = task.get("reason") or task.get("why") or ""
-            key = (status, task["engine"], task.get("integrator") or "", ", ".join(gates), why)
+            own = task["engine"], task.get("integrator") or "", ", ".join(gates)
+            key = (status, *own, reason_of(task))
             groups.setdefault(key, []).append(task["scenario"])
     if not groups:
         return []
