@@ -50,15 +50,19 @@ def _matrix(summary: Summary, room: int) -> list[str]:
         (name, *(_cell(summary.cells[name, column]) for column in summary.columns))
         for name in sorted(summary.scenarios, key=rank)
     ]
-    signs = "✓ every gate holds, ✗ a gate fails, ! a declared exception; the number is the worst"
-    message = f"{signs} omega-dot residual at identical states, relative."
+    message = (
+        "✓ every gate holds, with the worst omega-dot residual at identical states, relative; "
+        "✗ a gate fails, the first that does and its worst measure; ! a declared exception."
+    )
     return [*table(heads, rows, room, "more scenarios, none of them worse"), "", message]
 
 
 def _cell(cell: Cell) -> str:
     shown = matrix.shown(cell)
     term = "" if cell.status in ("pass", "fail") else shown.status
-    return " ".join(filter(None, (shown.mark, term, shown.numbers["residual"], shown.part)))
+    number = shown.numbers.get(matrix.FAILED, shown.numbers.get("residual"))
+    found = " ".join(filter(None, (shown.mark, term, shown.gate, number)))
+    return ", ".join(filter(None, (found, shown.part)))
 
 
 def _failures(record: Record, room: int) -> list[str]:
