@@ -148,8 +148,8 @@ def summarise(record: Record) -> Summary:
     cells = {}
     for scenario, column in product(scenarios, columns):
         key = (scenario, column.engine, column.version, column.setup)
-        gate = failed.get(key) or unmeasured.get(key)
-        cells[scenario, column] = _cell(gate, statuses.get(key, []), figures.get(key, {}))
+        first = failed.get(key) or unmeasured.get(key)
+        cells[scenario, column] = _cell(first, statuses.get(key, []), figures.get(key, {}))
     return Summary(
         bool(record.run.get("complete", True)),
         scenarios,
