@@ -14,7 +14,7 @@ from omegadot.reports.charts.packing import FLOOR_DECADE, pack_codes, pack_json
 from omegadot.reports.charts.palette import Line, lines_of
 from omegadot.reports.charts.payload import step_choices
 from omegadot.reports.choice.page import Section
-from omegadot.reports.page.failures_table import failures_table
+from omegadot.reports.page.failures_table import Failure, failures_table
 from omegadot.reports.page.glance import glances
 from omegadot.reports.page.glossary import INTRODUCTION, TERMS
 from omegadot.reports.page.sections import drawings, failing_lanes, measured_in, sections_of
@@ -80,7 +80,7 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         orders=orders,
         clusters=[(sentence(c), extent(c)) for c in clusters_over_scenarios(record.run)],
         sections=sections,
-        opened=_opened(sections),
+        opened=_opened(sections, failures[0], anchors),
         lines=lines,
         line_groups=[(engine, list(own)) for engine, own in groupby(enumerate(lines), _engine_of)],
         choices=step_choices(charts.values()),
@@ -108,10 +108,15 @@ def _anchors(names: tuple[str, ...]) -> dict[str, str]:
     return anchors
 
 
-def _opened(sections: list[dict[str, Any]]) -> str:
-    """The address of the scenario that is shown first: one with the worst verdict."""
+def _opened(
+    sections: list[dict[str, Any]], failures: list[Failure], anchors: dict[str, str]
+) -> str:
+    """The address of the scenario that is shown first: that of the first failure, if there is one,
+    else one with the worst verdict.
+    """
+    failed = (anchors[row.scenario] for row in failures if row.scenario in anchors)
     worst = min(sections, key=lambda s: STATUSES.index(s["status"]), default={"anchor": ""})
-    return str(worst["anchor"])
+    return next(failed, str(worst["anchor"]))
 
 
 def line_styles(lines: list[Line]) -> Markup:
