@@ -144,7 +144,7 @@ def read_baseline(folder: Path, engine: str) -> Baseline | None:
     if not path.is_file():
         return None
     try:
-        return from_text(path.read_text(encoding="utf-8"))
+        return from_text(path.read_text(encoding="utf-8-sig"))
     except (ValueError, TypeError, KeyError, AttributeError) as problem:
         raise UsageError(
             f"{path}: not a baseline: {problem}; delete the file, then run with --update-baseline."
