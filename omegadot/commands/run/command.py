@@ -71,7 +71,7 @@ def run(
     """
     arguments = options.given(locals())
     from omegadot.commands.run.print_run import exit_code, print_json, print_text
-    from omegadot.commands.run.result import RunInterrupted
+    from omegadot.commands.run.result import RunInterrupted, unwritten
     from omegadot.commands.run.run import run as run_scenarios
 
     if memory is not None and not _memory_is_limited():
@@ -80,6 +80,9 @@ def run(
         result = run_scenarios(**arguments, command=options.command_line())
     except RunInterrupted as interrupted:
         result = interrupted.result
+    except KeyboardInterrupt:
+        typer.echo(unwritten(out), err=True)
+        raise
     if output is options.Format.json:
         print_json(result)
     else:
