@@ -1,6 +1,5 @@
 """What a run leaves when it is ended: its record beside an earlier one, and no process."""
 
-import json
 import os
 import signal
 import subprocess
@@ -81,7 +80,7 @@ def test_a_signal_writes_what_there_is_beside_an_earlier_record(folder: Path, na
     assert "This run's record is in out-interrupted." in printed
     assert "Traceback" not in printed
     assert (folder / "out" / "run.json").read_bytes() == before
-    run = json.loads((folder / "out-interrupted" / "run.json").read_text())
+    run = api.read_record(folder / "out-interrupted").run
     assert (run["complete"], run["worker_deaths"]) == (False, [])
     assert gone(workers)
 

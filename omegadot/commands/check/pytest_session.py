@@ -104,7 +104,7 @@ class PytestSession:
     def pytest_testnodedown(self, node: Any) -> None:
         """Take the figures that a worker of xdist has measured."""
         for engine, text in getattr(node, "workeroutput", {}).get(SHARED, {}).items():
-            self.suite.figures.setdefault(engine, {}).update(from_text(text))
+            self.suite.figures.setdefault(engine, {}).update(from_text(text, engine))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Count a check by its engine."""
