@@ -67,7 +67,8 @@ def run(
     """Run scenarios on engines, judge them, and write a record with its report.
 
     Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
-    timed out or could not be started, or the record could not be written where it was requested.
+    timed out or could not be started, or nothing but its model could be judged, or the record could
+    not be written where it was requested.
     """
     arguments = options.given(locals())
     from omegadot.commands.run.print_run import exit_code, print_json, print_text

@@ -14,6 +14,7 @@ from omegadot.reports.record.interrupted import place_of_interrupted
 from omegadot.reports.record.record import RUN
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.run_record import RunRecord, TaskResult
+from omegadot.reports.summary.reasons import tests_motion
 
 
 @dataclass(frozen=True, repr=False)
@@ -50,9 +51,18 @@ class RunResult:
         )
 
     @property
+    def untested(self) -> tuple[str, ...]:
+        """The engines of which the model was judged and nothing about its motion."""
+        tasks = [task for task in self.record.run["tasks"] if task["gates"]]
+        moved = {task["engine"] for task in tasks if tests_motion(task)}
+        return tuple(dict.fromkeys(t["engine"] for t in tasks if t["engine"] not in moved))
+
+    @property
     def answered(self) -> bool:
-        """Whether every engine answered: no run is without an answer, and no process died."""
-        return not (self.unanswered or self.record.run["worker_deaths"])
+        """Whether every engine answered: no run is without an answer, no process died, and of no
+        engine was the model alone judged.
+        """
+        return not (self.unanswered or self.untested or self.record.run["worker_deaths"])
 
     @property
     def stale_exceptions(self) -> tuple[str, ...]:

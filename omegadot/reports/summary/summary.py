@@ -19,7 +19,7 @@ from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.failed_gate import FailedGate, failed_gates
 from omegadot.reports.summary.failures import failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
-from omegadot.reports.summary.reasons import failing_gates
+from omegadot.reports.summary.reasons import MODEL_ALONE, failing_gates, tests_motion
 from omegadot.reports.text.numbers import times
 
 # From the worst to the best. A skip is never a pass, and neither is a run that was not judged.
@@ -119,12 +119,17 @@ def worst(statuses: Iterable[str]) -> str:
 
 
 def task_status(task: Mapping[str, Any]) -> str:
-    """What one run came to: its outcome where it did not end, else the worst of its gates."""
+    """What one run came to: its outcome where it did not end, else the worst of its gates.
+
+    A run of which nothing but the model was judged is not judged: that is no pass.
+    """
     verdicts = list((task.get("gates") or {}).values())
     if "fail" in verdicts:
         return "fail"
     if task["outcome"] != "ok":
         return str(task["outcome"])
+    if not tests_motion(task) and "declared" not in verdicts:
+        return "not-judged"
     return worst([v for v in verdicts if v != "info"] or ["not-judged"])
 
 
@@ -204,9 +209,13 @@ def _unstepped(run: Mapping[str, Any]) -> Iterator[str]:
     ran = {t["engine"] for t in run["tasks"] if t["outcome"] == "ok"} - set(YARDSTICKS)
     for engine in run["engines"]:
         name = engine["name"]
-        if name in ran and engine.get("integrators") == []:
+        if name not in ran or engine.get("integrators") != []:
+            continue
+        if any(tests_motion(task) for task in run["tasks"] if task["engine"] == name):
             judged = "its model and the equations that it offers are judged"
             yield f"{name} has no integrators: {judged}."
+        else:
+            yield f"{name} has no integrators and no dynamics: {MODEL_ALONE}."
 
 
 def _truths(trajectories: pl.DataFrame) -> Counter[str]:
