@@ -93,9 +93,7 @@ def test_a_threshold_is_narrowed_by_all_scenarios() -> None:
         return with_torque(system, states, np.where(few, gyroscopic(system, states), 0.0))
 
     (text,) = set(causes_over(slow, CASES[:4]).values())
-    assert text.startswith(
-        "the gyroscopic term is missing, but only where |omega| is below"
-    )
+    assert text.startswith("the gyroscopic term is missing, but only where |omega| is below")
 
 
 def test_a_limited_inertia_is_one_cause() -> None:

@@ -11,6 +11,7 @@ from omegadot.diagnosis.equations.carried import Carried
 from omegadot.diagnosis.equations.evidence import INVERSE
 from omegadot.diagnosis.equations.held import Scene, Scenes
 from omegadot.diagnosis.equations.known import known_over
+from omegadot.diagnosis.equations.left_over import LeftOver
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
 from omegadot.diagnosis.equations.worded import Named, named, on_some
 
@@ -22,6 +23,7 @@ class Across:
         self._all = Scenes()
         self._searched, self._formulas = Searched(self._all), Formulas(self._all)
         self._at_states, self._carried = AtSomeStates(self._all), Carried(self._all)
+        self._left_over = LeftOver()
         self._named: dict[tuple[str, str], Named] = {}
         self._known: dict[str, str] = {}
 
@@ -35,6 +37,7 @@ class Across:
         self._searched.add(scene)
         self._formulas.add()
         self._at_states.add(scene)
+        self._left_over.add(scene)
         self._carried = Carried(self._all)
         self._named, self._known = {}, {}
 
@@ -49,6 +52,10 @@ class Across:
     def explained(self, name: str, source: str) -> set[str]:
         """The scenarios that `chosen` explains."""
         return {*self._cause(name, source).names, name}
+
+    def left_over(self, name: str, source: str) -> str:
+        """What is kept of a system that was loaded before, where it makes all that is wrong."""
+        return self._left_over.cause(name, source)
 
     def plain(self, name: str, source: str) -> str:
         """A cause on one scenario that is quickly found; "" where none fits that holds on all."""
@@ -89,7 +96,8 @@ class Across:
 
     def _of(self, scene: Scene, source: str) -> Named:
         """What is quickly found first, then what other scenarios have, then all that is known."""
-        found = self._shared(scene, source, PLAIN)
+        found = Named(self.left_over(scene.name, source))
+        found = found if found.text else self._shared(scene, source, PLAIN)
         if found.text:
             return found
         found = on_some(self._searched.quick(scene, source, PLAIN).partial)
