@@ -20,7 +20,7 @@ Donor = Callable[[System, LoadedBefore], System | None]
 
 
 @dataclass(frozen=True)
-class _Part:
+class Part:
     """name: as it is worded.  attributes: of the load, or of the body, that hold it.  none: how it
     is worded that a system has none; "" of what every system has.
     """
@@ -59,7 +59,7 @@ class Kept:
 
     what: str
     text: str
-    part: _Part
+    part: Part
     donor: Donor
     solve: bool = False  # the inverse of the inertia that moves alone, whatever it was made of
 
@@ -85,19 +85,19 @@ class Kept:
 
 
 LOADS = (
-    _Part("gravity", ("gravity",), "where no gravity is requested"),
-    _Part("damping", ("damping",), "where no damping is requested"),
-    _Part("torque in body axes", ("torque_body",), "where no torque in body axes is requested"),
-    _Part("torque in world axes", ("torque_world",), "where no torque in world axes is requested"),
-    _Part("applied torque", ("torque_body", "torque_world"), "where no torque is requested"),
-    _Part("pivot", ("pivot",), "where no pivot is requested"),
+    Part("gravity", ("gravity",), "where no gravity is requested"),
+    Part("damping", ("damping",), "where no damping is requested"),
+    Part("torque in body axes", ("torque_body",), "where no torque in body axes is requested"),
+    Part("torque in world axes", ("torque_world",), "where no torque in world axes is requested"),
+    Part("applied torque", ("torque_body", "torque_world"), "where no torque is requested"),
+    Part("pivot", ("pivot",), "where no pivot is requested"),
 )
-INERTIA = _Part("inertia", ("inertia",))
+INERTIA = Part("inertia", ("inertia",))
 BODY = (
-    _Part("mass", ("mass",)),
-    _Part("centre of mass", ("center_of_mass",), "where the centre of mass is at the origin"),
+    Part("mass", ("mass",)),
+    Part("centre of mass", ("center_of_mass",), "where the centre of mass is at the origin"),
     INERTIA,
-    _Part("body", ("mass", "center_of_mass", "inertia")),
+    Part("body", ("mass", "center_of_mass", "inertia")),
 )
 FOUND_BY: dict[str, Callable[[System], Array]] = {
     "mass": lambda s: np.asarray(s.body.mass, dtype=float),
@@ -108,7 +108,7 @@ FOUND_BY: dict[str, Callable[[System], Array]] = {
 }
 
 
-def _last_of_any(part: _Part) -> Donor:
+def _last_of_any(part: Part) -> Donor:
     def donor(system: System, before: LoadedBefore) -> System | None:
         if not part.missing(system):
             return None
@@ -117,7 +117,7 @@ def _last_of_any(part: _Part) -> Donor:
     return donor
 
 
-def _last_where_missing(part: _Part) -> Donor:
+def _last_where_missing(part: Part) -> Donor:
     def donor(system: System, before: LoadedBefore) -> System | None:
         last = before.last
         given = last is not None and part.missing(system) and not part.missing(last)

@@ -90,6 +90,8 @@ def _found(seen: Sequence[_Seen]) -> tuple[str, frozenset[tuple[str, str]]]:
         return nothing
     likely = [k for k in KEPT if all(one.explained(k, few=True) for one in wrong)]
     kept = [k for k in likely if _holds(k, seen, wrong)]
+    least = min((len(k.part.attributes) for k in kept), default=0)  # the plainest
+    kept = [k for k in kept if len(k.part.attributes) == least]
     texts = list(dict.fromkeys(k.text for k in kept))
     if len({k.what for k in kept}) == 1 and len(texts) > 1:
         texts = [kept[0].vague]

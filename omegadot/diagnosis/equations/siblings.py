@@ -61,11 +61,11 @@ class Siblings:
         texts = [self._across.plain(_name(case, what), FORWARD) for what in failing]
         found = list(dict.fromkeys(filter(None, texts)))
         kept = all(failing.values())  # also where numbers that differ slightly are wrong alone
-        if kept and all(self._right_with_others(what) for what in failing):
-            return [AFTER_ANOTHER]
+        named = listed([what.replace("_", " ").replace("center", "centre") for what in failing])
+        if failing and kept and all(self._right_with_others(what) for what in failing):
+            return [f"{AFTER_ANOTHER}: its {named}"]
         if len(found) == 1 and all(texts):
             return [f"either {found[0]}, or {AFTER_ANOTHER}" if kept else found[0]]
-        named = listed([what.replace("_", " ") for what in failing])
         return [f"either forward dynamics are wrong with another {named}, or {AFTER_ANOTHER}"]
 
     def _right_with_others(self, what: str) -> bool:
