@@ -12,6 +12,7 @@ from omegadot.diagnosis.equations.evidence import INVERSE
 from omegadot.diagnosis.equations.held import Scene, Scenes
 from omegadot.diagnosis.equations.known import known_over
 from omegadot.diagnosis.equations.left_over import LeftOver
+from omegadot.diagnosis.equations.near_inertia import near_inertia
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
 from omegadot.diagnosis.equations.worded import Named, named, on_some
 
@@ -26,6 +27,7 @@ class Across:
         self._left_over = LeftOver()
         self._named: dict[tuple[str, str], Named] = {}
         self._known: dict[str, str] = {}
+        self._near: dict[str, str] = {}
 
     @property
     def scenes(self) -> dict[str, Scene]:
@@ -39,7 +41,7 @@ class Across:
         self._at_states.add(scene)
         self._left_over.add(scene)
         self._carried = Carried(self._all)
-        self._named, self._known = {}, {}
+        self._named, self._known, self._near = {}, {}, {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -96,10 +98,15 @@ class Across:
 
     def _of(self, scene: Scene, source: str) -> Named:
         """What is quickly found first, then what other scenarios have, then all that is known."""
-        found = Named(self.left_over(scene.name, source))
-        found = found if found.text else self._shared(scene, source, PLAIN)
-        if found.text:
+        kept = self.left_over(scene.name, source)
+        if kept:
+            return Named(kept)
+        found = self._shared(scene, source, PLAIN)
+        if found.text and self._wrong(source) <= found.names:
             return found
+        near = Named(self._near_inertia(source))  # one rule of all that is wrong
+        if near.text or found.text:
+            return near if near.text else found
         found = on_some(self._searched.quick(scene, source, PLAIN).partial)
         found = found if found.text else Named(self._at_states.cause(scene, source))
         if found.text:
@@ -119,6 +126,17 @@ class Across:
         Between two that fit one scenario those decide that distinguish them.
         """
         return named(self._searched.best(scene, source, depth), source, self._all)
+
+    def _wrong(self, source: str) -> set[str]:
+        """The scenarios that have to be explained."""
+        every = ((s.name, s.evidence.get(source)) for s in self.scenes.values())
+        return {name for name, evidence in every if evidence is not None and evidence.clear}
+
+    def _near_inertia(self, source: str) -> str:
+        """A rule of the inertia's numbers that makes all that is wrong."""
+        if source not in self._near:
+            self._near[source] = near_inertia(self._all.evidence(source))
+        return self._near[source]
 
     def _by_formula(self, scene: Scene, source: str) -> Named:
         """A product of known vectors that explains the whole run."""
