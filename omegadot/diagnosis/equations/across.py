@@ -10,7 +10,7 @@ from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.carried import Carried
 from omegadot.diagnosis.equations.evidence import INVERSE
 from omegadot.diagnosis.equations.held import Scene, Scenes
-from omegadot.diagnosis.equations.known import known_over
+from omegadot.diagnosis.equations.known import kinds_off, known_over
 from omegadot.diagnosis.equations.left_over import LeftOver
 from omegadot.diagnosis.equations.near_inertia import near_inertia
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
@@ -26,7 +26,7 @@ class Across:
         self._at_states, self._carried = AtSomeStates(self._all), Carried(self._all)
         self._left_over = LeftOver()
         self._named: dict[tuple[str, str], Named] = {}
-        self._known: dict[str, str] = {}
+        self._known: dict[tuple[str, tuple[str, ...]], str] = {}
         self._near: dict[str, str] = {}
 
     @property
@@ -70,14 +70,15 @@ class Across:
         """What is seen of the scenarios on which nothing fits; "" on one that is hardly off."""
         if not self.scenes[name].evidence[source].clear:
             return ""
-        if source not in self._known:
+        kinds = kinds_off(self.scenes[name], source)
+        if (source, kinds) not in self._known:
             every = [s for s in self.scenes.values() if source in s.evidence]
             off = [s for s in every if s.evidence[source].clear and not self.cause(s.name, source)]
             right = [s.features for s in every if np.all(s.evidence[source].sound)]
             along = self._formulas.along(source)
             with np.errstate(all="ignore"):
-                self._known[source] = known_over(off, right, source, along)
-        return self._known[source]
+                self._known[source, kinds] = known_over(off, right, source, along, kinds)
+        return self._known[source, kinds]
 
     def of_inverse_dynamics(self, name: str) -> str:
         """The formula of a wrong torque; "" where none holds on the whole run."""
