@@ -116,6 +116,9 @@ class CaseCauses:
                 right = right and not any(map(any, failing))  # on any scenario of the run
                 return [f"{one}{ALONE * right}" for one in found]
         if ("equation", "residual_reloaded") in failed:
+            kept = across.left_over(self._case.name, RELOADED)
+            if kept:
+                return [kept]
             found = equation_causes(across, self._case.name, RELOADED)
             return [f"{AFTER_ANOTHER}: {one}" for one in found] or [AFTER_ANOTHER]
         if ("equation", siblings.METRIC) in failed:

@@ -17,6 +17,7 @@ from omegadot.gates.case import Case, Sweep
 from omegadot.gates.runs.repeats import How
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.steps.probe import Probe
+from omegadot.harness.loaded_before import LoadedBefore, Loads
 from omegadot.harness.plan import Engine
 from omegadot.reference_impl.system import State, System
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
@@ -26,6 +27,7 @@ MOST_TIMEOUTS_IN_A_ROW = 3
 # Outcomes of loading a scenario that deserve a second attempt; the others would come again.
 MAY_PASS = {"crashed", "timeout", "interrupted"}
 INTERRUPTED = Answer("interrupted", "the run was interrupted before this task")
+RELOADED = "reloaded"
 LACKING = Answer("unsupported", "the engine offers no such call")
 
 
@@ -44,6 +46,8 @@ class CaseResult:
     reloaded: forward dynamics after another system was loaded in between.  again: the beginnings
     of runs that were requested again, by integrator, step, and how (see `gates.repeats`).
     via: the format of the file by which the body went in; "" for the engine's API.
+    before: what had been loaded before the case (""), before each sibling, by what was changed, and
+    before the case was loaded again (RELOADED).
     """
 
     integrators: tuple[Integrator, ...] = ()
@@ -62,6 +66,7 @@ class CaseResult:
     again: dict[tuple[str, float, How], Answer] = field(default_factory=dict)
     precision: str = "float64"
     via: str = ""
+    before: dict[str, LoadedBefore] = field(default_factory=dict)
 
     def first_failure(self) -> Answer | None:
         """The first answer besides the runs that failed; unsupported parts are no failure."""
@@ -95,6 +100,7 @@ class Driver:
         self._in_turn, self._stopping = in_turn, stopping
         self._timeouts_in_a_row = 0
         self._loaded: Case | None = None
+        self._loads = Loads()
         self._tried: set[str] = set()
         self._refused: dict[str, Answer] = {}
         self._declared: tuple[Integrator, ...] = ()
@@ -117,6 +123,7 @@ class Driver:
         if case.name in self._refused:
             return self._refused[case.name]
         if not self.worker.started:
+            self._loads = Loads()
             started = self._send(self.worker.start)
             if not started.ok:
                 return started
@@ -125,11 +132,17 @@ class Driver:
         answer = self._send(partial(self.worker.request, "load", system=case.system))
         self._loaded = case if answer.ok else None
         if answer.ok:
+            self._loads.add(case.system)
             self._declared = description_of(answer.result).integrators
         elif answer.outcome not in MAY_PASS or case.name in self._tried:
             self._refused[case.name] = answer
         self._tried.add(case.name)
         return answer
+
+    @property
+    def before(self) -> LoadedBefore:
+        """What the worker had been loaded with before the system that it has now."""
+        return self._loads.before
 
     def integrators(self) -> tuple[Integrator, ...]:
         """The integrators to run, as declared for the system that was loaded last."""
@@ -170,6 +183,7 @@ class Driver:
         features = self.engine.description.features
         first, before = evaluation_states.random[0], evaluation_states.random[1]
         result.model = self.request(case, "model", state=first, before=before)
+        result.before[""] = self.before
         result.integrators = self.integrators()
         result.forward = result.path = result.inverse = LACKING
         states, acceleration = evaluation_states.random, evaluation_states.acceleration

@@ -141,7 +141,8 @@ def test_where_nothing_acts_nothing_may_move() -> None:
     ]
     moving = Acceleration(np.full((1, 3), 1e-300), np.zeros((1, 3)))
     row = forward_rows(system, still, moving, "residual")[0]
-    assert (row.value, row.verdict) == (np.inf, "fail")
+    assert (row.unit, row.bound, row.verdict) == ("rad/s^2", 0.0, "fail")
+    assert row.value == pytest.approx(np.sqrt(3.0) * 1e-300)
 
 
 def test_random_states_are_about_the_scenarios_own() -> None:

@@ -10,7 +10,9 @@ from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.carried import Carried
 from omegadot.diagnosis.equations.evidence import INVERSE
 from omegadot.diagnosis.equations.held import Scene, Scenes
-from omegadot.diagnosis.equations.known import known_over
+from omegadot.diagnosis.equations.known import kinds_off, known_over
+from omegadot.diagnosis.equations.left_over import LeftOver
+from omegadot.diagnosis.equations.near_inertia import near_inertia
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
 from omegadot.diagnosis.equations.worded import Named, named, on_some
 
@@ -22,8 +24,10 @@ class Across:
         self._all = Scenes()
         self._searched, self._formulas = Searched(self._all), Formulas(self._all)
         self._at_states, self._carried = AtSomeStates(self._all), Carried(self._all)
+        self._left_over = LeftOver()
         self._named: dict[tuple[str, str], Named] = {}
-        self._known: dict[str, str] = {}
+        self._known: dict[tuple[str, tuple[str, ...]], str] = {}
+        self._near: dict[str, str] = {}
 
     @property
     def scenes(self) -> dict[str, Scene]:
@@ -35,8 +39,9 @@ class Across:
         self._searched.add(scene)
         self._formulas.add()
         self._at_states.add(scene)
+        self._left_over.add(scene)
         self._carried = Carried(self._all)
-        self._named, self._known = {}, {}
+        self._named, self._known, self._near = {}, {}, {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -50,6 +55,10 @@ class Across:
         """The scenarios that `chosen` explains."""
         return {*self._cause(name, source).names, name}
 
+    def left_over(self, name: str, source: str) -> str:
+        """What is kept of a system that was loaded before, where it makes all that is wrong."""
+        return self._left_over.cause(name, source)
+
     def plain(self, name: str, source: str) -> str:
         """A cause on one scenario that is quickly found; "" where none fits that holds on all."""
         scene = self.scenes[name]
@@ -61,14 +70,15 @@ class Across:
         """What is seen of the scenarios on which nothing fits; "" on one that is hardly off."""
         if not self.scenes[name].evidence[source].clear:
             return ""
-        if source not in self._known:
+        kinds = kinds_off(self.scenes[name], source)
+        if (source, kinds) not in self._known:
             every = [s for s in self.scenes.values() if source in s.evidence]
             off = [s for s in every if s.evidence[source].clear and not self.cause(s.name, source)]
             right = [s.features for s in every if np.all(s.evidence[source].sound)]
             along = self._formulas.along(source)
             with np.errstate(all="ignore"):
-                self._known[source] = known_over(off, right, source, along)
-        return self._known[source]
+                self._known[source, kinds] = known_over(off, right, source, along, kinds)
+        return self._known[source, kinds]
 
     def of_inverse_dynamics(self, name: str) -> str:
         """The formula of a wrong torque; "" where none holds on the whole run."""
@@ -89,9 +99,15 @@ class Across:
 
     def _of(self, scene: Scene, source: str) -> Named:
         """What is quickly found first, then what other scenarios have, then all that is known."""
+        kept = self.left_over(scene.name, source)
+        if kept:
+            return Named(kept)
         found = self._shared(scene, source, PLAIN)
-        if found.text:
+        if found.text and self._wrong(source) <= found.names:
             return found
+        near = Named(self._near_inertia(source))  # one rule of all that is wrong
+        if near.text or found.text:
+            return near if near.text else found
         found = on_some(self._searched.quick(scene, source, PLAIN).partial)
         found = found if found.text else Named(self._at_states.cause(scene, source))
         if found.text:
@@ -111,6 +127,17 @@ class Across:
         Between two that fit one scenario those decide that distinguish them.
         """
         return named(self._searched.best(scene, source, depth), source, self._all)
+
+    def _wrong(self, source: str) -> set[str]:
+        """The scenarios that have to be explained."""
+        every = ((s.name, s.evidence.get(source)) for s in self.scenes.values())
+        return {name for name, evidence in every if evidence is not None and evidence.clear}
+
+    def _near_inertia(self, source: str) -> str:
+        """A rule of the inertia's numbers that makes all that is wrong."""
+        if source not in self._near:
+            self._near[source] = near_inertia(self._all.evidence(source))
+        return self._near[source]
 
     def _by_formula(self, scene: Scene, source: str) -> Named:
         """A product of known vectors that explains the whole run."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,26 +18,57 @@ CLEAR_OF_ROUNDING = 1.0 / CLEAN  # in bounds, which are of many more roundings t
 LEAST = 4  # states
 
 
-Powers = dict[str, float]
+LEAST_SCENARIOS = 3  # that show a power law: one size doubled is no more than two points
+
+# By what is doubled: the exponent, and on how many scenarios it is seen.
+Powers = dict[str, tuple[float, int]]
 
 
 def dependence(evidence: Evidence, scaled: Mapping[str, Evidence]) -> str:
     """Of one scenario, as text; "" where nothing is known."""
     kind = "angular" if np.any(_clear(_first(evidence), "angular")) else "linear"
-    found = powers_of(evidence, scaled, kind)
-    return dependence_text({what: p for what, p in found.items() if p is not None})
+    return dependence_text(powers_over([powers_of(evidence, scaled, kind)]))
 
 
-def dependence_text(powers: Powers) -> str:
-    """``it goes as |omega|^2 and as the mass; it does not depend on the damping``."""
+def powers_over(every: Sequence[Mapping[str, float | None]]) -> Powers:
+    """Exponents that no scenario contradicts; what one cannot show is left to the others."""
+    found = dict[str, list[float | None]]()
+    for one in every:
+        for name, power in one.items():
+            found.setdefault(name, []).append(power)
+    return {
+        name: (values[0], len(values))
+        for name, values in found.items()
+        if values[0] is not None and len(set(values)) == 1
+    }
+
+
+def dependence_text(powers: Powers, it: str = "it") -> str:
+    """``it goes as |omega|^2 and as the mass; it does not depend on the damping``.
+
+    Of fewer scenarios than three, what is seen: ``twice |omega| makes it 4 times as large``.
+    """
     grows = [
-        f"as {what}" if power == 1.0 else f"as {what}^{number(float(f'{power:.3g}'))}"
-        for what, power in powers.items()
-        if power
+        f"as {what}" if power == 1.0 else f"as {what}^{_number(power)}"
+        for what, (power, count) in powers.items()
+        if power and count >= LEAST_SCENARIOS
     ]
-    same = [what for what, power in powers.items() if not power]
-    parts = [f"it goes {listed(grows)}"] if grows else []
-    return ", and ".join([*parts, *([f"it does not depend on {listed(same)}"] if same else [])])
+    seen = [
+        f"twice {what} makes {it} {_number(TWICE**power)} times as large"
+        for what, (power, count) in powers.items()
+        if power and count < LEAST_SCENARIOS
+    ]
+    same = [w for w, (p, count) in powers.items() if not p and count >= LEAST_SCENARIOS]
+    still = [w for w, (p, count) in powers.items() if not p and count < LEAST_SCENARIOS]
+    parts = [f"{it} goes {listed(grows)}"] if grows else []
+    parts += [f"{it} does not depend on {listed(same)}"] if same else []
+    parts += seen
+    parts += [f"{it} is the same with twice {listed(still)}"] if still else []
+    return ", and ".join(parts)
+
+
+def _number(value: float) -> str:
+    return number(float(f"{value:.3g}"))
 
 
 def powers_of(

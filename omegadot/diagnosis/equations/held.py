@@ -13,6 +13,7 @@ from omegadot.diagnosis.equations.families import THREE_NUMBERS, Family
 from omegadot.diagnosis.equations.tried import Tried
 from omegadot.diagnosis.wording.features import Features, in_common
 from omegadot.diagnosis.wording.laws import law_of, power_laws
+from omegadot.harness.loaded_before import LoadedBefore
 from omegadot.reference_impl.system import Array, Body, System
 
 PRECISE = 1e-5  # relative: what a number must be known to
@@ -36,7 +37,8 @@ class Scene:
     """What is kept of one scenario.
 
     evidence: by where it comes from.  held: the body read back.  scaled: of forward dynamics, by
-    what was doubled.
+    what was doubled.  before: what the engine had been loaded with, by source where that is another
+    than of all else (""); nothing where it is unknown.
     """
 
     name: str
@@ -45,6 +47,11 @@ class Scene:
     evidence: dict[str, Evidence]
     held: Body | None = None
     scaled: Mapping[str, Evidence] = field(default_factory=dict)
+    before: Mapping[str, LoadedBefore] = field(default_factory=dict)
+
+    def loaded_before(self, source: str) -> LoadedBefore | None:
+        """What had been loaded before the answers of a source; None where it is unknown."""
+        return self.before.get(source, self.before.get(""))
 
 
 @dataclass

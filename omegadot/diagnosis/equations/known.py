@@ -2,74 +2,77 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import comb
 
-from omegadot.diagnosis.equations.dependence import Powers, dependence_text, powers_of
-from omegadot.diagnosis.equations.describe import Off, off_of, off_text
+import numpy as np
+
+from omegadot.diagnosis.equations.dependence import dependence_text, powers_of, powers_over
+from omegadot.diagnosis.equations.describe import Off, off_of, off_over, off_text
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.wording.features import Features, in_common, ways_of
+from omegadot.gates.bounds.scales import norm
 
+ANGULAR, LINEAR = KINDS = ("omega-dot", "the linear acceleration")
+ATTRIBUTES = {ANGULAR: "angular", LINEAR: "linear"}
 OF_THE_STATE = ("|omega|", "the speed", "the place")
 
 
 def known_over(
-    scenes: Sequence[Scene], passing: Sequence[Features], source: str, along: str
+    scenes: Sequence[Scene],
+    passing: Sequence[Features],
+    source: str,
+    along: str,
+    kinds: Sequence[str] = KINDS,
 ) -> str:
     """Of the scenarios on which nothing fits; a fact that one of them contradicts is left out.
 
     passing: of the scenarios that are right.  along: a vector that all of it is along; "" if none.
+    kinds: of what is off, those to be stated.
     """
-    parts = [(scene, scene.evidence[source]) for scene in scenes]
+    seen = {kind: _seen(scenes, source, kind) for kind in kinds}
+    seen = {kind: parts for kind, parts in seen.items() if parts}
     texts = list[str]()
-    angular = _over([off for _, e in parts if (off := off_of(e, "angular")) is not None])
-    free = [(s, e) for s, e in parts if s.system.load.pivot is None or angular is None]
-    linear = _over([off for _, e in free if (off := off_of(e, "linear")) is not None])
-    if angular is not None:
-        texts.append(off_text("omega-dot", angular, along))
-    if linear is not None:
-        texts.append(off_text("the linear acceleration", linear))
-    if texts and source == "forward":
-        kind = "angular" if angular is not None else "linear"
-        powers = _powers_over([powers_of(e, s.scaled, kind) for s, e in parts if s.scaled])
-        texts.append(_goes(powers, angular or linear, [e for _, e in parts]))
+    for kind, parts in seen.items():
+        off = off_over([one for _, _, one in parts])
+        assert off is not None
+        texts.append(off_text(kind, off, along if kind == ANGULAR else ""))
+    for kind, parts in seen.items() if source == "forward" else ():
+        off = off_over([one for _, _, one in parts])
+        it = "it" if len(seen) == 1 else f"what {kind} is off by"
+        texts.append(_goes([(s, e) for s, e, _ in parts], off, ATTRIBUTES[kind], it))
     texts.append(scenarios_in_common([s.features for s in scenes], passing))
     return "; ".join(text for text in texts if text)
 
 
-def _goes(powers: Powers, off: Off | None, every: Sequence[Evidence]) -> str:
+def kinds_off(scene: Scene, source: str) -> tuple[str, ...]:
+    """What is off on one scenario; of a pivoted body the linear acceleration follows omega-dot."""
+    found = scene.evidence[source]
+    shares = {
+        ANGULAR: (norm(found.found.angular - found.true.angular), found.angular_bound),
+        LINEAR: (norm(found.found.linear - found.true.linear), found.linear_bound),
+    }
+    off = tuple(kind for kind, (apart, bound) in shares.items() if not np.all(apart <= bound))
+    return off[:1] if scene.system.load.pivot is not None else off
+
+
+def _seen(scenes: Sequence[Scene], source: str, kind: str) -> list[tuple[Scene, Evidence, Off]]:
+    """The scenarios on which enough is seen of a kind."""
+    parts = [(s, s.evidence[source]) for s in scenes if kind in kinds_off(s, source)]
+    return [(s, e, off) for s, e in parts if (off := off_of(e, ATTRIBUTES[kind])) is not None]
+
+
+def _goes(parts: Sequence[tuple[Scene, Evidence]], off: Off | None, kind: str, it: str) -> str:
     """On what it depends. What changes with the state may still change with the attitude alone."""
-    free = any(e.system.load.pivot is None for e in every)
+    powers = powers_over([powers_of(e, s.scaled, kind) for s, e in parts if s.scaled])
+    free = any(e.system.load.pivot is None for _, e in parts)
     moves = OF_THE_STATE if free else OF_THE_STATE[:1]  # a pivoted body's place is its attitude's
-    alone = off is not None and off.turns and all(powers.get(what) == 0.0 for what in moves)
+    still = all(powers.get(what, (1.0, 0))[0] == 0.0 for what in moves)
+    alone = off is not None and off.turns and still
     rest = {k: v for k, v in powers.items() if not (alone and k in OF_THE_STATE)}
-    texts = ["nothing else of the state than the attitude is seen to change it"] if alone else []
-    return "; ".join(text for text in (*texts, dependence_text(rest)) if text)
-
-
-def _over(every: Sequence[Off]) -> Off | None:
-    """What holds wherever something is seen."""
-    if not every:
-        return None
-    powers = {one.power for one in every if one.power is not None}
-    return Off(
-        frozenset().union(*(one.axes for one in every)),
-        frozenset.intersection(*(one.along for one in every)),
-        powers.pop() if len(powers) == 1 else None,
-        max(one.share for one in every),
-        all(one.turns for one in every),
-    )
-
-
-def _powers_over(every: Sequence[Mapping[str, float | None]]) -> Powers:
-    """Exponents that no scenario contradicts; what one cannot show is left to the others."""
-    found = dict[str, set[float | None]]()
-    for one in every:
-        for name, power in one.items():
-            found.setdefault(name, set()).add(power)
-    only = {name: next(iter(values)) for name, values in found.items() if len(values) == 1}
-    return {name: power for name, power in only.items() if power is not None}
+    texts = [f"nothing else of the state than the attitude is seen to change {it}"] * alone
+    return "; ".join(text for text in (*texts, dependence_text(rest, it)) if text)
 
 
 def scenarios_in_common(failing: Sequence[Features], passing: Sequence[Features]) -> str:

@@ -44,7 +44,9 @@ class Siblings:
                 found, eps = Acceleration(**answer.result), eps_of(result.precision)
                 evidence = {FORWARD: of_forward_dynamics(system, states, found, eps)}
                 features = features_of(system, case.initial)
-                self._across.add(Scene(_name(case, what), system, features, evidence))
+                before = {"": result.before[what]} if what in result.before else {}
+                one = Scene(_name(case, what), system, features, evidence, before=before)
+                self._across.add(one)
 
     def causes(self, case: Case) -> list[str]:
         """A wrong equation that shows in the siblings alone, what is left over, or either."""
@@ -53,14 +55,17 @@ class Siblings:
             scene = self._across.scenes.get(_name(case, what))
             if scene is not None and not np.all((one := scene.evidence[FORWARD]).sound):
                 failing[what] = one.fits(forward_dynamics(case.system, one.states))
+        known = {self._across.left_over(_name(case, what), FORWARD) for what in failing}
+        if len(known) == 1 and "" not in known:
+            return list(known)
         texts = [self._across.plain(_name(case, what), FORWARD) for what in failing]
         found = list(dict.fromkeys(filter(None, texts)))
         kept = all(failing.values())  # also where numbers that differ slightly are wrong alone
-        if kept and all(self._right_with_others(what) for what in failing):
-            return [AFTER_ANOTHER]
+        named = listed([what.replace("_", " ").replace("center", "centre") for what in failing])
+        if failing and kept and all(self._right_with_others(what) for what in failing):
+            return [f"{AFTER_ANOTHER}: its {named}"]
         if len(found) == 1 and all(texts):
             return [f"either {found[0]}, or {AFTER_ANOTHER}" if kept else found[0]]
-        named = listed([what.replace("_", " ") for what in failing])
         return [f"either forward dynamics are wrong with another {named}, or {AFTER_ANOTHER}"]
 
     def _right_with_others(self, what: str) -> bool:

@@ -25,6 +25,7 @@ from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, eps_of, norm, torque_size
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import EvaluationStates
+from omegadot.harness import drive
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
@@ -66,7 +67,8 @@ def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult
         if a.ok
     }
     features = features_of(case.system, case.initial)
-    return Scene(case.name, case.system, features, evidence, held, scaled)
+    before = {{drive.RELOADED: RELOADED}.get(k, k): v for k, v in result.before.items()}
+    return Scene(case.name, case.system, features, evidence, held, scaled, before)
 
 
 def equation_causes(across: Across, name: str, source: str) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Array, Body, Load, System
 
-DECIMALS, SMALL = range(1, 8), range(1, 7)
+DECIMALS, SMALL, DIGITS = range(1, 8), range(1, 7), range(2, 6)
 SPHERE = "the inertia is that of a sphere with the same trace"
 UNIT = "the inertia is the unit matrix"
 
@@ -88,12 +88,34 @@ def _tensors(system: System, mass: float) -> dict[str, Array]:
         kept = np.abs(tensor) >= 10.0**-power * np.trace(tensor)
         text = f"what is smaller than 1e-{power} of the trace is dropped from the inertia"
         found[text] = np.where(kept, tensor, 0.0)
+    for digits in DIGITS:
+        found[f"the inertia is rounded to {digits} digits"] = _of_digits(tensor, digits)
+    found.update(_replaced_moments(tensor))
     found["the inertia is divided by the mass"] = tensor / mass
     found["the inertia is multiplied by the mass"] = tensor * mass
     if np.any(body.center_of_mass):
         less = tensor - parallel_axis(mass, body.center_of_mass)
         found["the inertia is moved from the origin to the centre of mass once too often"] = less
     return found
+
+
+def _of_digits(tensor: Array, digits: int) -> Array:
+    return np.array([float(f"{x:.{digits - 1}e}") for x in tensor.ravel()]).reshape(3, 3)
+
+
+def _replaced_moments(tensor: Array) -> Iterator[tuple[str, Array]]:
+    """One number on the diagonal in the place of another, or two that are both their mean."""
+    kept = np.diag(tensor)
+    for i, j in permutations(range(3), 2):
+        other = kept.copy()
+        other[i] = kept[j]
+        text = f"the moment of inertia {2 * 'xyz'[i]} is that of {2 * 'xyz'[j]}"
+        yield text, tensor + np.diag(other - kept)
+        if i < j:
+            other = kept.copy()
+            other[[i, j]] = 0.5 * (kept[i] + kept[j])
+            text = f"the moments of inertia {2 * 'xyz'[i]} and {2 * 'xyz'[j]} are both their mean"
+            yield text, tensor + np.diag(other - kept)
 
 
 def mistaken_inertias(body: Body, system: System) -> Iterator[tuple[str, Array]]:

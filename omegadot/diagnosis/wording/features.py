@@ -13,8 +13,9 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.system import State, System
 
-# How unlikely chance must be to sort the scenarios so: one in so many ways to sort them.
-SORTED_BY_KIND, SORTED_BY_SIZE = 6, 200
+# How unlikely chance must be to sort the scenarios so: one in so many ways to sort them. A kind is
+# likely by itself; of a size the limit may lie anywhere, and every size is tried from both sides.
+SORTED_BY_KIND, ODDS = 6, 20
 FOLLOWS = {
     "the body is pivoted": ("the pivot lies off the origin", "the body does not move at the start"),
     "the body is free": ("the pivot lies at the origin", "the body moves at the start"),
@@ -91,7 +92,7 @@ def ways_of(scenarios: Sequence[Features]) -> int:
 
     Every kind, or its opposite, and every size, above or below a limit, is one.
     """
-    return 20 * sum(2 * len(one.kinds) + 2 * len(one.sizes) for one in scenarios[:1])
+    return ODDS * sum(2 * len(one.kinds) + 2 * len(one.sizes) for one in scenarios[:1])
 
 
 def in_common(shown: Sequence[Features], others: Sequence[Features]) -> list[str]:
@@ -110,7 +111,7 @@ def in_common(shown: Sequence[Features], others: Sequence[Features]) -> list[str
                 found.append(text)
             elif here == {False} and there == {True}:
                 found.append(_negated(text))
-    if found or ways < SORTED_BY_SIZE:
+    if found or ways < ODDS * 2 * len(shown[0].sizes):
         return _plainest(found)
     for name, (_, unit) in shown[0].sizes.items():
         low, high = ([one.sizes[name][0] for one in group] for group in (others, shown))

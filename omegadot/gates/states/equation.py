@@ -115,15 +115,24 @@ def _apart(found: Array, true: Array) -> Array:
     return length
 
 
+UNITS = {"omega_dot": "rad/s^2", "linear_momentum": "m/s^2", "torque": "N m"}
+
+
 def _row(channel: str, metric: str, residual: Array, size: Array, bound: float) -> Row:
     """The state with the largest residual, relative to `size`, against its bound.
 
-    Where the size is zero there is nothing to be wrong about: any residual there is infinite.
+    Where the size is zero there is nothing to be wrong about: any residual there is too large. The
+    largest such one stands as it is, in the channel's own unit.
     """
+    note = NOTES.get(metric, "")
+    if not np.all(np.isfinite(residual)):
+        return within(GATE, channel, metric, float("nan"), "1", bound, note)
+    undue = residual[(size == 0.0) & (residual > 0.0)]
+    if len(undue):
+        return within(GATE, channel, metric, float(np.max(undue)), UNITS[channel], 0.0, note)
     with np.errstate(divide="ignore", invalid="ignore"):
         value = np.where(residual == 0.0, 0.0, residual / size)
-    largest = float(np.max(value)) if np.all(np.isfinite(residual)) else float("nan")
-    return within(GATE, channel, metric, largest, "1", bound, NOTES.get(metric, ""))
+    return within(GATE, channel, metric, float(np.max(value)), "1", bound, note)
 
 
 def forward_rows(

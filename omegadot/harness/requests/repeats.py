@@ -14,7 +14,7 @@ from omegadot.gates.runs.repeats import How
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
-from omegadot.harness.drive import CaseResult, Driver
+from omegadot.harness.drive import RELOADED, CaseResult, Driver
 from omegadot.harness.requests.scaled import request_scaled
 from omegadot.harness.requests.siblings import request_siblings
 from omegadot.reference_impl.schemes import SCHEMES
@@ -95,6 +95,7 @@ def request_again(
         return
     if "forward_dynamics" in driver.engine.description.features:
         result.reloaded = driver.request(case, "forward", states=evaluation_states.random)
+        result.before[RELOADED] = driver.before
     for integrator in steppers:
         replay(integrator, "reloaded", case.initial)
 

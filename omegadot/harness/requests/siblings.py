@@ -74,6 +74,7 @@ def request_siblings(
     for what, other in siblings_of(case):
         states = place_on_pivot(other.system, evaluation_states.random[:STATES])
         answer = driver.request(other, "forward", states=states)
+        result.before[what] = driver.before
         result.siblings[what] = (other.system, states, answer)
 
 

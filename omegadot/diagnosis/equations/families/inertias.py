@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.evidence import Evidence
-from omegadot.diagnosis.equations.families.family import Family, driven, with_body
+from omegadot.diagnosis.equations.families.family import Family, with_body
+from omegadot.diagnosis.equations.families.six_numbers import (
+    ALIKE_BY_PARTS,
+    BASIS,
+    six,
+    tensor_of,
+    torque_free,
+)
 from omegadot.diagnosis.wording.digits import number, vector
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
@@ -18,15 +25,20 @@ from omegadot.reference_impl.loads import torque
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, System
 
-ALIKE = 1e-6  # of the inertia: as well as its fitted numbers are known
 
-
-def _least(name: str, held: Callable[[Array, float], Array], what: str) -> Family:
+def _least(
+    name: str,
+    held: Callable[[Array, float], Array],
+    what: str,
+    where: str,
+    parts: tuple[str, ...],
+) -> Family:
     """A least value of the moments, or of the diagonal."""
 
     def form(right: Form, system: System, p: Array) -> Form:
         tensor = held(np.asarray(system.body.inertia, dtype=float), float(p[0]))
-        return form_of(with_body(system, inertia=tensor))
+        other = form_of(with_body(system, inertia=tensor))
+        return replace(right, **{part: getattr(other, part) for part in parts})
 
     def starts(system: System) -> list[Array]:
         values = np.sort(np.linalg.eigvalsh(np.asarray(system.body.inertia, dtype=float)))
@@ -34,7 +46,7 @@ def _least(name: str, held: Callable[[Array, float], Array], what: str) -> Famil
         return [np.array([value]) for value in (*middle, 2.0 * values[-1])]
 
     def text(system: System, p: Array) -> str:
-        return f"{what} is held above {number(float(p[0]))} kg m^2"
+        return f"{where}{what} is held above {number(float(p[0]))} kg m^2"
 
     return Family(name, "inertia", starts, form, text, lambda s: np.array([0.0]), "kg m^2")
 
@@ -49,28 +61,18 @@ def _least_diagonal(tensor: Array, least: float) -> Array:
     return np.asarray(tensor + np.diag(np.maximum(kept, least) - kept))
 
 
-LEAST = (
-    _least("least moment", _least_moments, "every principal moment of inertia"),
-    _least("least diagonal", _least_diagonal, "the diagonal of the inertia"),
+LEAST = tuple(
+    _least(f"{name}{at}", held, what, where, parts)
+    for at, where, parts in (
+        ("", "in the dynamics, ", ("solve", "spin")),
+        (" in the solve", "where omega-dot is solved for, ", ("solve",)),
+        (" in the spin", "in the gyroscopic term, ", ("spin",)),
+    )
+    for name, held, what in (
+        ("least moment", _least_moments, "every principal moment of inertia"),
+        ("least diagonal", _least_diagonal, "the diagonal of the inertia"),
+    )
 )
-
-
-_I, _J = np.triu_indices(3)
-_BASIS = np.zeros((6, 3, 3))
-_BASIS[range(6), _I, _J] = _BASIS[range(6), _J, _I] = 1.0
-
-
-def _torque_free(system: System) -> bool:
-    load = system.load
-    return not (driven(system) or float(load.damping) or load.pivot is not None)
-
-
-def _six(tensor: Array) -> Array:
-    return np.asarray(tensor, dtype=float)[_I, _J]
-
-
-def _tensor(p: Array) -> Array:
-    return np.tensordot(p, _BASIS, 1)
 
 
 def _of_momentum_balance(evidence: Evidence) -> Array | None:
@@ -81,7 +83,7 @@ def _of_momentum_balance(evidence: Evidence) -> Array | None:
     system, states = evidence.system, evidence.states
     w, rate = states.angular_velocity, evidence.found.angular
     due = torque(system, states)
-    lines = np.stack([apply(b, rate) + cross(w, apply(b, w)) for b in _BASIS], axis=-1)
+    lines = np.stack([apply(b, rate) + cross(w, apply(b, w)) for b in BASIS], axis=-1)
     if not np.isfinite(lines).all():
         return None
     size = (norm(rate) + norm(w) ** 2)[:, None]
@@ -91,8 +93,8 @@ def _of_momentum_balance(evidence: Evidence) -> Array | None:
         found = np.linalg.lstsq(matrix, right, rcond=None)[0]
     else:
         found = np.linalg.svd(matrix, full_matrices=False)[2][-1]
-        found = found * float(np.trace(moving_inertia(system)) / np.trace(_tensor(found)))
-    good = np.all(np.isfinite(found)) and np.linalg.eigvalsh(_tensor(found))[0] > 0.0
+        found = found * float(np.trace(moving_inertia(system)) / np.trace(tensor_of(found)))
+    good = np.all(np.isfinite(found)) and np.linalg.eigvalsh(tensor_of(found))[0] > 0.0
     return found if good else None
 
 
@@ -118,59 +120,22 @@ def scale_of_inertia(evidence: Evidence) -> Array | None:
     return np.array([float(line @ right) / whole])
 
 
-def _alike(pairs: Sequence[tuple[System, Array]]) -> str:
-    """What is right of the tensors of all scenarios, or by what they all differ."""
-    tensors = [_next_to_requested(system, _tensor(p)) for system, p in pairs]
-
-    def all_are(same: Callable[[Array, Array], Array]) -> bool:
-        return all(
-            bool(np.all(np.abs(same(*pair)) <= ALIKE * np.linalg.norm(pair[0]))) for pair in tensors
-        )
-
-    off = ~np.eye(3, dtype=bool)
-    if all_are(lambda due, own: np.linalg.eigvalsh(own) - np.linalg.eigvalsh(due)):
-        return "its moments about the centre of mass are the requested ones, about other axes"
-    if all_are(lambda due, own: own - due - np.trace(own - due) / 3.0 * np.eye(3)):
-        return "every moment is off by the same amount"
-    if all_are(lambda due, own: (own - due)[off]):
-        return "its products are the requested ones"
-    if all_are(lambda due, own: np.diag(own - due)):
-        return "its diagonal is the requested one"
-    return ""
-
-
-def _next_to_requested(system: System, tensor: Array) -> tuple[Array, Array]:
-    """The requested tensor about the centre of mass and the engine's.
-
-    Without a torque it is known up to a factor, and the one that suits them is taken.
-    """
-    due = np.asarray(system.body.inertia, dtype=float)
-    if not _torque_free(system):
-        return due, tensor - (np.asarray(moving_inertia(system), dtype=float) - due)
-    ways = np.stack([tensor.ravel(), np.eye(3).ravel()], axis=-1)
-    factor, amount = np.linalg.lstsq(ways, due.ravel(), rcond=None)[0]
-    left = factor * tensor + amount * np.eye(3) - due
-    if np.all(np.abs(left) <= ALIKE * np.linalg.norm(due)):
-        return due, factor * tensor
-    return due, tensor * float(np.trace(due) / np.trace(tensor))
-
-
 def _inertia_family(name: str, where: str, parts: tuple[str, ...]) -> Family:
     def form(right: Form, system: System, p: Array) -> Form:
-        tensor = _tensor(p)
+        tensor = tensor_of(p)
         if not np.linalg.eigvalsh(tensor)[0] > 0.0:
             raise ValueError("no inertia of a body")
         made = {"solve": np.linalg.inv(tensor), "spin": tensor}
         return replace(right, **{one: made[one] for one in parts})
 
     def text(system: System, p: Array) -> str:
-        requested, tensor = np.asarray(moving_inertia(system), dtype=float), _tensor(p)
+        requested, tensor = np.asarray(moving_inertia(system), dtype=float), tensor_of(p)
         if parts == ("spin",):  # of which a part like the unit matrix makes no torque
             tensor = tensor + np.trace(requested - tensor) / 3.0 * np.eye(3)
         off = float(np.linalg.norm(tensor - requested, 2) / np.linalg.norm(requested, 2))
         rows = "; ".join(vector(row, own) for row, own in zip(tensor, requested, strict=True))
         about = "" if system.load.pivot is None else " about the pivot"
-        if _torque_free(system) and len(parts) > 1:
+        if torque_free(system) and len(parts) > 1:
             ratio = np.diag(requested) / np.diag(tensor)
             tensor = float(np.median(ratio)) * tensor
             off = float(np.linalg.norm(tensor - requested, 2) / np.linalg.norm(requested, 2))
@@ -181,13 +146,13 @@ def _inertia_family(name: str, where: str, parts: tuple[str, ...]) -> Family:
     return Family(
         name,
         "inertia",
-        lambda s: [_six(moving_inertia(s))],
+        lambda s: [six(moving_inertia(s))],
         form,
         text,
-        lambda s: _six(moving_inertia(s)),
+        lambda s: six(moving_inertia(s)),
         "kg m^2",
         guess=_of_momentum_balance if len(parts) > 1 else None,
-        alike=_alike if len(parts) > 1 else lambda pairs: "",
+        alike=ALIKE_BY_PARTS[parts],
     )
 
 

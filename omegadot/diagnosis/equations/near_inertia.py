@@ -1,0 +1,155 @@
+"""A rule by which nearly equal moments are taken as equal, or small products for none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from omegadot.diagnosis.equations.equation_form import Form, form_of
+from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.models.near_numbers import NEAR_RULES, SMALL_RULES, NearRule
+from omegadot.diagnosis.wording.digits import limits
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.system import Array, System
+
+SEVERAL = 2  # readings between which nothing decides are said as what they share
+
+
+@dataclass(frozen=True)
+class _Place:
+    """text: where the tensor is used.  parts: of the equation.  moving: the whole inertia is
+    changed, of a pivoted body that about the pivot.
+    """
+
+    text: str
+    parts: tuple[str, ...]
+    moving: bool
+
+
+PLACES = tuple(
+    _Place(text, parts, moving)
+    for moving in (False, True)
+    for text, parts in (
+        ("in the dynamics", ("solve", "spin")),
+        ("where omega-dot is solved for", ("solve",)),
+        ("in the gyroscopic term", ("spin",)),
+    )
+)
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """A rule at a place with the limits, in between which it is the engine's on every scenario."""
+
+    rule: NearRule
+    place: _Place
+    low: float
+    high: float
+
+
+def near_inertia(every: Sequence[Evidence]) -> str:
+    """What explains all that is wrong on all scenarios of one source; "" where nothing does."""
+    used = [e for e in every if e.finite]
+    wrong = [e for e in used if e.clear]
+    if not wrong:
+        return ""
+    found = list(_fits(used, wrong[0]))
+    if len({fit.place.text for fit in found}) != 1:
+        return ""
+    return _text(found) if len({fit.rule in SMALL_RULES for fit in found}) == 1 else ""
+
+
+def _fits(every: Sequence[Evidence], first: Evidence) -> Iterator[_Fit]:
+    for place in PLACES:
+        for rule in (*NEAR_RULES, *SMALL_RULES):
+            if not _fitting(first, place, rule, _between(_own(first, place, rule))).any():
+                continue
+            known = np.unique(np.concatenate([_own(e, place, rule) for e in every]))
+            tried = _between(known)
+            fits = np.ones(len(tried), dtype=bool)
+            for evidence in every:
+                fits &= _fitting(evidence, place, rule, tried)
+                if not fits.any():
+                    break
+            if fits.any():
+                first_, last = np.flatnonzero(fits)[[0, -1]]
+                yield _Fit(rule, place, *_around(known, tried[first_], tried[last]))
+
+
+def _own(evidence: Evidence, place: _Place, rule: NearRule) -> Array:
+    """The ratios of one system, of which none is no limit."""
+    found = rule.ratios(_requested(evidence.system, place))
+    return found[found > 0.0]
+
+
+def _between(known: Array) -> Array:
+    """One limit in each gap between the ratios, and one above them all; none below, which does
+    nothing.
+    """
+    known = np.unique(known)
+    if not len(known):
+        return known
+    return np.append(np.sqrt(known[:-1] * known[1:]), 2.0 * known[-1])
+
+
+def _around(known: Array, first: float, last: float) -> tuple[float, float]:
+    above = known[known > last]
+    return float(np.max(known[known < first])), float(np.min(above)) if len(above) else np.inf
+
+
+def _requested(system: System, place: _Place) -> Array:
+    return np.asarray(moving_inertia(system) if place.moving else system.body.inertia, dtype=float)
+
+
+def _fitting(evidence: Evidence, place: _Place, rule: NearRule, tried: Array) -> Array:
+    """(k,): at which of the limits tried the rule is the engine's."""
+    system = evidence.system
+    requested, right = _requested(system, place), form_of(system)
+    tensors = [rule.tensor(requested, float(limit)) for limit in tried]
+    distinct = list({t.tobytes(): t for t in tensors}.values())
+    forms = [_form(right, system, place, t) for t in distinct]
+    fits = {distinct[k].tobytes() for k in evidence.fitting(forms)}
+    return np.array([t.tobytes() in fits for t in tensors], dtype=bool)
+
+
+def _form(right: Form, system: System, place: _Place, tensor: Array) -> Form | None:
+    whole = np.asarray(moving_inertia(system), dtype=float)
+    made = tensor if place.moving else whole + tensor - np.asarray(system.body.inertia)
+    if not np.linalg.eigvalsh(made)[0] > 0.0:
+        return None
+    parts: dict[str, Callable[[], Array]] = {
+        "solve": lambda: np.linalg.inv(made),
+        "spin": lambda: made,
+    }
+    return replace(right, **{name: parts[name]() for name in place.parts})
+
+
+def _text(found: Sequence[_Fit]) -> str:
+    """The rule, or what several that nothing decides between share."""
+    low, high = max(fit.low for fit in found), min(fit.high for fit in found)
+    if not low < high:
+        return ""
+    whats = {fit.rule.what for fit in found}
+    what = whats.pop() if len(whats) == 1 else "moments of inertia"
+    moving = {fit.place.moving for fit in found} == {True}
+    about = " about the pivot" * moving
+    dones = {fit.rule.done for fit in found}
+    done = dones.pop() if len(dones) == 1 else found[0].rule.done.partition(":")[0]
+    small = found[0].rule in SMALL_RULES
+    if np.isfinite(high):
+        way = "are below" if small else "differ by less than"
+        limit = f"{way} a limit between {limits(*_rounded(low, high), '%')}"
+    else:  # nothing is seen of a limit
+        limit = f"{'are' if small else 'differ by'} {100.0 * low:.3g} % or less"
+    of = " of the largest number on its diagonal" * small
+    return f"{found[0].place.text}, {what}{about} that {limit}{of} are {done}"
+
+
+def _rounded(low: float, high: float) -> tuple[float, float]:
+    """Outwards, in percent: two digits are enough of what lies far apart."""
+    if high < 1.1 * low:
+        return 100.0 * low, 100.0 * high
+    down, up = (10.0 ** (np.floor(np.log10(x)) - 1) for x in (low, high))
+    return 100.0 * float(np.floor(low / down) * down), 100.0 * float(np.ceil(high / up) * up)

@@ -1,0 +1,105 @@
+"""Tensors of which numbers that are nearly equal, or nearly nothing, are taken to be so."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from omegadot.reference_impl.system import Array
+
+PAIRS = ((0, 1), (1, 2), (2, 0))
+WAYS: dict[str, tuple[str, Callable[[float, float], float]]] = {
+    "mean": ("each is their mean", lambda a, b: 0.5 * (a + b)),
+    "first": ("both are the first of the two", lambda a, b: a),
+    "second": ("both are the second of the two", lambda a, b: b),
+    "larger": ("both are the larger one", max),
+    "smaller": ("both are the smaller one", min),
+}
+
+
+@dataclass(frozen=True)
+class NearRule:
+    """What is done to a tensor below a limit, which is relative.
+
+    what: the numbers that are changed, as text.  done: what becomes of them, as text.  ratios: the
+    limits at which the result may change, (k,).  tensor: the result at a limit.
+    """
+
+    what: str
+    done: str
+    ratios: Callable[[Array], Array]
+    tensor: Callable[[Array, float], Array]
+
+
+def _ratio(a: float, b: float) -> float:
+    size = max(abs(a), abs(b))
+    return abs(a - b) / size if size > 0.0 else 0.0
+
+
+def _ratios(numbers: Array) -> Array:
+    """Of all pairs, and of what is left when one pair has been made equal."""
+    found = [_ratio(a, b) for a, b in combinations(numbers, 2)]
+    for i, j in combinations(range(3), 2):
+        k = 3 - i - j
+        for _, way in WAYS.values():
+            found.append(_ratio(way(numbers[i], numbers[j]), numbers[k]))
+    return np.array(found)
+
+
+def _merged(numbers: Array, limit: float, way: Callable[[float, float], float]) -> Array:
+    made = np.array(numbers, dtype=float)
+    for i, j in PAIRS:
+        if _ratio(made[i], made[j]) < limit:
+            made[i] = made[j] = way(float(made[i]), float(made[j]))
+    return made
+
+
+def _diagonal_rule(text: str, way: Callable[[float, float], float]) -> NearRule:
+    def tensor(requested: Array, limit: float) -> Array:
+        kept = np.diag(requested)
+        return np.asarray(requested + np.diag(_merged(kept, limit, way) - kept))
+
+    what = "numbers on the inertia's diagonal"
+    return NearRule(what, f"taken as equal: {text}", lambda t: _ratios(np.diag(t)), tensor)
+
+
+def _principal_rule(text: str, way: Callable[[float, float], float]) -> NearRule:
+    def tensor(requested: Array, limit: float) -> Array:
+        moments, axes = np.linalg.eigh(requested)
+        more = _merged(moments, limit, way) - moments  # added: of equal moments no axes are known
+        return np.asarray(requested + (axes * more) @ axes.T)
+
+    def ratios(requested: Array) -> Array:
+        return _ratios(np.linalg.eigvalsh(requested))
+
+    return NearRule("principal moments", f"taken as equal: {text}", ratios, tensor)
+
+
+def _products(requested: Array) -> Array:
+    """Each product over the largest number on the diagonal."""
+    largest = float(np.max(np.abs(np.diag(requested))))
+    return np.abs(requested[np.triu_indices(3, 1)]) / largest
+
+
+def _without_small(requested: Array, limit: float) -> Array:
+    largest = float(np.max(np.abs(np.diag(requested))))
+    kept = (np.abs(requested) >= limit * largest) | np.eye(3, dtype=bool)
+    return np.where(kept, requested, 0.0)
+
+
+def _without_all(requested: Array, limit: float) -> Array:
+    small = bool(np.max(_products(requested)) < limit)
+    return np.diag(np.diag(requested)) if small else requested
+
+
+NEAR_RULES = (
+    *(_diagonal_rule(*way) for way in WAYS.values()),
+    *(_principal_rule(*WAYS[name]) for name in ("mean", "larger", "smaller")),
+)
+SMALL_RULES = (
+    NearRule("products of inertia", "dropped: each by itself", _products, _without_small),
+    NearRule("products of inertia", "dropped: where all are so small", _products, _without_all),
+)

@@ -1,0 +1,185 @@
+"""Something of a system loaded before is kept: which quantity, and when, over several scenarios."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from wrong_equations import CASES, GRAVITY, case
+
+from omegadot.adapters.reference import ReferenceAdapter
+from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.evidence import of_forward_dynamics
+from omegadot.diagnosis.equations.held import Scene
+from omegadot.diagnosis.equations.wrong_equation import (
+    FORWARD,
+    RELOADED,
+    equation_causes,
+)
+from omegadot.diagnosis.wording.features import features_of
+from omegadot.gates.case import Case
+from omegadot.gates.states.equation import random_states
+from omegadot.harness.in_process import driver_of
+from omegadot.harness.loaded_before import Loads
+from omegadot.harness.requests.repeats import OTHERS
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.system import Acceleration, State, System
+
+# What an engine answers at states of the systems that it was loaded with, the last one last.
+Engine = Callable[[Sequence[System], State], Acceleration]
+
+
+def of_load(take: Callable[[Sequence[Any]], dict[str, Any]]) -> Engine:
+    """An engine of which the load is another, made from all loads so far."""
+
+    def engine(systems: Sequence[System], states: State) -> Acceleration:
+        load = replace(systems[-1].load, **take([one.load for one in systems]))
+        return forward_dynamics(replace(systems[-1], load=load), states)
+
+    return engine
+
+
+def of_body(take: Callable[[Sequence[System]], dict[str, Any]]) -> Engine:
+    def engine(systems: Sequence[System], states: State) -> Acceleration:
+        body = replace(systems[-1].body, **take(systems))
+        return forward_dynamics(replace(systems[-1], bodies=(body,)), states)
+
+    return engine
+
+
+def last_given(name: str) -> Engine:
+    """A load that is not requested stays that of the last system with one."""
+
+    def take(loads: Sequence[Any]) -> dict[str, Any]:
+        given = [v for one in loads if (v := getattr(one, name)) is not None and np.any(v)]
+        return {name: given[-1] if given else getattr(loads[-1], name)}
+
+    return of_load(take)
+
+
+def old_inverse(systems: Sequence[System], states: State) -> Acceleration:
+    """The inertia is inverted for the next system only."""
+    before, now = (np.asarray(moving_inertia(one)) for one in (systems[-2:][0], systems[-1]))
+    true = forward_dynamics(systems[-1], states)
+    angular = np.linalg.solve(before, now @ true.angular[..., None])[..., 0]
+    return replace(true, angular=angular)
+
+
+def same_mass(systems: Sequence[System]) -> dict[str, Any]:
+    """The inertia of the first system with this mass."""
+    own = systems[-1].body.mass
+    return {"inertia": next(s.body.inertia for s in systems if s.body.mass == own)}
+
+
+TENSORS = tuple(np.diag([1.0 + k, 2.0 + 0.5 * k, 1.7 + k]).tolist() for k in range(3))
+BODIES = tuple(case(f"body-{k}", {"gravity": GRAVITY}, 2.0, TENSORS[k]) for k in range(3))
+HEAVY = tuple(case(f"heavy-{k}", {"gravity": GRAVITY}, 9.0, TENSORS[k]) for k in (2, 0))
+
+WRONG: dict[str, tuple[Engine, tuple[Case, ...], str]] = {
+    name: (last_given(name), CASES, text)
+    for name, text in (
+        ("gravity", "where no gravity is requested, that of a system loaded before is kept"),
+        ("damping", "where no damping is requested, that of a system loaded before is kept"),
+        ("torque_body", "where no torque in body axes is requested, that of a system loaded"),
+        ("pivot", "where no pivot is requested, that of a system loaded before is kept"),
+    )
+}
+WRONG |= {
+    "mass": (
+        of_body(lambda s: {"mass": s[-2:][0].body.mass}),
+        CASES,
+        "the mass of the system loaded before is kept",
+    ),
+    "center": (
+        of_body(lambda s: {"center_of_mass": s[-2:][0].body.center_of_mass}),
+        CASES,
+        "the centre of mass of the system loaded before is kept",
+    ),
+    "inertia": (
+        of_body(lambda s: {"inertia": s[-2:][0].body.inertia}),
+        BODIES,
+        "the inertia of the system loaded before is kept",
+    ),
+    "by mass": (
+        of_body(same_mass),
+        (*BODIES, *HEAVY),
+        "the inertia is found again by the mass: a system has that of the first with this mass "
+        "that was loaded before",
+    ),
+    "inverse": (
+        old_inverse,
+        BODIES,
+        "the inverse of the inertia of the system loaded before is kept",
+    ),
+}
+
+
+def scenes(engine: Engine, cases: Sequence[Case]) -> Iterator[Scene]:
+    """Each case loaded after the one before, then another system, then the case again."""
+    loads = Loads()
+
+    def loaded(system: System, states: State) -> Acceleration:
+        loads.add(system)
+        return engine([*loads.before.systems[: loads.before.count + 1]], states)
+
+    for one in cases:
+        states = random_states(one, 30, [1])
+        evidence, before = {}, {}
+        found = loaded(one.system, states)
+        evidence[FORWARD] = of_forward_dynamics(one.system, states, found)
+        before[""] = loads.before
+        loaded(OTHERS[one.system.load.pivot is not None].system, states)
+        again = loaded(one.system, states)
+        evidence[RELOADED] = of_forward_dynamics(one.system, states, again)
+        before[RELOADED] = loads.before
+        features = features_of(one.system, one.initial)
+        yield Scene(one.name, one.system, features, evidence, before=before)
+
+
+def causes(engine: Engine, cases: Sequence[Case]) -> dict[tuple[str, str], str]:
+    across = Across()
+    every = list(scenes(engine, cases))
+    for one in every:
+        across.add(one)
+    wrong = [(one.name, k) for one in every for k, e in one.evidence.items() if e.clear]
+    return {where: "; ".join(equation_causes(across, *where)) for where in wrong}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_is_kept_is_named_on_every_scenario_that_it_makes_wrong(name: str) -> None:
+    """Caught: a constant, another inertia or nothing known, on each scenario another."""
+    engine, cases, phrase = WRONG[name]
+    found = causes(engine, cases)
+    assert len(found) > 2
+    assert all(text.startswith(phrase) for text in found.values()), found
+
+
+def test_a_constant_that_is_no_other_systems_is_not_called_kept() -> None:
+    """The gravity of the first scenario acts on all, and on the very first one too."""
+    constant = np.array(GRAVITY)
+    found = causes(of_load(lambda loads: {"gravity": constant}), CASES[1:4])
+    assert found
+    assert not any("loaded before" in text for text in found.values())
+
+
+def test_a_driver_records_what_was_loaded_before() -> None:
+    driver = driver_of("reference", ReferenceAdapter())
+    for one in (CASES[0], CASES[1], CASES[0], CASES[2]):
+        driver.request(one, "model", state=one.initial, before=one.initial)
+    assert driver.before.last is CASES[0].system
+    assert [*driver.before.latest_first()] == [CASES[k].system for k in (0, 1, 0)]
+
+
+def test_the_torque_of_steps_is_looked_for_as_well() -> None:
+    """Where no forward dynamics are offered, steps are all that shows what is kept."""
+    across = Across()
+    for one in scenes(last_given("gravity"), CASES):
+        own = {"steps of euler": one.evidence[FORWARD], "x": one.evidence[RELOADED]}
+        before = {"": one.before[""], "x": one.before[RELOADED]}
+        across.add(replace(one, evidence=own, before=before))
+    assert "gravity" in across.left_over("driven", "steps of euler")
+    assert across.left_over("falling", "steps of euler") == ""

@@ -1,0 +1,199 @@
+"""Another inertia, in the gyroscopic term, in the solve or in both: what it has to do with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from test_causes import causes_over
+from wrong_equations import BODY_TORQUE, GRAVITY, TENSOR, case
+
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import torque
+from omegadot.reference_impl.motion import center_of_mass_acceleration, forward_dynamics
+from omegadot.reference_impl.symmetric import apply
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+Change = Callable[[Array], Array]
+SPIN, SOLVE = ("spin",), ("solve",)
+
+
+def using(change: Change, parts: tuple[str, ...]) -> Any:
+    """The equation with another inertia, of what moves, in these parts of it."""
+
+    def found(system: System, states: State) -> Acceleration:
+        w, inertia = states.angular_velocity, np.asarray(moving_inertia(system))
+        spin, solve = (change(inertia) if p in parts else inertia for p in ("spin", "solve"))
+        due = torque(system, states) - cross(w, apply(spin, w))
+        angular = np.linalg.solve(solve, due[..., None])[..., 0]
+        if system.load.pivot is None:
+            return Acceleration(angular, forward_dynamics(system, states).linear)
+        return Acceleration(angular, center_of_mass_acceleration(system, states, angular))
+
+    return found
+
+
+def merged(limit: float, way: Callable[[float, float], float]) -> Change:
+    """Numbers on the diagonal that differ by less are one."""
+
+    def change(tensor: Array) -> Array:
+        made = tensor.copy()
+        for i, j in ((0, 1), (1, 2), (2, 0)):
+            a, b = made[i, i], made[j, j]
+            if abs(a - b) < limit * max(a, b):
+                made[i, i] = made[j, j] = way(a, b)
+        return made
+
+    return change
+
+
+def principal(limit: float) -> Change:
+    def change(tensor: Array) -> Array:
+        moments, axes = np.linalg.eigh(tensor)
+        for i in (0, 1):
+            if moments[i + 1] - moments[i] < limit * moments[i + 1]:
+                moments[[i, i + 1]] = np.mean(moments[[i, i + 1]])
+        return np.asarray((axes * moments) @ axes.T)
+
+    return change
+
+
+def without_small(tensor: Array) -> Array:
+    kept = (np.abs(tensor) > 0.12 * np.max(np.diag(tensor))) | np.eye(3, dtype=bool)
+    return np.where(kept, tensor, 0.0)
+
+
+def near(apart: float, products: float) -> list[list[float]]:
+    tensor = np.diag([1.3, 1.3 * (1.0 + apart), 2.1]) + products * (np.ones((3, 3)) - np.eye(3))
+    return np.asarray(tensor).tolist()
+
+
+BODIES = tuple(
+    case(f"near-{k}", load, 1.0 + k, near(apart, products))
+    for k, (apart, products, load) in enumerate(
+        (
+            (1e-4, 0.003, {"torque": BODY_TORQUE}),
+            (-7e-4, 0.2, {"damping": 0.2}),
+            (2e-3, 0.001, {"torque": BODY_TORQUE, "damping": 0.1}),
+            (3e-2, 0.3, {"gravity": GRAVITY, "torque": BODY_TORQUE}),
+            (2e-1, 0.01, {"damping": 1.2}),
+        )
+    )
+)
+TURNED = tuple(
+    case(f"turned-{k}", {"torque": BODY_TORQUE}, 1.0, (TURN @ np.diag(m) @ TURN.T).tolist())
+    for TURN in (np.array([[2.0, -1.0, 2.0], [2.0, 2.0, -1.0], [-1.0, 2.0, 2.0]]) / 3.0,)
+    for k, m in enumerate(([1.0, 1.0002, 1.7], [1.0, 1.4, 1.7], [1.1, 1.7, 1.7008], [1, 1.01, 1.5]))
+)
+BETWEEN = "a limit between 0.069 and 0.2 %"
+
+
+@pytest.mark.parametrize(
+    ("change", "parts", "cases", "text"),
+    [
+        (
+            merged(1e-3, lambda a, b: 0.5 * (a + b)),
+            SPIN,
+            BODIES,
+            "in the gyroscopic term, numbers on the inertia's diagonal that differ by less than "
+            f"{BETWEEN} are taken as equal: each is their mean",
+        ),
+        (
+            merged(1e-3, lambda a, b: a),
+            SOLVE,
+            BODIES,
+            "where omega-dot is solved for, numbers on the inertia's diagonal that differ by less "
+            f"than {BETWEEN} are taken as equal: both are the first of the two",
+        ),
+        (
+            principal(1e-3),
+            (*SPIN, *SOLVE),
+            TURNED,
+            "in the dynamics, principal moments that differ by less than a limit between 0.047 and "
+            "1 % are taken as equal: each is their mean",
+        ),
+        (
+            without_small,
+            SPIN,
+            BODIES,
+            "in the gyroscopic term, products of inertia that are below a limit between 9.5 "
+            "and 15 % of the largest number on its diagonal are dropped",
+        ),
+    ],
+)
+def test_numbers_that_are_nearly_equal_or_nothing_are_named_with_their_limit(
+    change: Change, parts: tuple[str, ...], cases: Any, text: str
+) -> None:
+    """Caught: six numbers to compare by eye, and a condition that is chance."""
+    causes = causes_over(using(change, parts), cases)
+    assert causes
+    assert all(one.startswith(text) for one in causes.values()), causes
+
+
+def replaced(tensor: Array) -> Array:
+    made = tensor.copy()
+    made[2, 2] = made[0, 0]
+    return made
+
+
+SIZES = tuple(
+    case(f"size-{k}", {"torque": BODY_TORQUE}, 1.0, (s * np.array(TENSOR)).tolist())
+    for k, s in enumerate((0.013, 0.37, 5.9))
+)
+
+
+@pytest.mark.parametrize("parts", [SPIN, SOLVE, (*SPIN, *SOLVE)])
+@pytest.mark.parametrize(
+    ("change", "phrases"),
+    [
+        (replaced, ("the moment of inertia zz is that of xx",)),
+        (
+            lambda t: t + np.diag([0.5 * (t[1, 1] - t[0, 0]), 0.5 * (t[0, 0] - t[1, 1]), 0.0]),
+            ("the moments of inertia xx and yy are both their mean",),
+        ),
+        (
+            lambda t: np.array([float(f"{x:.2e}") for x in t.ravel()]).reshape(3, 3),
+            ("the inertia is rounded to 3 digits",),
+        ),
+        (
+            lambda t: t + np.diag(np.maximum(np.diag(t), 0.6) - np.diag(t)),
+            ("the diagonal of the inertia is held above 0.6 kg m^2",),
+        ),
+    ],
+    ids=("replaced", "mean", "digits", "floor"),
+)
+def test_another_tensor_is_said_in_relation_to_the_requested_one(
+    change: Change, phrases: tuple[str, ...], parts: tuple[str, ...]
+) -> None:
+    """Caught: tensors without a word of what makes them."""
+    tensors = SIZES if "held above" not in phrases[0] else SIZES[1:2] * 1
+    where = {SPIN: "in the gyroscopic term, ", SOLVE: "where omega-dot is solved for, "}
+    causes = causes_over(using(change, parts), tensors)
+    assert causes
+    for text in causes.values():
+        assert all(where.get(parts, "in the dynamics, ") + p in text for p in phrases), text
+
+
+@pytest.mark.parametrize("parts", [SPIN, SOLVE])
+def test_of_fitted_numbers_it_is_said_which_are_right(parts: tuple[str, ...]) -> None:
+    """Caught: nothing but six numbers where the diagonal of each body is off, as at random."""
+    draw = np.random.default_rng(3)
+    made: dict[bytes, Array] = {}
+
+    def change(tensor: Array) -> Array:
+        more = made.setdefault(tensor.tobytes(), draw.uniform(0.05, 0.2, 3) * np.diag(tensor))
+        return np.asarray(tensor + np.diag(more))
+
+    causes = causes_over(using(change, parts), SIZES)
+    assert len(causes) == 3
+    assert all("its products are the requested ones" in text for text in causes.values()), causes
+
+
+def test_one_body_shows_no_limit() -> None:
+    alone = (case("alone", {"torque": BODY_TORQUE}, 1.0, near(1e-4, 0.2)),)
+    change = merged(1e-3, max)
+    (text,) = causes_over(using(change, SPIN), alone).values()
+    assert "limit" not in text
