@@ -111,3 +111,35 @@ def test_an_extrapolation_of_high_order_rounds_more_often() -> None:
     assert roundings_per_step(8) == pytest.approx(22.0, abs=0.5)
     assert roundings_per_step(12) == pytest.approx(136.0, abs=0.5)
     assert roundings_per_step(7) == roundings_per_step(8)
+
+
+def test_in_single_precision_a_velocity_that_is_the_change_of_place_tells_it() -> None:
+    """The start is the engine's own, rounded; a velocity that is stepped is no change of place."""
+    single = float(np.finfo(np.float32).eps)
+    draw = np.random.default_rng(4)
+    q = normalize(draw.normal(size=(6, 4)))
+    states = State(q, *(draw.normal(size=(6, 3)) * size for size in (2.0, 50.0, 3.0)))
+    found = SimpleNamespace(random=states, path=states)
+    probe = probe_of(SYSTEM, found, single)  # type: ignore[arg-type]
+    for from_places in (True, False):
+        ends = in_single(probe, from_places)
+        roundings = roundings_of(SYSTEM, probe, ends, single, 16.0)
+        assert (roundings.of_places, roundings.of_turns) == (from_places, from_places)
+
+
+def in_single(probe: Probe, from_places: bool) -> State:
+    """Semi-implicit Euler in numbers of single precision."""
+    f = np.float32
+    shape, h = probe.timesteps.shape, probe.timesteps[..., None].astype(f)
+    q, w, x, v = (
+        np.broadcast_to(one[:, None], (*shape, one.shape[-1])).astype(f)
+        for one in vars(probe.states).values()
+    )
+    acceleration = forward_dynamics(SYSTEM, State(q, w, x, v))
+    w, v = w + h * acceleration.angular.astype(f), v + h * acceleration.linear.astype(f)
+    turned, moved = normalize(quaternion_product(q, exp_quaternion(h * w))), x + h * v
+    if from_places:
+        between = quaternion_product(conjugate(q), turned)
+        w = 2.0 * between[..., 1:] * np.sign(between[..., :1]) / h
+        v = (moved - x) / h
+    return State(*(one.astype(float) for one in (turned, w, moved, v)))

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.gates.bounds.scales import ROUNDINGS_PER_STEP, norm
+from omegadot.reference_impl.rotations import conjugate, quaternion_product, rotation_between
 from omegadot.reference_impl.system import Array, State
 
 OF_A_DIFFERENCE = 4  # roundings of a difference over the step, in parts of itself
@@ -58,3 +59,16 @@ def is_change_of_place(before: State, after: State, timestep: Array, eps: float)
     moved = timestep[..., None] * after.linear_velocity
     same = norm(way - moved) <= OF_A_DIFFERENCE * eps * norm(moved)
     return bool(np.all(same)) and bool(np.any(way))  # at rest nothing is seen
+
+
+def is_change_of_attitude(before: State, after: State, timestep: Array, eps: float) -> bool:
+    """Whether omega after single steps is the turn over h, to the rounding of a quaternion.
+
+    So it is, without that rounding in it, where a body is turned by the new omega.
+    """
+    turned = timestep[..., None] * after.angular_velocity
+    between = quaternion_product(conjugate(before.orientation), after.orientation)
+    small = 2.0 * between[..., 1:] * np.sign(between[..., :1])
+    whole = rotation_between(before.orientation, after.orientation)
+    bound = ROUNDINGS_PER_STEP * eps
+    return any(bool(np.all(norm(one - turned) <= bound)) for one in (small, whole))

@@ -11,7 +11,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from omegadot.gates.bounds.roundings import PLAIN, Roundings, is_change_of_place
+from omegadot.gates.bounds.roundings import (
+    PLAIN,
+    Roundings,
+    is_change_of_attitude,
+    is_change_of_place,
+)
 from omegadot.gates.bounds.scales import (
     EPS,
     ROUNDINGS_PER_EVALUATION,
@@ -186,11 +191,14 @@ def roundings_of(
 
     The rounding of a velocity that is stepped is ``eps / h`` in its rate; that of places, over h,
     is ``eps / h^2``. By steps 16 times shorter the one is off 16 times as far, the other 256 times;
-    and a wrong equation as far as before. Single precision has no such steps.
+    and a wrong equation as far as before. Single precision has no such steps: there a velocity that
+    is the change of place over h tells it, of omega as well where that is the turn over h.
     """
     if len(ladder_of(eps).ranges) < 2:
-        own = is_change_of_place(probe.states[:, None], stepped, probe.timesteps, eps)
-        return Roundings(own, per_step=per_step)
+        given = State(*(f.astype(np.float32).astype(float) for f in vars(probe.states).values()))
+        steps = (given[:, None], stepped, probe.timesteps, eps)
+        own = is_change_of_place(*steps)
+        return Roundings(own, own and is_change_of_attitude(*steps), per_step)
     found = limits(system, probe, stepped, eps)
     taken = dict[str, bool]()
     for channel in ("linear_momentum", "omega"):
