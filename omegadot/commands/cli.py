@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
-import io
-import os
 import re
 import signal
 import sys
@@ -19,12 +16,13 @@ from omegadot.commands.compare.command import compare
 from omegadot.commands.engines.command import engines
 from omegadot.commands.faults.command import faults
 from omegadot.commands.fit.command import fit
-from omegadot.commands.options import INTERRUPTED, PlainHelp
+from omegadot.commands.options import ENDED, INTERRUPTED, PlainHelp
 from omegadot.commands.report.command import report
 from omegadot.commands.run.command import run
 from omegadot.commands.scenarios.command import scenarios
 from omegadot.commands.schemes.command import schemes
 from omegadot.commands.score.command import score
+from omegadot.commands.streams import discard, prepare_streams
 from omegadot.commands.versions.command import versions
 
 # Of a longer word half of this is printed: an argument may be a file's whole content.
@@ -32,9 +30,15 @@ LONGEST_WORD = 400
 # Windows has no SIGHUP.
 _ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
+EXIT_CODES = (
+    "Exit codes: 0 done, and what was held to something holds; 1 something does not; 2 wrong usage "
+    "or input; 3 an engine or the system failed. " + ENDED
+)
+
 app = typer.Typer(
     name="omegadot",
     help="Check rigid-body physics engines against exact solutions.",
+    epilog=EXIT_CODES,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -80,26 +84,21 @@ def _root(
 
 def main() -> None:
     """Entry point: wrong input is one sentence on standard error and exit code 2."""
-    for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:  # it was closed: nothing else may take its place
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):  # a pipe on Windows has no letter for omega
-            stream.reconfigure(errors="replace")
+    prepare_streams()
     received = _end_like_ctrl_c()
     try:
         code = app(standalone_mode=False)
         sys.stdout.flush()
     except (typer.Abort, KeyboardInterrupt):
         code = INTERRUPTED
-    except (BrokenPipeError, SystemExit):  # what reads it has enough; the parser ends there
-        code = _without_output()
+    except SystemExit:  # the parser's own answer to a pipe of ours that broke
+        code = 3
     except Exception as error:
         sentence = _sentence(error)
         if sentence is None:
             raise
         if isinstance(error, OSError):
-            _without_output()
+            discard(1)  # else Python tries once more to write what is left, as it ends
         _print_error(sentence)
         sys.exit(3 if _is_our_own(error) else 2)
     finally:
@@ -112,20 +111,16 @@ def main() -> None:
 
 
 def _print_error(sentence: str) -> None:
-    with contextlib.suppress(OSError):  # of a full disk the exit code is all that can be reported
+    try:
         print(f"omegadot: {_on_one_line(sentence)}", file=sys.stderr, flush=True)
+    except OSError:  # of a full disk the exit code is all that can be reported
+        discard(2)
 
 
 def _on_one_line(sentence: str) -> str:
     """Without what steers a terminal, and with the beginning of a very long word alone."""
     shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in sentence)
     return re.sub(rf"(\S{{{LONGEST_WORD // 2}}})\S{{{LONGEST_WORD // 2},}}", r"\1...", shown)
-
-
-def _without_output() -> int:
-    """Leave unwritten what Python would try to write as it ends; the exit code of that."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-    return 3
 
 
 def _end_like_ctrl_c() -> list[int]:

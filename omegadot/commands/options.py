@@ -96,6 +96,10 @@ def given(arguments: Mapping[str, Any]) -> dict[str, Any]:
 
 
 INTERRUPTED = 130  # as shells count: 128 + SIGINT
+ENDED = (
+    "Ended by a signal: 128 and its number, so 130 interrupted (Ctrl-C), 143 terminated, 129 "
+    "terminal closed. A reader of the output that leaves early, like head, changes no exit code."
+)
 
 
 def exit_code(passed: bool, answered: bool) -> int:
@@ -125,6 +129,13 @@ class PlainHelp(TyperCommand):
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
         """``[OPTIONS]`` and the arguments by their metavars."""
         return ["[OPTIONS]", *(_metavar(p) for p in self.params if _is_argument(p))]
+
+    def format_help_text(self, ctx: Any, formatter: Any) -> None:
+        """What the command does, with its exit codes and those that all commands have."""
+        super().format_help_text(ctx, formatter)
+        formatter.write_paragraph()
+        with formatter.indentation():
+            formatter.write_text(ENDED)
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """The arguments, then the options, each with its help and its default."""

@@ -146,6 +146,7 @@ class IntegratorCauses:
                 wrong = self.steps is None or not np.all(self.steps.evidence.sound)
                 how = (self._case, self._truth, self._result, self._runs)
                 self._of_runs = run_causes(*how, equations=wrong)
-                over[self._case.name] = (self._of_runs.texts, self._of_runs.decisive)
+                if self._of_runs.tried:
+                    over[self._case.name] = (self._of_runs.texts, self._of_runs.decisive)
         known = {name: texts for name, (texts, _) in over.items()}
         return either([over_run(text, known) for text in agreed(self._of_runs.texts, over)])

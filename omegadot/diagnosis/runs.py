@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
+from omegadot.diagnosis.models.fitted_misreadings import ADDED
 from omegadot.diagnosis.reported.clock import clock_cause
 from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.guesses import Guesses
@@ -48,13 +49,16 @@ class RunCauses:
     """Causes of which each alone makes the runs of one integrator on a scenario.
 
     decisive: whether the motion has enough in it that what else it could be is ruled out.
+    tried: whether they are off by enough for steps by other hypotheses to be told from them.
     """
 
     texts: tuple[str, ...] = ()
     decisive: bool = True
+    tried: bool = True
 
 
 NOTHING = RunCauses()
+HARDLY_OFF = RunCauses(tried=False)
 
 
 def run_causes(
@@ -79,12 +83,14 @@ def run_causes(
     several = _of_several_schemes(guesses, runs) if failed else ""
     if several:
         return RunCauses((several,))
+    tried = False
     for run in sorted(failed, key=lambda run: run.sweep.steps):
         found = _of_run(guesses, run, equations)
+        tried |= found.tried
         if found.texts:
             kept = _of_others(guesses, found, run, failed, equations)
             return _at_long_steps(kept, runs)
-    return NOTHING
+    return NOTHING if tried or not failed else HARDLY_OFF
 
 
 def _of_others(
@@ -209,7 +215,8 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
         return RunCauses((seen,))
     found = [*misread(reported), *late(reported)]
     found += filter(None, (cause(reported) for cause in CAUSES_REPORTED))
-    found = found or field_causes(reported)
+    if all(ADDED in text for text in found):  # which on other motions is no constant
+        found = [*field_causes(reported), *found]
     found += stepping_causes(reported, equations) if clear else ()
     if found:
         return RunCauses(tuple(dict.fromkeys(found)), is_decisive(reported))
@@ -217,4 +224,6 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
     alone = (one_field,) if reported.is_declared or is_decisive(reported) else ()
     last = (not_unit, another_start, *((intervals, *alone) if whole and clear else ()))
     text = next(filter(None, (cause(reported) for cause in last)), "")
-    return RunCauses((text,), is_decisive(reported)) if text else NOTHING
+    if text:
+        return RunCauses((text,), is_decisive(reported))
+    return NOTHING if clear or not whole else HARDLY_OFF

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.measures import Yardstick
+from omegadot.gates.bounds.roundings import PLAIN, Roundings
 from omegadot.gates.bounds.scales import EPS, eps_of
 from omegadot.gates.case import Sweep
 from omegadot.reference_impl.coordinates import Coordinates, canonical
@@ -88,6 +89,12 @@ class Truth:
         """The same for a run that keeps energy and momentum, see `Yardstick.of_kept`."""
         yardstick = self.yardstick.of_kept(state.angular_velocity, sweep.sample_steps)
         return self if yardstick is self.yardstick else replace(self, yardstick=yardstick)
+
+    def of_roundings(self, roundings: Roundings) -> Truth:
+        """The same for steps that round otherwise than most."""
+        if roundings == PLAIN:
+            return self
+        return replace(self, yardstick=self.yardstick.of_roundings(roundings))
 
     def rows(self, sweep: Sweep) -> NDArray[np.intp]:
         """Where the samples of one sweep are among the times, which may be rounded otherwise."""

@@ -76,7 +76,7 @@ def _answered_entry(
 def _judged_entry(
     labels: Labels, found: EngineCase, judged: JudgedRun, cause: Cause, diagnosed: set[Any]
 ) -> dict[str, Any]:
-    """Where a gate fails, the likeliest cause comes first among its reasons, if there is one.
+    """A run's task; where a gate fails, with the likeliest cause, if there is one.
 
     diagnosed: the scenarios and integrators of the engine for which causes were looked for.
     """
@@ -89,7 +89,6 @@ def _judged_entry(
         likeliest = cause(judged)
     if likeliest:
         entry["cause"] = likeliest
-        entry["why"] = f"likely cause: {likeliest}" + (f" ({judged.why})" if judged.why else "")
     return entry
 
 
@@ -98,8 +97,7 @@ def _unstepped_entry(labels: Labels, found: EngineCase, cause: Cause) -> dict[st
     model = found.result.model
     entry = _answered_entry(labels, found, model.outcome, model.reason, (), "it has no integrator")
     likeliest = cause(None) if "fail" in entry["gates"].values() else ""
-    found_out = {"cause": likeliest, "why": f"likely cause: {likeliest}"}
-    return {**entry, **found_out} if likeliest else entry
+    return {**entry, "cause": likeliest} if likeliest else entry
 
 
 def _unjudged_entries(

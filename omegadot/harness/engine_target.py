@@ -128,7 +128,7 @@ def _where(module: str, name: str) -> str:
 def _check_name_in(path: Path, name: str) -> None:
     """Raise UsageError where a file plainly has no such class; one with errors is not judged."""
     try:
-        body = ast.parse(path.read_text(encoding="utf-8")).body
+        body = ast.parse(path.read_text(encoding="utf-8-sig")).body
     except (OSError, SyntaxError, ValueError):
         return
     bound = {alias.asname or alias.name for node in body for alias in getattr(node, "names", ())}
@@ -151,7 +151,7 @@ def _class_in(path: Path) -> str:
 def _parsed(path: Path) -> list[ast.stmt]:
     """The statements of a file of Python. Raises UsageError where it is none."""
     try:
-        return ast.parse(path.read_text(encoding="utf-8")).body
+        return ast.parse(path.read_text(encoding="utf-8-sig")).body
     except OSError:
         raise UsageError(f"{path}: no such adapter file; check the path.") from None
     except SyntaxError as error:

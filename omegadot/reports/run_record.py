@@ -12,6 +12,7 @@ from omegadot.reports.notebook import framed
 from omegadot.reports.record import record as stored
 from omegadot.reports.record.record import Record, write_record
 from omegadot.reports.record.whole_file import path_of
+from omegadot.reports.summary.reasons import cause_of
 
 _BROKEN = ("crashed", "timeout", "raised")
 
@@ -22,7 +23,8 @@ class TaskResult:
 
     outcome: ok, unsupported, not-installed, diverged, raised, crashed, timeout or interrupted, with
     the reason.  gates: pass, fail, declared or info by gate.  why: what explains the verdict.
-    scheme: that it is declared to equal, if any.
+    scheme: that it is declared to equal, if any.  cause: the likely one where a gate fails and one
+    is found, else "".
     """
 
     scenario: str
@@ -37,6 +39,7 @@ class TaskResult:
     gates: Mapping[str, str]
     why: str
     scheme: str | None
+    cause: str = ""
 
     @property
     def failed(self) -> bool:
@@ -63,9 +66,10 @@ class RunRecord(Record):
     @cached_property
     def tasks(self) -> tuple[TaskResult, ...]:
         """Every run."""
-        names = [field.name for field in fields(TaskResult)]
+        names = [field.name for field in fields(TaskResult) if field.name != "cause"]
         return tuple(
-            TaskResult(**{name: task.get(name) for name in names}) for task in self.run["tasks"]
+            TaskResult(**{name: task.get(name) for name in names}, cause=cause_of(task))
+            for task in self.run["tasks"]
         )
 
     @cached_property

@@ -58,14 +58,14 @@ def test_what_is_written_is_read_and_sorted(tmp_path: Path) -> None:
     text = path.read_text()
     assert text.index("a-bar") < text.index("sphere")
     assert [file.name for file in path.parent.iterdir()] == ["mujoco.toml"]
-    assert to_text("mujoco", from_text(text)) == text
+    assert to_text("mujoco", from_text(text, "mujoco")) == text
     assert read_baseline(tmp_path, "dart") is None
 
 
 def test_an_accuracy_is_written_and_read() -> None:
     runs = {RunKey("dopri", accuracy=1e-9): Figures({"omega error_max": Figure(1e-8, 1e-12)})}
     stored = {"sphere": ScenarioFigures("1", runs)}
-    assert from_text(to_text("toy", stored)) == stored
+    assert from_text(to_text("toy", stored), "toy") == stored
 
 
 def test_a_folder_that_is_a_file_is_one_sentence(tmp_path: Path) -> None:
@@ -80,7 +80,20 @@ def test_what_nothing_can_be_held_to_is_not_stored() -> None:
     assert "omega" not in text
 
 
-@pytest.mark.parametrize("text", ["schema = 2", "engine = 3", "schema = 1\n[scenario.x]\n", "="])
+OTHERS = 'schema = 1\nengine = "dart"\n'
+BELOW_ZERO = """schema = 1
+engine = "mujoco"
+[scenario.sphere]
+version = "1"
+[scenario.sphere.figures]
+"model mass" = [1.0, -1.0]
+"""
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["schema = 2", "engine = 3", "schema = 1\n[scenario.x]\n", "=", OTHERS, BELOW_ZERO],
+)
 def test_another_file_is_refused_in_a_sentence(text: str, tmp_path: Path) -> None:
     path_of(tmp_path, "mujoco").write_text(text)
     with pytest.raises(UsageError, match=r"mujoco\.toml: not a baseline"):

@@ -90,10 +90,23 @@ def test_what_is_not_finite_is_the_worst_of_all(value: float) -> None:
 def test_an_engine_is_idle_only_when_every_check_was_skipped() -> None:
     tally = Tally()
     for engine, verdict in (("a", "skip"), ("a", "skip"), ("b", "skip"), ("b", "pass")):
-        tally.add(engine, verdict, "unsupported: no joints")
+        tally.add(engine, "equation", verdict, "unsupported: no joints")
     (text,) = tally.only_skipped(["a", "b", "c"])
     assert text.startswith("a: all of its 2 checks were skipped")
     assert "no joints" in text
+
+
+def test_a_model_alone_is_no_pass() -> None:
+    """Caught: an engine that passes because nothing about its motion could be requested."""
+    tally = Tally()
+    for gate, verdict in (("model", "pass"), ("equation", "skip"), ("scheme", "skip")):
+        tally.add("a", gate, verdict, "unsupported: no such call")
+        tally.add("b", gate, verdict)
+        tally.add("c", "model", "pass")  # where nothing but the model was selected
+    tally.add("b", "trajectory", "pass")
+    (text,) = tally.only_skipped(["a", "b", "c"])
+    assert text.startswith("a: its model alone was tested and nothing about its motion")
+    assert "no such call" in text
 
 
 def test_engines_are_named_given_or_required() -> None:

@@ -169,22 +169,6 @@ def test_the_exit_code_stands_where_nothing_can_be_reported(tmp_path: Path) -> N
     assert done.returncode == 2
 
 
-@pytest.mark.parametrize("reader", ["head -1", "true"])
-def test_the_exit_code_of_a_closed_pipe(reader: str, tmp_path: Path) -> None:
-    script = f'("$@"; echo $? >code) | {reader}'
-    shell = ["sh", "-c", script, "sh", *PROGRAM, "scenarios"]
-    done = subprocess.run(shell, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.stderr == ""
-    assert (tmp_path / "code").read_text() in ("0\n", "3\n")  # 0: all was written before
-
-
-def test_a_reader_that_has_enough_is_no_error(tmp_path: Path) -> None:
-    shell = ["sh", "-c", '"$@" | head -1', "sh", *PROGRAM, "scenarios"]
-    done = subprocess.run(shell, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.stdout.startswith("damped-tumble")
-    assert done.stderr == ""
-
-
 def test_a_folder_that_is_gone_is_one_sentence(tmp_path: Path) -> None:
     gone = tmp_path / "gone"
     gone.mkdir()

@@ -18,6 +18,7 @@ from omegadot.commands.check.result import PASSED, Check, skipped
 from omegadot.commands.check.result import Result as CheckResult
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError
+from omegadot.reports.record.record import read_record
 
 LINK = "https://example.org/issues/17"
 NAME = "nogyroscopic"
@@ -66,7 +67,7 @@ def test_one_that_no_longer_fails_and_one_that_matches_nothing_fail(tmp_path: Pa
 def test_a_run_honours_them_and_gives_the_link(tmp_path: Path) -> None:
     result = checked(ALL, tmp_path, "run")
     assert result.code == 0, result.out
-    metrics = pl.read_parquet(tmp_path / "omegadot-run" / "metrics.parquet")
+    metrics = read_record(tmp_path / "omegadot-run").metrics
     declared = metrics.filter(pl.col("verdict") == "declared")
     assert set(declared["gate"]) == {"equation", "scheme", "invariants", "trajectory"}
     assert all(LINK in note for note in declared["note"])

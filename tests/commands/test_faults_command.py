@@ -12,9 +12,10 @@ from command_line import omegadot
 
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.catalogue import FAULTS
+from omegadot.commands.faults.detection import detection
 from omegadot.commands.faults.fault import Spoiled
 from omegadot.commands.faults.faults import FaultsResult
-from omegadot.commands.faults.matrix import SOUND, EngineMatrix, detection
+from omegadot.commands.faults.matrix import SOUND, EngineMatrix
 from omegadot.commands.faults.prepared import Pool
 from omegadot.commands.faults.print_faults import HEADS, markdown, share
 from omegadot.commands.faults.published import Published

@@ -9,6 +9,7 @@ import pytest
 from command_line import ENGINES, quick_scenario
 
 import omegadot
+from omegadot.commands.run.print_run import exit_code
 from omegadot.commands.versions.result import VersionsResult
 
 PARTIAL = ENGINES / "partial.py"
@@ -76,6 +77,43 @@ def test_a_run_judges_an_engine_without_integrators(tmp_path: Path) -> None:
     (task,) = wrong.record.tasks
     assert not wrong.passed
     assert task.gates["equation"] == "fail"
+
+
+def test_a_model_alone_passes_nowhere(tmp_path: Path) -> None:
+    """Caught: an engine without integrators and dynamics that passes on its model alone."""
+    quick = quick_scenario(tmp_path)
+    ran = omegadot.run(quick, target("ModelOnly"))
+    (task,) = ran.record.tasks
+    assert task.gates == {"model": "pass"}
+    assert ran.untested == ("modelonly",)
+    assert not ran.passed
+    assert exit_code(ran) == 3
+    page = ran.record.page()
+    sentence = "modelonly has no integrators and no dynamics: its model alone was tested"
+    assert sentence in page
+    assert '<td class="s-not-judged"' in page
+    assert '<td class="s-pass"' not in page
+    checked = omegadot.check(target("ModelOnly"), scenarios=quick)
+    assert not checked.passed
+    assert checked.only_skipped[0].startswith("modelonly: its model alone was tested")
+    chosen = omegadot.choose(quick, target("ModelOnly"), attitude="1deg", budget=0.02)
+    assert not chosen.qualifies
+    (engine,) = chosen.document["engines"]
+    assert "nothing about its motion over time can be tested" in engine["refused"][0]
+
+
+@pytest.mark.parametrize("name", ["InverseOnly", "NoIntegrator"])
+def test_one_equation_is_more_than_a_model(tmp_path: Path, name: str) -> None:
+    ran = omegadot.run(quick_scenario(tmp_path), target(name))
+    assert ran.untested == ()
+    assert ran.passed
+
+
+def test_beside_another_engine_a_model_alone_is_no_pass_either(tmp_path: Path) -> None:
+    quick = quick_scenario(tmp_path)
+    ran = omegadot.run(quick, "mujoco:RK4", adapters=target("ModelOnly"))
+    assert ran.untested == ("modelonly",)
+    assert "No verdict on modelonly" in ran.record.headline
 
 
 def test_no_other_command_ends_at_them(tmp_path: Path) -> None:

@@ -276,3 +276,18 @@ def test_what_is_no_size_is_left_out(bad: float) -> None:
 def test_every_step_needs_its_error() -> None:
     with pytest.raises(ValueError, match="zip"):
         observed_order([0.02, 0.01], [1.0])
+
+
+def test_steps_longer_than_an_engines_own_change_nothing() -> None:
+    """Caught: an engine of order 2 that splits long steps, accused of order 0 at these.
+
+    Where no step changes anything, that is said, and finer ones are asked for.
+    """
+    own = {h: min(h, 0.125) for h in (1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125)}
+    growing = 1e-2 * SAMPLES
+    found = order_of(over_time({h: step**2 * growing for h, step in own.items()}))
+    assert found is not None
+    assert (found.value, found.resolved, found.same) == (pytest.approx(2.0), True, False)
+    coarse = order_of(over_time({h: own[h] ** 2 * growing for h in (1.0, 0.5, 0.25)}))
+    assert coarse is not None
+    assert (coarse.value, coarse.same) == (pytest.approx(0.0), True)

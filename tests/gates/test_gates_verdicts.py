@@ -50,6 +50,13 @@ def test_a_body_too_thin_for_the_steps_leaves_a_low_order_open() -> None:
     assert judge(replace(higher, stiffness=1.01), None, 4).kind == "consistent"
 
 
+def test_runs_that_are_one_trajectory_need_finer_steps_before_they_fail() -> None:
+    flat = ObservedOrder(0.0, True, same=True)
+    found = evidence([0.0, 1e-3, 1e-3], None, None, flat)
+    assert judge(replace(found, settled=False), None, 4).kind == "unsettled"
+    assert judge(replace(found, settled=True), None, 4).kind == "unexplained"
+
+
 def test_an_order_that_rounding_does_not_leave_open_fails() -> None:
     near = ObservedOrder(1.7, False, hidden=NEAR_ROUNDING)
     found = evidence([0.0, 1e-3, 1e-3], None, None, near)

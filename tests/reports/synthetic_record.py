@@ -76,7 +76,7 @@ def metric(scenario, engine, integrator, timestep, gate, channel, name, value, *
 
 
 def task(scenario, engine, integrator, timestep, **more):
-    gates = dict.fromkeys(("model", "equation", "invariants", "trajectory"), "pass")
+    gates = dict.fromkeys(("model", "equation", "scheme", "invariants", "trajectory"), "pass")
     row = {
         "scenario": scenario,
         "engine": engine,

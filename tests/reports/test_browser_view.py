@@ -358,3 +358,24 @@ def test_the_script_reads_attitudes_as_they_were_packed(seen):
     )
     assert attitude_angle(found[3, :4], third) <= 1e-14
     assert found[3, 4:] == pytest.approx((2 * found[1, 4:] + found[2, 4:]) / 3, abs=1e-14)
+
+
+def test_what_fails_is_shown_at_first_and_marked(browser, tmp_path):
+    """Caught: a view that opens with other engines than the one that fails."""
+    record = build()
+    for task in record.run["tasks"]:
+        if (task["scenario"], task["engine"], task["timestep"]) == ("sphere", "dart", 0.01):
+            task["gates"] = {**task["gates"], "scheme": "fail"}
+    file = tmp_path / "report.html"
+    file.write_text(draw_page(record), encoding="utf-8")
+    page = opened(browser, file)
+    _, failed, best = listed(page)
+    assert failed.startswith("dart semi-implicit at step 0.01 s")
+    assert "fails: scheme" in failed
+    assert best.startswith("mujoco RK4")
+    assert "fails" not in best
+    choose(page, "view-scenario", "1")
+    assert [text.split(" at step")[0] for text in listed(page)[1:]] == [
+        *("mujoco Euler", "dart semi-implicit"),
+    ]
+    assert page.evaluate("document.getElementById('view-step').value") == "0"

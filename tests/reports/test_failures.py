@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from io import StringIO
 
 import numpy as np
 import pytest
+from rich.console import Console
 from synthetic_record import metric, with_metrics
 
 from omegadot.reports.page.page import draw_page
 from omegadot.reports.record.record import Record
+from omegadot.reports.summary.failed_gate import failed_gates
 from omegadot.reports.summary.summary import summarise
 from omegadot.reports.text.markdown import markdown_of
+from omegadot.reports.text.numbers import short
 from omegadot.reports.text.terminal import print_summary
 
 FAILING = ("dart", "semi-implicit")
@@ -51,7 +55,7 @@ def test_the_failing_gate_stands_beside_its_engine_with_its_number(record: Recor
     """Caught: a failing cell that shows a figure which passes, and no other."""
     found = failing(record)
     text = "equation gate: omega-dot residual 2.0e-3, 2.0e10 times its bound"
-    failed = {key: cell.failed for key, cell in summarise(found).cells.items() if cell.failed}
+    failed = {key: cell.failed.text for key, cell in summarise(found).cells.items() if cell.failed}
     assert [(name, column.engine) for name, column in failed] == [("sphere", "dart")]
     assert next(iter(failed.values())).startswith(text)
     page = draw_page(found)
@@ -96,3 +100,44 @@ def test_samples_that_are_missing_are_given_by_their_note(record: Record) -> Non
     (line,) = summarise(with_metrics(record, row)).failures
     assert "time: the last 5 samples are missing" in line
     assert "not finite" not in line
+
+
+def test_no_number_that_passes_stands_beside_a_failing_gate(record: Record) -> None:
+    """Caught: the residual, which holds, in a cell of which the scheme gate fails."""
+    where = ("sphere", *FAILING, 0.02)
+    row = metric(*where, "scheme", "omega", "match", 3e8, bound=1.0, verdict="fail", note="off")
+    found = with_metrics(record, row)
+    cell = next(cell for cell in summarise(found).cells.values() if cell.failed)
+    assert (cell.failed.gate, cell.failed.number) == ("scheme", "3.0e8 × bound")
+    residual = short(cell.residual.value, 1)
+    page = draw_page(found)
+    (shown,) = re.findall(r'<td class="s-fail" data-rank.*?</td>', page)
+    assert '<span class="gate">scheme</span> <span class="n n-failed">3.0e8 × bound</span>' in shown
+    assert shown.count('class="n ') == 1
+    raw = StringIO()
+    print_summary(found, Console(file=raw, width=160))
+    (line,) = (n for n in raw.getvalue().splitlines() if "✗ scheme" in n)
+    assert "✗ scheme 3.0e8 x bound" in line.replace("×", "x")
+    assert line.count(residual) == 2  # of the two engines that pass
+    (line,) = (n for n in markdown_of(found).splitlines() if n.startswith("| sphere"))
+    assert "| ✗ scheme 3.0e8 × bound |" in line
+    assert line.count("3.1e-15") == 2
+
+
+@pytest.mark.parametrize(
+    ("changed", "number"),
+    [
+        ({"value": 2e-3}, "2.0e10 × bound"),
+        ({"value": float("nan")}, "no number"),
+        ({"value": None}, "no number"),
+        ({"value": 0.25, "bound": None, "unit": "rad"}, "2.5e-1 rad"),
+        ({"value": 0.25, "bound": 0.0, "unit": "rad"}, "2.5e-1 rad"),
+        ({"metric": "observed_order", "value": 1.98, "bound": 4.0}, "1.98 of order 4"),
+    ],
+)
+def test_the_number_of_a_failing_gate(
+    record: Record, changed: dict[str, object], number: str
+) -> None:
+    row = metric("sphere", *FAILING, 0.02, "scheme", "omega", "step", 1.0, verdict="fail")
+    (failed,) = failed_gates(with_metrics(record, {**row, **changed}).metrics).values()
+    assert failed.number == number

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 from synthetic_record import build, metric, scenario_entry, task, with_metrics
 
-from omegadot.reports.page.page import _JUDGED_SHOWN, draw_page
+from omegadot.reports.page.page import draw_page
 from omegadot.reports.record.record import Record, read_record, write_record
 from omegadot.reports.record.schema import METRICS, TRAJECTORIES, empty
 from omegadot.reports.text.numbers import short
@@ -150,32 +150,6 @@ def test_names_that_look_alike_keep_their_own_addresses():
     ids = [a["id"] for a in Outline(page).named("section")]
     assert len(ids) == len(set(ids))
     assert "scenario-3" in ids
-
-
-def test_failures_are_listed_once_a_measure_with_their_worst_run(record):
-    add = ["sphere", "dart", "semi-implicit"]
-    rows = [
-        metric(*add, h, "trajectory", "omega", "error_max", h, verdict="fail", note="too far")
-        for h in (0.005, 0.02, 0.01)
-    ]
-    declared = metric(*add, 0.01, "model", "model", "inertia", 1.0, verdict="declared", note="see")
-    page = draw_page(with_metrics(record, declared, *rows))
-    table = re.search(r"Failures and declared exceptions .*?</h3>.*?</table>", page, re.S).group(0)
-    cells = re.findall(r"<td[^>]*>(.*?)</td>", table)
-    assert [re.sub("<.*?>", "", cell) for cell in cells[:10]] == [
-        *("fail", "sphere", "dart 1.0", "trajectory", "omega", "error_max"),
-        *("2.0e-2 relative", "1.0e-13", "semi-implicit step 0.02 s", "3"),
-    ][:10]
-    assert cells[11] == "declared"
-    assert "2.0e-2 ✗ fail, bound 1.0e-13" in page
-
-
-def test_a_long_list_of_failures_names_how_many_are_left(record):
-    rows = [
-        metric("sphere", "dart", None, None, "model", "model", f"m{k}", 1.0, verdict="fail")
-        for k in range(_JUDGED_SHOWN + 7)
-    ]
-    assert "7 more are in metrics.parquet" in draw_page(with_metrics(record, *rows))
 
 
 def test_the_page_shows_the_source_of_error(sound):

@@ -75,9 +75,9 @@ def interrupted(record: Record, finished: int) -> Record:
         task if k < finished else {**task, "outcome": "interrupted", "gates": {}}
         for k, task in enumerate(record.run["tasks"])
     ]
-    return Record(
-        {**record.run, "complete": False, "tasks": tasks}, record.metrics, record.trajectories
-    )
+    rows = len(record.metrics) // len(tasks) * finished  # each task has as many
+    run = {**record.run, "complete": False, "tasks": tasks}
+    return Record(run, record.metrics.head(rows), record.trajectories)
 
 
 def test_one_interrupted_run_is_kept_beside_a_record(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]

@@ -82,3 +82,13 @@ class NoIntegratorOnceLoaded(_Partial):
 class RunRaises(_Partial):
     def run(self, *_: Any) -> Trajectory:
         raise ValueError("no licence")
+
+
+class ModelOnly(NoIntegrator):
+    """Nothing of its motion can be requested."""
+
+    dynamics = frozenset()
+
+
+class InverseOnly(NoIntegrator):
+    dynamics = frozenset({"inverse_dynamics"})

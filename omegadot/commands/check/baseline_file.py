@@ -116,6 +116,9 @@ def write_baseline(folder: Path, engine: str, baseline: Mapping[str, ScenarioFig
 
 def _figures(table: dict[str, Any]) -> Figures:
     named = {k: Figure(*map(float, pair)) for k, pair in table.items() if k != "scheme"}
+    for name, figure in named.items():
+        if not figure.band >= 0.0:  # nothing is within a band below zero, or of no number
+            raise ValueError(f"the band of {name!r} is {figure.band!r}")
     return Figures(named, table.get("scheme", ""))
 
 
@@ -127,11 +130,13 @@ def _scenario(table: dict[str, Any]) -> ScenarioFigures:
     return ScenarioFigures(str(table["version"]), runs)
 
 
-def from_text(text: str) -> Baseline:
-    """The figures that `to_text` wrote. Raises ValueError, KeyError or TypeError."""
+def from_text(text: str, engine: str) -> Baseline:
+    """The figures that `to_text` wrote of an engine. Raises ValueError, KeyError or TypeError."""
     data = tomllib.loads(text)
     if data["schema"] != SCHEMA:
         raise ValueError(f"its schema is {data['schema']}, not {SCHEMA}")
+    if data["engine"] != engine:
+        raise ValueError(f"its engine is {data['engine']}, not {engine}")
     return {name: _scenario(table) for name, table in data.get("scenario", {}).items()}
 
 
@@ -144,7 +149,7 @@ def read_baseline(folder: Path, engine: str) -> Baseline | None:
     if not path.is_file():
         return None
     try:
-        return from_text(path.read_text(encoding="utf-8"))
+        return from_text(path.read_text(encoding="utf-8-sig"), engine)
     except (ValueError, TypeError, KeyError, AttributeError) as problem:
         raise UsageError(
             f"{path}: not a baseline: {problem}; delete the file, then run with --update-baseline."

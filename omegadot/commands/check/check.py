@@ -33,8 +33,9 @@ class CheckResult:
 
     by_check: every check with its result.  subjects: the engine, its version and integrators; none
     where it did not start.  drawn: the random systems among the scenarios that were not named.
-    only_skipped: a sentence where every check was skipped, which is no pass.  baselines: the files
-    that were written.  failing: for each kind of failure, three at most, the simplest system found.
+    only_skipped: a sentence where every check, or every one but those of the model, was skipped,
+    which is no pass.  baselines: the files that were written.  failing: for each kind of failure,
+    three at most, the simplest system found.
     """
 
     by_check: Mapping[Check, Result]
@@ -122,7 +123,7 @@ def check(
         failing = _shrunk(engine, selection, results, report) if shrink else []
     tally = Tally()
     for one, result in results.items():
-        tally.add(one.engine, result.verdict, result.message)
+        tally.add(one.engine, one.gate, result.verdict, result.message)
     skipped = tally.only_skipped(choice.name for choice in selection.choices)
     return CheckResult(
         results,

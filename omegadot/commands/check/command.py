@@ -54,8 +54,8 @@ def check(
 ) -> None:
     """Check one engine, built in or your own, at every gate.
 
-    Exit codes: 0 every check holds, 1 one fails or all were skipped, 2 wrong usage or input, 3 the
-    engine crashed, timed out or could not be started.
+    Exit codes: 0 every check holds, 1 one fails or all but those of the model were skipped, 2 wrong
+    usage or input, 3 the engine crashed, timed out or could not be started.
     """
     arguments = options.given(locals())
     from omegadot.commands.check.check import check as check_engine

@@ -13,7 +13,7 @@ from omegadot.commands.check.suite import Suite
 
 ROOT = "omegadot"
 OF_THE_ENGINE = "engines"
-ENGINE, VERDICT, MESSAGE = "engine", "verdict", "message"
+ENGINE, GATE, VERDICT, MESSAGE = "engine", "gate", "verdict", "message"
 
 
 class CheckFailedError(Exception):
@@ -48,7 +48,8 @@ class CheckItem(pytest.Item):
         """Request the result: the scenario is run when its first check is."""
         result = self.suite.result_of(self.check).settled
         # Properties travel with the report, also from another process, and stand in JUnit's file.
-        self.user_properties += ((ENGINE, self.check.engine), (VERDICT, result.verdict))
+        named = ((ENGINE, self.check.engine), (GATE, self.check.gate))
+        self.user_properties += (*named, (VERDICT, result.verdict))
         if result.verdict == "skip":
             self.user_properties.append((MESSAGE, result.message))
             pytest.skip(result.message)

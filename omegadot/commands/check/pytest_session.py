@@ -10,7 +10,7 @@ import pytest
 
 from omegadot.adapters.registry import AdapterError
 from omegadot.commands.check.baseline_file import from_text, to_text
-from omegadot.commands.check.pytest_items import ENGINE, MESSAGE, ROOT, VERDICT, collect
+from omegadot.commands.check.pytest_items import ENGINE, GATE, MESSAGE, ROOT, VERDICT, collect
 from omegadot.commands.check.result import REGISTRY, Tally, coverage
 from omegadot.commands.check.select import Arguments, select
 from omegadot.commands.check.suite import Suite
@@ -104,14 +104,14 @@ class PytestSession:
     def pytest_testnodedown(self, node: Any) -> None:
         """Take the figures that a worker of xdist has measured."""
         for engine, text in getattr(node, "workeroutput", {}).get(SHARED, {}).items():
-            self.suite.figures.setdefault(engine, {}).update(from_text(text))
+            self.suite.figures.setdefault(engine, {}).update(from_text(text, engine))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Count a check by its engine."""
         properties = dict(report.user_properties)
         if report.when == "call" and report.nodeid.startswith(f"{ROOT}::") and ENGINE in properties:
             verdict, message = str(properties[VERDICT]), str(properties.get(MESSAGE, ""))
-            self.tally.add(str(properties[ENGINE]), verdict, message)
+            self.tally.add(str(properties[ENGINE]), str(properties[GATE]), verdict, message)
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_sessionfinish(self, session: pytest.Session) -> None:

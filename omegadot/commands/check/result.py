@@ -12,10 +12,12 @@ from pydantic import TypeAdapter
 
 from omegadot.gates.case import Case, Sweep, knobs_of
 from omegadot.harness.plan import Engine
+from omegadot.reports.summary.reasons import MODEL_ALONE
 from omegadot.reports.text.numbers import times
 
 GATES_OF_A_SCENARIO = ("model", "equation")
 GATES_OF_A_RUN = ("scheme", "invariants", "trajectory")
+OF_MOTION = ("equation", *GATES_OF_A_RUN)
 Verdict = Literal["pass", "fail", "declared", "skip", "error"]
 
 
@@ -85,26 +87,36 @@ def error(outcome: str, reason: str) -> Result:
 
 @dataclass
 class Tally:
-    """Verdicts by engine, and the first reason for a skip."""
+    """Verdicts by engine, apart those of gates that test its motion, and the first reason for a
+    skip.
+    """
 
     verdicts: dict[str, Counter[str]] = field(default_factory=dict)
+    motion: dict[str, Counter[str]] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
 
-    def add(self, engine: str, verdict: str, message: str = "") -> None:
+    def add(self, engine: str, gate: str, verdict: str, message: str = "") -> None:
         """Count one check."""
         self.verdicts.setdefault(engine, Counter())[verdict] += 1
+        if gate in OF_MOTION:
+            self.motion.setdefault(engine, Counter())[verdict] += 1
         if verdict == "skip":
             self.reasons.setdefault(engine, message)
 
     def only_skipped(self, named: Iterable[str]) -> list[str]:
-        """A sentence for each engine requested by name of which every check was skipped."""
-        return [
-            f"{engine}: all of its {times(sum(self.verdicts[engine].values()), 'check')} "
-            f"{'was' if sum(self.verdicts[engine].values()) == 1 else 'were'} skipped, and a skip "
-            f"is not a pass ({self.reasons[engine]})."
-            for engine in dict.fromkeys(named)
-            if set(self.verdicts.get(engine, ())) == {"skip"}
-        ]
+        """A sentence for each engine requested by name of which every check was skipped, or every
+        one but those of its model.
+        """
+        found = []
+        for engine in dict.fromkeys(named):
+            why = f"({self.reasons.get(engine, '')})"
+            if set(self.verdicts.get(engine, ())) == {"skip"}:
+                count = sum(self.verdicts[engine].values())
+                were = f"{times(count, 'check')} {'was' if count == 1 else 'were'} skipped"
+                found.append(f"{engine}: all of its {were}, and a skip is not a pass {why}.")
+            elif set(self.motion.get(engine, ())) == {"skip"}:
+                found.append(f"{engine}: {MODEL_ALONE} {why}.")
+        return found
 
 
 @dataclass(frozen=True)

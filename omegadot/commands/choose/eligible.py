@@ -24,6 +24,8 @@ def unmet(description: Description, wanted: Requirements) -> list[str]:
 
 
 def _clauses(description: Description, wanted: Requirements) -> Iterator[str]:
+    if not description.integrators:
+        yield "integrators: it has none, so nothing about its motion over time can be tested"
     own = PRECISION[description.precision]
     if wanted.precision not in (None, own):
         yield f"precision: it computes in {own} precision, {wanted.precision} is required"

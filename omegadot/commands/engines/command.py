@@ -18,7 +18,10 @@ def engines(
     output: PageOutput = PageFormat.text,
     adapters: Adapters = None,
 ) -> None:
-    """List the engines: installed or not, versions, integrators, conventions, what is off."""
+    """List the engines: installed or not, versions, integrators, conventions, what is off.
+
+    Exit codes: 0 listed, installed or not, 2 wrong usage or input.
+    """
     from omegadot.commands.engines.engines import engines as installed_engines
 
     entries = installed_engines(adapters or ())

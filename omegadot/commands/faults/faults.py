@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 from omegadot.adapters.registry import BUILT_IN
 from omegadot.commands.faults.catalogue import ORDERED
-from omegadot.commands.faults.matrix import DEFAULT, EngineMatrix, engine_matrix
+from omegadot.commands.faults.detection import DEFAULT
+from omegadot.commands.faults.matrix import EngineMatrix, engine_matrix
 from omegadot.commands.faults.prepared import Pool
 from omegadot.commands.progress import Count, Reporting, reporting
 from omegadot.commands.typed import typed

@@ -10,8 +10,9 @@ import typer
 from rich.table import Table
 
 from omegadot.commands.faults.detect import GATES
+from omegadot.commands.faults.detection import POSES, Detection, of_several
 from omegadot.commands.faults.faults import FaultsResult
-from omegadot.commands.faults.matrix import POSES, SOUND, Detection, EngineMatrix, of_several
+from omegadot.commands.faults.matrix import SOUND, EngineMatrix
 from omegadot.commands.faults.published_checks import PUBLISHED
 from omegadot.reports.text.text_grid import plain_console
 

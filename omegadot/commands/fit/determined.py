@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from omegadot.commands.fit.compared import Compared
+from omegadot.commands.fit.data import MOST_RATES, Data
 from omegadot.commands.fit.estimates import Estimates, estimates_of, widened
-from omegadot.commands.fit.models import Compared
 from omegadot.commands.fit.motion import motion
 from omegadot.commands.fit.noise import one_lane
 from omegadot.commands.fit.samples import Samples
 from omegadot.commands.fit.scale import Known, Scale, scale_of
-from omegadot.commands.fit.solve import MOST_RATES, Data
 from omegadot.commands.fit.spread import Spread, spread_of
 from omegadot.reference_impl.system import Array
 

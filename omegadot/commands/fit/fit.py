@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from omegadot.commands.fit import picture
+from omegadot.commands.fit.compared import Terms
 from omegadot.commands.fit.determined import determined
 from omegadot.commands.fit.estimates import Estimates
-from omegadot.commands.fit.models import Terms, compare_models
+from omegadot.commands.fit.models import compare_models
 from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.samples import samples_of
 from omegadot.commands.fit.scale import known_of, torque_of

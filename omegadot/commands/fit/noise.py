@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from omegadot.commands.fit.data import Data
 from omegadot.commands.fit.parameters import Parameters
-from omegadot.commands.fit.solve import Data, Fitted
+from omegadot.commands.fit.solve import Fitted
 from omegadot.reference_impl.system import Array
 
 FINEST = 1e-12  # the tolerance with which the motion of a trace without noise is followed

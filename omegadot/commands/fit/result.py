@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from omegadot.commands.fit.compared import Compared
 from omegadot.commands.fit.estimates import Estimates, principal
-from omegadot.commands.fit.models import Compared
 from omegadot.commands.fit.parameters import Free
 from omegadot.commands.fit.samples import Samples
 from omegadot.commands.fit.scale import Scale

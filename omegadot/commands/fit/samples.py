@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.commands.fit.solve import Data
+from omegadot.commands.fit.data import Data
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import Trace, trace_of

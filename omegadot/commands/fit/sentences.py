@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from omegadot.commands.fit.compared import Compared, Terms
 from omegadot.commands.fit.determined import Determined
 from omegadot.commands.fit.estimates import Estimates, open_directions
-from omegadot.commands.fit.models import Compared, Terms
 from omegadot.commands.fit.scale import Scale
 from omegadot.reference_impl.system import Array
 

@@ -14,9 +14,10 @@ import numpy as np
 from scipy.stats import norm as normal
 from scipy.stats import t as student
 
+from omegadot.commands.fit.data import Data
 from omegadot.commands.fit.noise import Noise
 from omegadot.commands.fit.parameters import Free, Parameters, moved
-from omegadot.commands.fit.solve import Data, Fitted
+from omegadot.commands.fit.solve import Fitted
 from omegadot.reference_impl.system import Array
 
 STEP = 1e-5  # of central differences, of numbers of the order of one: rounding and curve are alike

@@ -17,6 +17,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from omegadot.commands.fit.data import Data
 from omegadot.commands.fit.parameters import (
     SYMMETRIC,
     Free,
@@ -24,7 +25,6 @@ from omegadot.commands.fit.parameters import (
     inertia_of,
     inside,
 )
-from omegadot.commands.fit.solve import Data
 from omegadot.reference_impl.cross_product import cross, skew
 from omegadot.reference_impl.system import Array
 

@@ -25,7 +25,11 @@ def report(
         bool, typer.Option("--markdown", help="Print a summary in Markdown, for a pull request.")
     ] = False,
 ) -> None:
-    """Draw the report of a stored run again, or of two runs side by side."""
+    """Draw the report of a stored run again, or of two runs side by side.
+
+    Exit codes: 0 drawn, whatever the verdicts in it, 2 wrong usage or input, 3 the system failed,
+    as on a full disk.
+    """
     typer.echo(printed(runs, out, figures, markdown))
 
 

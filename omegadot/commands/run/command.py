@@ -67,11 +67,12 @@ def run(
     """Run scenarios on engines, judge them, and write a record with its report.
 
     Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
-    timed out or could not be started, or the record could not be written where it was requested.
+    timed out or could not be started, or nothing but its model could be judged, or the record could
+    not be written where it was requested.
     """
     arguments = options.given(locals())
     from omegadot.commands.run.print_run import exit_code, print_json, print_text
-    from omegadot.commands.run.result import RunInterrupted
+    from omegadot.commands.run.result import RunInterrupted, unwritten
     from omegadot.commands.run.run import run as run_scenarios
 
     if memory is not None and not _memory_is_limited():
@@ -80,6 +81,9 @@ def run(
         result = run_scenarios(**arguments, command=options.command_line())
     except RunInterrupted as interrupted:
         result = interrupted.result
+    except KeyboardInterrupt:
+        typer.echo(unwritten(out), err=True)
+        raise
     if output is options.Format.json:
         print_json(result)
     else:

@@ -13,17 +13,21 @@ from omegadot.diagnosis.clusters import clusters_of_run
 from omegadot.diagnosis.diagnose import causes_over
 from omegadot.gates.case import Case
 from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
-from omegadot.harness.outcome import Outcome, RunRequest
+from omegadot.harness.outcome import Cause, EngineCase, JudgedCase, Outcome, RunRequest
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import SCHEMA
 from omegadot.workers.machine import describe_machine, package_versions
 
 
 def record_of(
-    outcome: Outcome, request: RunRequest, command: Sequence[str], seconds: float
+    outcome: Outcome,
+    request: RunRequest,
+    command: Sequence[str],
+    seconds: float,
+    causes: bool = True,
 ) -> Record:
-    """The record of a finished or interrupted run."""
-    causes = causes_over(outcome.cases, request.seed)
+    """The record of a finished or interrupted run. causes: whether those of failures are sought."""
+    sought = causes_over(outcome.cases, request.seed) if causes else _no_causes
     now = datetime.datetime.now(datetime.UTC).replace(microsecond=0)
     run = {
         "schema": SCHEMA,
@@ -39,10 +43,14 @@ def record_of(
         "scenarios": [_scenario(case) for case in request.cases],
         "worker_deaths": [{"engine": name, "how": how} for name, how in outcome.deaths],
         "clusters": [vars(cluster) for cluster in clusters_of_run(outcome.cases)],
-        "tasks": tasks_of_run(outcome, list(request.cases), request.setup, causes),
+        "tasks": tasks_of_run(outcome, list(request.cases), request.setup, sought),
     }
     setup = request.setup
     return Record(run, metrics_of_run(outcome, setup), trajectories_of_run(outcome, setup))
+
+
+def _no_causes(judged: JudgedCase, found: EngineCase) -> Cause:
+    return lambda run: ""
 
 
 def _engines(outcome: Outcome) -> list[dict[str, Any]]:

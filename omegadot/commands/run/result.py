@@ -8,10 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from omegadot.commands.run.uninterrupted import uninterrupted
 from omegadot.harness.plan import EngineChoice
 from omegadot.reports.record.interrupted import place_of_interrupted
+from omegadot.reports.record.record import RUN
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.run_record import RunRecord, TaskResult
+from omegadot.reports.summary.reasons import tests_motion
 
 
 @dataclass(frozen=True, repr=False)
@@ -19,7 +22,8 @@ class RunResult:
     """A run. record: its tables and its page.  folder: where it was written, if anywhere.
 
     required: engines that were given by name; one of these that is missing counts against the run.
-    note: why the record is not where it was requested, as a sentence; "" where it is.
+    note: where the record of an interrupted run is and what becomes of an earlier one, or why a
+    record is not where it was requested; "" else.
     """
 
     record: RunRecord
@@ -47,9 +51,18 @@ class RunResult:
         )
 
     @property
+    def untested(self) -> tuple[str, ...]:
+        """The engines of which the model was judged and nothing about its motion."""
+        tasks = [task for task in self.record.run["tasks"] if task["gates"]]
+        moved = {task["engine"] for task in tasks if tests_motion(task)}
+        return tuple(dict.fromkeys(t["engine"] for t in tasks if t["engine"] not in moved))
+
+    @property
     def answered(self) -> bool:
-        """Whether every engine answered: no run is without an answer, and no process died."""
-        return not (self.unanswered or self.record.run["worker_deaths"])
+        """Whether every engine answered: no run is without an answer, no process died, and of no
+        engine was the model alone judged.
+        """
+        return not (self.unanswered or self.untested or self.record.run["worker_deaths"])
 
     @property
     def stale_exceptions(self) -> tuple[str, ...]:
@@ -70,8 +83,18 @@ class RunResult:
         return self.record._repr_html_()
 
 
+def unwritten(out: str | os.PathLike[str] | None) -> str:
+    """What is left where a run is interrupted before its record could be written: a sentence."""
+    folder = None if out is None else Path(out)
+    earlier = folder is not None and os.path.lexists(folder / RUN)
+    kept = f" The earlier record in {folder} is kept." if earlier else ""
+    return f"Interrupted: no record of this run was written.{kept}"
+
+
 class RunInterrupted(KeyboardInterrupt):
-    """Ctrl-C during a run. result: what had come in until then, written where it was to be."""
+    """Ctrl-C during a run. result: what had come in until then, written where it was to be; the
+    whole run where Ctrl-C came as it was written.
+    """
 
     def __init__(self, result: RunResult) -> None:
         super().__init__("interrupted")
@@ -85,21 +108,37 @@ def result_of(
 
     An interrupted run goes to the folder only where there is no earlier record, else beside it (see
     `place_of_interrupted`). What finds no place, or is refused by the disk, is written to the
-    system's folder for temporary files.
+    system's folder for temporary files. Ctrl-C waits until it is written.
     """
-    folder, note = None, ""
-    if out is not None:
-        folder = requested = Path(out)
-        if not record.run["complete"]:
-            folder, note = place_of_interrupted(record.run, requested)
-        try:
-            if folder is not None:
-                record.save(folder)
-        except RecordError as error:
-            if folder == requested and not isinstance(error.__cause__, OSError):
-                raise
-            folder, note = None, str(error)
-        if folder is None:
-            folder = record.save(Path(tempfile.mkdtemp(prefix="omegadot-")) / "run")
-            note = f"{note} This run's record is in {folder}."
-    return RunResult(record, folder, frozenset(c.name for c in choices if c.required), note)
+    required = frozenset(c.name for c in choices if c.required)
+    if out is None:
+        return RunResult(record, None, required)
+    with uninterrupted() as came:
+        folder, note = _written(record, Path(out))
+    result = RunResult(record, folder, required, note)
+    if came:
+        raise RunInterrupted(result)
+    return result
+
+
+def _written(record: RunRecord, requested: Path) -> tuple[Path, str]:
+    """Write the record; its folder, and the note on it."""
+    folder: Path | None = requested
+    complete, note = bool(record.run["complete"]), ""
+    if not complete:
+        folder, note = place_of_interrupted(record.run, requested)
+    replaced = folder is not None and os.path.lexists(folder / RUN)
+    try:
+        if folder is not None:
+            record.save(folder)
+    except RecordError as error:
+        if folder == requested and not isinstance(error.__cause__, OSError):
+            raise
+        folder, note = None, str(error)
+    if folder is None:
+        folder = record.save(Path(tempfile.mkdtemp(prefix="omegadot-")) / "run")
+    elif complete:
+        return folder, ""
+    elif replaced:
+        note = f"{note} The record of an interrupted run in {folder} is replaced."
+    return folder, f"{note or 'Interrupted.'} This run's record is in {folder}.".strip()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 from omegadot.adapters.protocol import Setup
 from omegadot.commands.check.exceptions import exceptions_of
@@ -75,7 +76,12 @@ def run(
     with reporting(progress) as report:
         outcome = execute(request, report)
     outcome, stale = with_declared(outcome, known if setup == "physics" else (), cases)
-    record = record_of(outcome, request, command, time.perf_counter() - started)
+    seconds = time.perf_counter() - started
+    try:
+        record = record_of(outcome, request, command, seconds)
+    except KeyboardInterrupt:  # as causes are sought, which may take long: without them
+        outcome = replace(outcome, interrupted=True)
+        record = record_of(outcome, request, command, seconds, causes=False)
     record.run["stale_exceptions"] = stale
     result = result_of(RunRecord.of(record), choices, out)
     if outcome.interrupted:

@@ -8,7 +8,10 @@ from omegadot.commands.options import Format, Output
 
 
 def scenarios(output: Output = Format.text) -> None:
-    """List the built-in scenarios and what each shows."""
+    """List the built-in scenarios and what each shows.
+
+    Exit codes: 0 listed, 2 wrong usage.
+    """
     from rich.console import Console
     from rich.markup import escape
 

@@ -143,7 +143,7 @@ def score(
             write_whole(file, fits.fitting[0].map_text(), MARK)
         raise typer.Exit(code)
     from omegadot.commands.run.print_run import exit_code
-    from omegadot.commands.run.result import RunInterrupted
+    from omegadot.commands.run.result import RunInterrupted, unwritten
     from omegadot.commands.score.print_score import print_json, print_text
     from omegadot.commands.score.score import score as score_trace
 
@@ -157,6 +157,9 @@ def score(
         )
     except RunInterrupted as interrupted:
         result = cast("ScoreResult", interrupted.result)
+    except KeyboardInterrupt:
+        typer.echo(unwritten(out), err=True)
+        raise
     if output is Format.json:
         print_json(result)
     else:

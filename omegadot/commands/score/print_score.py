@@ -42,6 +42,8 @@ def print_text(result: ScoreResult) -> None:
     _print_others(result)
     if result.folder is not None:
         typer.echo(f"Report: {result.folder / PAGE}")
+    if result.note:
+        typer.echo(result.note)
 
 
 def _print_others(result: ScoreResult) -> None:
@@ -88,6 +90,7 @@ def print_json(result: ScoreResult) -> None:
         "schema": result.record.run["schema"],
         "exit_code": exit_code(result),
         "folder": str(result.folder),
+        "note": result.note,
         "report": str(result.folder / PAGE) if result.folder else None,
         "scenario": found.case.name,
         "trace": result.name,

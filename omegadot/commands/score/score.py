@@ -132,9 +132,13 @@ def score(
     rows = rows_of(found, requirements)
     with reporting(progress) as report:
         record = scored_record(found, rows, name, choices, command, report)
-    held = result_of(RunRecord.of(record), choices, out)
+    interrupted = False
+    try:
+        held = result_of(RunRecord.of(record), choices, out)
+    except RunInterrupted as came:  # as it was written
+        held, interrupted = came.result, True
     result = ScoreResult(**vars(held), name=name, found=found, rows=tuple(rows))
-    if not result.complete:
+    if interrupted or not result.complete:
         raise RunInterrupted(result)
     return result
 

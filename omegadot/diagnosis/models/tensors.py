@@ -140,8 +140,8 @@ def mistaken_inertias(body: Body, system: System) -> Iterator[tuple[str, Array]]
     for order in permutations(range(3)):
         text = "the principal moments stand on the diagonal: the rotation of their axes is dropped"
         yield text, np.diag(moments[list(order)])
-    # R^T D R for R D R^T, whatever order and signs the axes are kept in
-    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3)):
-        turn = axes[:, order] * np.array(signs)
+    # R^T D R for R D R^T, whatever order and signs the axes are kept in; those of -R are the same
+    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=2)):
+        turn = axes[:, order] * np.array((1.0, *signs))
         text = "the rotation of the inertia's principal axes looks transposed"
         yield text, turn.T @ np.diag(moments[list(order)]) @ turn

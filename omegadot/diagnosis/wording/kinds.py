@@ -27,6 +27,7 @@ FACTS = (
     "does not move in the run",
     "is stepped in full",
 )
+SEEN = ("none is known", "the error of one step goes as")
 # One number in every run, or it is another cause.
 CONSTANTS = ("low-pass", "it is filtered")
 MOST_NAMED = 3  # between which nothing decides
@@ -50,7 +51,7 @@ def is_fact(text: str) -> bool:
 
 def is_named(text: str) -> bool:
     """Whether a cause is named, and not only what is seen."""
-    return bool(text) and not is_fact(text) and "none is known" not in text
+    return bool(text) and not is_fact(text) and not any(one in text for one in SEEN)
 
 
 def is_of_one_run(text: str) -> bool:

@@ -6,6 +6,7 @@ from copy import copy
 
 import numpy as np
 
+from omegadot.gates.bounds.roundings import PLAIN, Roundings
 from omegadot.gates.bounds.scales import (
     EPS,
     ROUNDINGS_PER_STEP,
@@ -43,6 +44,7 @@ class Yardstick:
         self.system, self.eps, self.exact, self.times = system, EPS, exact, times
         self.per_rounding = 1.0
         self._open: Array | None = None
+        self.roundings = PLAIN
         self.scale: BodyScale = body_scale(system)
         acceleration = forward_dynamics(system, exact)
         self.acceleration = float(np.max(angular_size(system, exact, acceleration)))
@@ -98,6 +100,12 @@ class Yardstick:
         """
         other = copy(self)
         other.per_rounding = self._momentum + (self._carried if self.eps <= EPS else 0.0)
+        return other
+
+    def of_roundings(self, roundings: Roundings) -> Yardstick:
+        """The same sizes for steps that round otherwise than most."""
+        other = copy(self)
+        other.roundings = roundings
         return other
 
     def is_stiff(self, timestep: float) -> bool:
@@ -175,17 +183,20 @@ class Yardstick:
         for omega / rate alike. The others follow from it to first order; a velocity that is kept in
         body axes is turned by theta, as far as steps do not turn it back: ``h rate`` of it a
         radian. An engine's lever that is the difference of two places in the world is off by a
-        rounding of x, of which ``|omega|^2 + |omega-dot|`` is an acceleration. faster: of a scheme
-        whose velocity grows beyond the exact one, and rounding with it, see `faster`; ``m |v|^2``
-        may be among the terms of omega-dot.
+        rounding of x, of which ``|omega|^2 + |omega-dot|`` is an acceleration. Velocities that are
+        differences over a step have the roundings of a turn over h, and of x over h.
+        faster: of a scheme whose velocity grows beyond the exact one, and rounding with it, see
+        `faster`; ``m |v|^2`` may be among the terms of omega-dot.
         """
-        amount = ROUNDINGS_PER_STEP * self.eps * (steps + 1.0)
+        amount = self.roundings.per_step * self.eps * (steps + 1.0)
         turning = timestep * self.acceleration * faster**2 / self.rate
         time = timestep * steps
         opened = 0.0 if self._open is None else np.interp(time, self.times, self._open)
-        theta = amount * (self.per_rounding + opened + turning) * growth
+        of_turn = 1.0 / (timestep * self.rate) if self.roundings.of_turns else 0.0
+        theta = amount * (np.maximum(self.per_rounding, of_turn) + opened + turning) * growth
         swift = self.speed * faster
         speed = amount * (swift + self.gravity * time) + theta * self.rate * self.scale.lever
+        speed = speed + (amount * self.reach / timestep if self.roundings.of_places else 0.0)
         speed = speed + theta * swift * np.minimum(1.0, timestep * self.rate**2 * time)
         turned = np.interp(time, self.times, self._turns) + timestep * self._sharpest
         speed = speed + ROUNDINGS_PER_STEP * self.eps * self.reach * turned * faster**2

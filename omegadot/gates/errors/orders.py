@@ -36,12 +36,15 @@ class ObservedOrder:
     rise: by how much the slope rose with the last halving. Where the next term of the error is one
     order higher, what a slope lacks halves with the step, so that it is heading for
     ``value + rise``.  hidden: why errors show no order here; "" where nothing hides it.
+    same: the runs of all steps are one trajectory, as where an engine takes steps of its own that
+    are shorter than these.
     """
 
     value: float
     resolved: bool
     rise: float = 0.0
     hidden: str = ""
+    same: bool = False
 
 
 VANISHED = ObservedOrder(float("inf"), True)
@@ -113,10 +116,34 @@ def order_of(sweep: Sequence[Errors]) -> ObservedOrder | None:
     """The order over the steps of one integrator in a channel; None where none is to be seen.
 
     It is that of the longest time over which errors show one. `VANISHED` where an error above
-    rounding is within it at the finest step.
+    rounding is within it at the finest step. Of runs that are one trajectory the finest counts.
     """
     if _vanishes(sweep):
         return VANISHED
+    distinct = _distinct(sweep)
+    if 1 == len(distinct) < len(sweep):
+        found = _of_trajectories(sweep)
+        return found and replace(found, same=True)
+    return _of_trajectories(distinct)
+
+
+def _distinct(sweep: Sequence[Errors]) -> list[Errors]:
+    """Without the runs that rounding alone tells from the next finer one."""
+    kept = list[Errors]()
+    for one in sorted(sweep, key=lambda one: one.timestep):
+        if not kept or not _is_one_trajectory(kept[-1], one):
+            kept.append(one)
+    return kept
+
+
+def _is_one_trajectory(finer: Errors, one: Errors) -> bool:
+    """Whether two errors that are clear of rounding are the same to rounding."""
+    if len(finer.size) != len(one.size) or not np.any(one.size > CLEAR_OF_ROUNDING * one.bound):
+        return False
+    return bool(np.all(np.abs(one.size - finer.size) <= one.bound + finer.bound))
+
+
+def _of_trajectories(sweep: Sequence[Errors]) -> ObservedOrder | None:
     shown = None
     for horizon in HORIZONS:
         found, clear, saturated = _over(sweep, horizon)

@@ -147,7 +147,8 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
             falls = lowest.value < declared - 0.5 and lowest.rise <= ORDER_TOLERANCE
             return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
         # Two slopes may agree by chance where terms nearly cancel; at finer steps they do not.
-        doubtful = not evidence.settled and lowest.value > 0.5
+        # A step that is longer than an engine's own changes nothing.
+        doubtful = not evidence.settled and (lowest.value > 0.5 or lowest.same)
         return Finding("unsettled" if doubtful else "unexplained", text)
     if evidence.excess > 1.0:
         times = f"{evidence.excess:.1e} times what the errors at finer steps let it be"

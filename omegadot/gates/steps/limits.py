@@ -7,14 +7,14 @@ steps (Richardson 1911); what a scheme adds vanishes in it, and what a fault add
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from omegadot.gates.bounds.roundings import PLAIN, Roundings, is_change_of_place
 from omegadot.gates.bounds.scales import (
     EPS,
     ROUNDINGS_PER_EVALUATION,
-    ROUNDINGS_PER_STEP,
     angular_size,
     between_ellipsoids,
     body_scale,
@@ -45,6 +45,8 @@ def extrapolated(values: Array) -> Array:
     return np.asarray(_extrapolants(values)[0])
 
 
+FEWEST = 3  # states that show of which kind rounding is
+FARTHER = 64.0  # times: half way, by factors, from 16 to 256
 _WEIGHTS = np.abs(_extrapolants(np.eye(5))[0])
 _AMPLIFIED = float(np.sum(_WEIGHTS))  # what the extrapolation makes of roundings of the rates
 
@@ -56,12 +58,14 @@ class Limit:
     bound: (r, m), how far the extrapolants differ, and what rounding makes of it. Where they
     converge, the difference of two is the error of the worse.
     jump: (m,), by how much the quantity changes in steps that vanish; zero where that vanishes too.
+    rounding: (r, m), what rounding alone makes of the limit.
     """
 
     found: Array
     expected: Array
     bound: Array
     jump: Array | None = None
+    rounding: Array = field(default_factory=lambda: np.zeros((2, 1)))
 
     def shares(self, factor: float = 1.0) -> Array:
         """(m,): the distance from `factor` times the equation's rate, in parts of its bound."""
@@ -110,6 +114,7 @@ def limits(
     eps: float = EPS,
     tolerated: Tolerated = NOTHING,
     known: bool = True,
+    roundings: Roundings = PLAIN,
 ) -> dict[str, Limit]:
     """The rates at no step by channel. stepped: (m, k, ...), the states after one step each.
 
@@ -120,7 +125,8 @@ def limits(
     Of a scheme that steps the momentum in world axes an error of the attitude grows at the rate
     |J omega| / lambda. One that is not known may step the momentum about the world's origin, which
     holds ``m x times v`` besides. One that puts omega back on its ellipsoids leaves it open in one
-    direction (`between_ellipsoids`). A velocity that is nothing at the start has no size: an
+    direction (`between_ellipsoids`). One that takes velocities from two places rounds them by parts
+    of these over h (`Roundings`). A velocity that is nothing at the start has no size: an
     accuracy is absolute there, in rad/s or m/s. Single precision has no steps that are short
     against that of a thin body: there the bound is infinite.
     """
@@ -129,14 +135,14 @@ def limits(
     true, scale = acceleration_of(system)(states), body_scale(system)
     w, v, lever = states.angular_velocity, states.linear_velocity, scale.lever
     spinning = norm(apply(moving_inertia(system), w)) / scale.smallest
-    direction, roundings = between_ellipsoids(system, w, eps)
+    direction, between = between_ellipsoids(system, w, eps)
     kept = stays_on_ellipsoids(system, stepped.angular_velocity, w, np.ones(1), eps)
-    opened = np.where(kept, roundings * norm(w), 0.0)
+    opened = np.where(kept, between * norm(w), 0.0)
     elsewhere = 0.0 if known or eps > EPS else 1.0  # in single precision no engine could
     carried = elsewhere * momentum_of_place(system, states) / scale.smallest
     turning = spinning + opened + carried
     moving = norm(v) + lever * turning
-    step, evaluation = ROUNDINGS_PER_STEP * eps, ROUNDINGS_PER_EVALUATION * eps
+    step, evaluation = roundings.per_step * eps, ROUNDINGS_PER_EVALUATION * eps
     of_omega = evaluation * angular_size(system, states, true)
     of_velocity = evaluation * linear_size(system, states, true, eps)
     turn = rotation_between(before.orientation, stepped.orientation)
@@ -145,6 +151,9 @@ def limits(
     # Turns much shorter than this are taken by their series, which is no turn about an axis.
     least_turn = eps**0.25 / h[:, 0]
     place = norm(states.position) + lever + norm(v) / np.maximum(norm(w), least_turn)
+    of_turns = step / h * roundings.of_turns
+    of_places = step * norm(states.position)[:, None] / h * roundings.of_places
+    more = {"omega": of_turns, "linear_momentum": of_places + lever * of_turns}
     parts = {  # what changes, its rate, and the roundings of what is stepped and of the rate
         "attitude": (turn, w, step * np.ones(len(w)), step * turning),
         "omega": (spin, true.angular, step * (spinning + carried), of_omega),
@@ -164,9 +173,33 @@ def limits(
         absolute = np.where(nothing.get(channel, False), 1.0, 0.0)
         own = rounding + tolerated.in_a_run * np.maximum(size, absolute)
         per_rate = np.where(grows & (channel in follows), np.inf, per_rate + loose)
-        found[channel] = _limit(ladder.ranges, h, change, rate, own, per_rate)
+        rounded = own[:, None] + more.get(channel, np.zeros_like(h))
+        found[channel] = _limit(ladder.ranges, h, change, rate, rounded, per_rate)
     found["omega"] = _opened(found["omega"], ladder, h, direction, step * opened)
     return found
+
+
+def roundings_of(
+    system: System, probe: Probe, stepped: State, eps: float, per_step: float
+) -> Roundings:
+    """Which velocities are taken from places, as single steps show.
+
+    The rounding of a velocity that is stepped is ``eps / h`` in its rate; that of places, over h,
+    is ``eps / h^2``. By steps 16 times shorter the one is off 16 times as far, the other 256 times;
+    and a wrong equation as far as before. Single precision has no such steps.
+    """
+    if len(ladder_of(eps).ranges) < 2:
+        own = is_change_of_place(probe.states[:, None], stepped, probe.timesteps, eps)
+        return Roundings(own, per_step=per_step)
+    found = limits(system, probe, stepped, eps)
+    taken = dict[str, bool]()
+    for channel in ("linear_momentum", "omega"):
+        one = found[channel]
+        long, short = norm(one.found - one.expected)[:2]
+        seen = (long > 0.0) & (short > one.rounding[1])  # of what is stepped nothing is this far
+        ratios = np.log(short[seen] / long[seen])
+        taken[channel] = len(ratios) >= FEWEST and bool(np.mean(ratios) > np.log(FARTHER))
+    return Roundings(taken["linear_momentum"], taken["omega"], per_step)
 
 
 def _opened(limit: Limit, ladder: Ladder, h: Array, direction: Array, rounding: Array) -> Limit:
@@ -185,13 +218,16 @@ def _limit(
     rounding: Array,
     per_rate: Array,
 ) -> Limit:
-    found, bounds = [], []
+    """rounding: (m, k), of what changes in each of the steps."""
+    found, bounds, rounded = [], [], []
     for steps in ranges:
         best, worse, worst = _extrapolants(change[:, steps] / h[:, steps, None])
-        rounded = rounding * np.sum(_WEIGHTS / h[:, steps], axis=-1)
         found.append(best)
-        bounds.append(norm(best - worse) + norm(worse - worst) + rounded + per_rate * _AMPLIFIED)
+        own = np.sum(rounding[:, steps] * _WEIGHTS / h[:, steps], axis=-1)
+        rounded.append(own + per_rate * _AMPLIFIED)
+        bounds.append(norm(best - worse) + norm(worse - worst) + rounded[-1])
     left = norm(extrapolated(change[:, ranges[0]]))
     jumps = left > 0.5 * norm(change[:, ranges[0].start])  # of the longest of these steps
-    jumps &= left > rounding * _AMPLIFIED
-    return Limit(np.array(found), expected, np.array(bounds), np.where(jumps, left, 0.0))
+    jumps &= left > np.sum(rounding[:, ranges[0]] * _WEIGHTS, axis=-1)
+    jump = np.where(jumps, left, 0.0)
+    return Limit(np.array(found), expected, np.array(bounds), jump, np.array(rounded))

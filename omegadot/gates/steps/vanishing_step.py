@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from omegadot.gates.bounds.roundings import PLAIN, Roundings
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, body_scale
 from omegadot.gates.rows import Row, within
 from omegadot.gates.steps.limits import NOTHING, Limit, Tolerated, limits
@@ -34,6 +35,7 @@ def rows(
     eps: float = EPS,
     tolerated: Tolerated = NOTHING,
     known: bool = True,
+    roundings: Roundings = PLAIN,
 ) -> list[Row]:
     """Per channel, how far the steps' own rate is from the equation's, in parts of its bound.
 
@@ -42,7 +44,7 @@ def rows(
     """
     scale, digits = body_scale(system), ladder_of(eps).digits
     with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-        found = limits(system, probe, stepped, eps, tolerated, known)
+        found = limits(system, probe, stepped, eps, tolerated, known, roundings)
         shares = {channel: float(np.max(one.shares())) for channel, one in found.items()}
         wrong = not all(share <= 1.0 for share in shares.values())
         factor = _common_factor(found) if wrong else None

@@ -16,11 +16,9 @@ from omegadot.harness.judging.judged_run import (
     failed,
     is_finite,
     measured_runs_of,
-    rows_of_run,
     why_of,
 )
-from omegadot.harness.requests.repeats import rows_again
-from omegadot.harness.requests.step_probes import rows_of_probes
+from omegadot.harness.judging.probed import rows_with_probes
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 
@@ -47,11 +45,8 @@ def judge_accuracies(
         if not is_finite(State(**answer.result["state"])):
             yield diverged(integrator, sweep, answer, measured, findings, eps)
             continue
-        probed = rows_of_probes(truth, integrator, sweep, result)
-        probed += rows_again(truth, integrator, sweep, result, measured)
-        rows, broken = rows_of_run(truth, measured, findings, answer, result)
-        broken += [row.note for row in probed if row.verdict == "fail"]
+        rows, broken = rows_with_probes(truth, integrator, measured, findings, answer, result)
         why = broken[0] if broken else why_of(findings)
-        rows = [*accuracy_followed.rows(measured, known), *probed, *rows]
+        rows = [*accuracy_followed.rows(measured, known), *rows]
         unresolved = not broken and further is not None
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved, further)

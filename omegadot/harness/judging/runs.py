@@ -30,7 +30,6 @@ from omegadot.harness.judging.judged_run import (
     failed,
     is_finite,
     measured_runs_of,
-    rows_of_run,
     why_of,
 )
 from omegadot.harness.judging.no_solution import (
@@ -39,8 +38,8 @@ from omegadot.harness.judging.no_solution import (
     reason_without_a_solution,
     unjudged_row,
 )
-from omegadot.harness.requests.repeats import rows_again
-from omegadot.harness.requests.step_probes import rows_of_probes
+from omegadot.harness.judging.probed import rows_with_probes
+from omegadot.harness.requests.step_probes import roundings_in
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 
@@ -92,14 +91,12 @@ def _judge_steps(
         orders = scheme.order_rows(seen, declared, measured, min(r.stiffness for r in known))
         if integrator.knob == "fixed-accuracy":
             orders = accuracy.fixed_orders(orders)
-        probed = rows_of_probes(truth, integrator, sweep, result)
-        probed += rows_again(truth, integrator, sweep, result, measured)
-        rows, broken = rows_of_run(truth, measured, findings, answer, result)
-        broken += [row.note for row in (match, *probed) if row.verdict == "fail"]
+        own = [match.note] if match.verdict == "fail" else []
+        rows, broken = rows_with_probes(truth, integrator, measured, findings, answer, result, own)
         why = broken[0] if broken else "; ".join([why_of(findings), *(r.note for r in grows[:1])])
         # what is broken at this step stays so, whatever finer ones show
         unresolved = not broken and _finer_steps_decide(findings, known)
-        rows = [match, *orders, *grows, *probed, *rows]
+        rows = [match, *orders, *grows, *rows]
         yield JudgedRun(integrator, sweep, "ok", "", rows, why, unresolved)
 
 
@@ -152,5 +149,6 @@ def judge_case(
     for integrator in result.integrators:
         finer = refinements.get(integrator.name, {}).values()
         judge = judge_accuracies if integrator.knob == "accuracy" else _judge_steps
-        found += judge(truth, integrator, case.sweeps_of(integrator), result, finer)
+        own = truth.of_roundings(roundings_in(case.system, result, integrator))
+        found += judge(own, integrator, case.sweeps_of(integrator), result, finer)
     return found

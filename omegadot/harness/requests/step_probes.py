@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from omegadot.adapters.protocol import Integrator
+from omegadot.gates.bounds.roundings import PLAIN, Roundings, roundings_per_step
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.steps import restart, vanishing_step
 from omegadot.gates.steps.accuracy import finest_of, tolerated_by
+from omegadot.gates.steps.limits import roundings_of
 from omegadot.gates.steps.probe import probe_of
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import State, System
 
 
 def probe_steps(
@@ -44,6 +48,19 @@ def probe_steps(
                 result.restarts[integrator.name, sweep.timestep] = (sample, left, answer)
 
 
+def roundings_in(system: System, result: CaseResult, integrator: Integrator) -> Roundings:
+    """What the steps of an integrator round, as its declared orders and its first steps show."""
+    orders = (order for order in integrator.orders.values() if order is not None)
+    known = integrator.scheme in SCHEMES or integrator.knob == "accuracy"
+    per_step = PLAIN.per_step if known else roundings_per_step(max(orders, default=0))
+    probe, answer = result.first_steps.get(integrator.name, (None, None))
+    if probe is None or answer is None or not answer.ok:
+        return Roundings(per_step=per_step)
+    with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+        stepped, eps = State(**answer.result), eps_of(result.precision)
+        return roundings_of(system, probe, stepped, eps, per_step)
+
+
 def rows_of_probes(
     truth: Truth, integrator: Integrator, sweep: Sweep, result: CaseResult
 ) -> list[Row]:
@@ -54,7 +71,8 @@ def rows_of_probes(
         own, tolerated = truth.yardstick, tolerated_by(integrator)
         stepped = State(**steps.result)
         known = integrator.scheme in SCHEMES
-        found += vanishing_step.rows(own.system, probe, stepped, own.eps, tolerated, known)
+        how = (own.eps, tolerated, known, own.roundings)
+        found += vanishing_step.rows(own.system, probe, stepped, *how)
     sample, left, restarted = result.restarts.get((integrator.name, sweep.knob), (0, sweep, None))
     if restarted is not None and restarted.ok:
         state = State(**result.runs[integrator.name, sweep.knob].result["state"])

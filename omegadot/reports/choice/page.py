@@ -75,7 +75,7 @@ def read_choice(folder: Path) -> Section | None:
     if not path.is_file():
         return None
     try:
-        return section_of(json.loads(path.read_text(encoding="utf-8")))
+        return section_of(json.loads(path.read_text(encoding="utf-8-sig")))
     except (OSError, ValueError, RecursionError, LookupError, TypeError, AttributeError) as error:
         raise RecordError(
             f"{path}: not a choice that omegadot wrote; remove it or choose again."

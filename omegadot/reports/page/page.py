@@ -6,7 +6,6 @@ import re
 from itertools import groupby
 from typing import Any
 
-import polars as pl
 from markupsafe import Markup
 
 from omegadot.reports.charts.chart_library import packed_library
@@ -15,6 +14,7 @@ from omegadot.reports.charts.packing import FLOOR_DECADE, pack_codes, pack_json
 from omegadot.reports.charts.palette import Line, lines_of
 from omegadot.reports.charts.payload import step_choices
 from omegadot.reports.choice.page import Section
+from omegadot.reports.page.failures_table import Failure, failures_table
 from omegadot.reports.page.glance import glances
 from omegadot.reports.page.glossary import INTRODUCTION, TERMS
 from omegadot.reports.page.sections import drawings, failing_lanes, measured_in, sections_of
@@ -25,10 +25,8 @@ from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
 from omegadot.reports.summary.headline import headline, remarks, step_notes, truth
-from omegadot.reports.summary.provenance import Sources, command_of, provenance_payload, sources_for
+from omegadot.reports.summary.provenance import command_of, provenance_payload, sources_for
 from omegadot.reports.summary.summary import STATUSES, counts, summarise
-
-_JUDGED_SHOWN = 50
 
 CHART_TITLES = {
     "omega_dot": ("Omega-dot error", "|ω̇ − ω̇ exact| along the run"),
@@ -56,7 +54,7 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
     description, codes = drawings(measured, charts, lines, anchors, sources, failing)
     drawn = description["scenarios"]
     sections = [*sections_of(record, summary, charts, anchors, sources, measured, drawn)]
-    judged = _judged(record.metrics, sources)
+    failures = failures_table(record, summary.columns, sources)
     schemes, orders = scheme_table(record, sources), order_table(record, sources)
     engines = glances(summary, record.metrics, sources)
     cards = matrix.cards(summary, sources, anchors)
@@ -77,12 +75,12 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         anchors=anchors,
         glances=engines,
         step_notes=step_notes(record.run["engines"]),
-        judged=judged,
+        failures=failures,
         schemes=schemes,
         orders=orders,
         clusters=[(sentence(c), extent(c)) for c in clusters_over_scenarios(record.run)],
         sections=sections,
-        opened=_opened(sections),
+        opened=_opened(sections, failures[0], anchors),
         lines=lines,
         line_groups=[(engine, list(own)) for engine, own in groupby(enumerate(lines), _engine_of)],
         choices=step_choices(charts.values()),
@@ -101,24 +99,6 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
     )
 
 
-def _judged(metrics: pl.DataFrame, sources: Sources) -> tuple[list[dict[str, Any]], int]:
-    """Failing and declared measures, failures first, each with its worst run and how many runs
-    it has; and how many more there are than are shown.
-    """
-    measure = ["verdict", "scenario", "engine", "engine_version", "gate", "channel", "metric"]
-    rows = metrics.filter(pl.col("verdict").is_in(["fail", "declared"])).sort(
-        pl.col("verdict") == "declared",
-        pl.col("value").fill_nan(float("inf")).fill_null(float("inf")),
-        descending=[False, True],
-        maintain_order=True,
-    )
-    rows = rows.group_by(measure, maintain_order=True).agg(
-        *(pl.col(name).first() for name in rows.columns if name not in measure), runs=pl.len()
-    )
-    shown = [row | {"source": sources.number(row)} for row in rows.head(_JUDGED_SHOWN).to_dicts()]
-    return shown, max(0, len(rows) - _JUDGED_SHOWN)
-
-
 def _anchors(names: tuple[str, ...]) -> dict[str, str]:
     """An address for each scenario: its name where that is plain, made unique by its place."""
     anchors: dict[str, str] = {}
@@ -128,10 +108,15 @@ def _anchors(names: tuple[str, ...]) -> dict[str, str]:
     return anchors
 
 
-def _opened(sections: list[dict[str, Any]]) -> str:
-    """The address of the scenario that is shown first: one with the worst verdict."""
+def _opened(
+    sections: list[dict[str, Any]], failures: list[Failure], anchors: dict[str, str]
+) -> str:
+    """The address of the scenario that is shown first: that of the first failure, if there is one,
+    else one with the worst verdict.
+    """
+    failed = (anchors[row.scenario] for row in failures if row.scenario in anchors)
     worst = min(sections, key=lambda s: STATUSES.index(s["status"]), default={"anchor": ""})
-    return str(worst["anchor"])
+    return next(failed, str(worst["anchor"]))
 
 
 def line_styles(lines: list[Line]) -> Markup:

@@ -13,6 +13,7 @@ import polars as pl
 from omegadot.reports.charts.deviations import Chart
 from omegadot.reports.record.schema import GATES
 from omegadot.reports.summary.provenance import Sources
+from omegadot.reports.summary.reasons import failing_gates, reason_of
 from omegadot.reports.summary.summary import task_status
 from omegadot.reports.text.numbers import engine_name, knob, short
 
@@ -75,7 +76,10 @@ def engine_table(metrics: pl.DataFrame, sources: Sources) -> Table:
 
 
 def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]], sources: Sources) -> Table:
-    """What each run came to, one row a run, with its verdict and the reason of it."""
+    """What each run came to, one row a run, with its verdict and the reason of it.
+
+    The gates that fail are named: model and equation, which the runs share, have no column here.
+    """
     # A match stands under the channel that is farthest off; here it has a column of its own.
     whole = pl.when(pl.col("metric") == "match").then(pl.lit("")).otherwise(pl.col("channel"))
     of_runs = ~pl.col("gate").is_in(ENGINE_GATES) & (pl.col("metric") != FLOOR_METRIC)
@@ -87,10 +91,10 @@ def run_table(metrics: pl.DataFrame, tasks: Iterable[Mapping[str, Any]], sources
     for task in tasks:
         names = run_heads(tuple(task.get(name) for name in _RUN))
         status = task_status(task)
-        reason = task.get("why") or task.get("reason") or ""
         mark = status if status in ("fail", "declared") else ""
+        verdict = ": ".join(filter(None, (status, ", ".join(failing_gates(task)))))
         found = left.pop(names).values if names in left else blank
-        cells = (Value(status, mark), *found, Value(reason))
+        cells = (Value(verdict, mark), *found, Value(reason_of(task)))
         rows.append(Row(names, cells, sources.number(task)))
     rows += [replace(row, values=(EMPTY, *row.values, EMPTY)) for row in left.values()]
     groups = (("outcome", 1), *table.groups, ("reason", 1))

@@ -21,6 +21,7 @@ import polars as pl
 import psutil
 
 from omegadot.reports.record import schema
+from omegadot.reports.record.agreement import check_agreement
 from omegadot.reports.record.run_json import dump_json, read_run
 from omegadot.reports.record.run_model import check_run
 from omegadot.reports.record.schema import Field, RecordError
@@ -210,12 +211,9 @@ def read_record(folder: Path) -> Record:
     for name in (RUN, METRICS, TRAJECTORIES):
         if not (folder / name).is_file():
             raise RecordError(f"{folder / name}: missing; give the folder of a whole run.")
-    run = read_run(folder / RUN)
-    return Record(
-        run,
-        _read_parquet(folder / METRICS, schema.METRICS),
-        _read_parquet(folder / TRAJECTORIES, schema.TRAJECTORIES),
-    )
+    run, metrics = read_run(folder / RUN), _read_parquet(folder / METRICS, schema.METRICS)
+    check_agreement(run, metrics, str(folder))
+    return Record(run, metrics, _read_parquet(folder / TRAJECTORIES, schema.TRAJECTORIES))
 
 
 def _read_parquet(path: Path, fields: Mapping[str, Field]) -> pl.DataFrame:

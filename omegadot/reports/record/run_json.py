@@ -19,7 +19,7 @@ from omegadot.scenarios.tensor import ALLOWED, broken_triangle
 def read_run(path: Path) -> dict[str, Any]:
     """Read ``run.json``; RecordError, one sentence, where it is not one of this schema."""
     try:
-        run = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse_constant)
+        run = json.loads(path.read_text(encoding="utf-8-sig"), parse_constant=_refuse_constant)
     except (OSError, ValueError, RecursionError) as error:
         raise RecordError(f"{path}: not readable as JSON ({error}); run again.") from error
     if not isinstance(run, dict) or "schema" not in run:

@@ -10,19 +10,12 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.record.schema import GATES, YARDSTICKS
-from omegadot.reports.text.numbers import (
-    engine_name,
-    knob,
-    quantity,
-    short,
-    times,
-    times_its_bound,
-)
+from omegadot.reports.record.schema import YARDSTICKS
+from omegadot.reports.summary.failed_gate import measure, worst_row
+from omegadot.reports.summary.reasons import cause_of, failing_gates
+from omegadot.reports.text.numbers import engine_name, knob, quantity, times
 
 UNKNOWN = "none is known"
-# Of a metric that is measured after another system was loaded, which its note names.
-OF_SIBLING = " of sibling"
 WHO = ("engine", "engine_version", "setup")
 
 
@@ -43,55 +36,14 @@ def failures_of(record: Record) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def failing_cells(metrics: pl.DataFrame) -> dict[tuple[str, ...], str]:
-    """By scenario, engine, version and setup: the failing gate and its worst measure."""
-    found: dict[tuple[str, ...], list[dict[str, Any]]] = {}
-    for row in metrics.filter(pl.col("verdict") == "fail").iter_rows(named=True):
-        key = (row["scenario"], row["engine"], row["engine_version"], row["setup"])
-        found.setdefault(key, []).append(row)
-    return {key: _in_cell(_worst_row(rows)) for key, rows in found.items()}
-
-
-def _in_cell(row: Mapping[str, Any]) -> str:
-    run = (row["integrator"], knob(row["timestep"], row["accuracy"]))
-    where = ", ".join(filter(None, run))
-    return f"{row['gate']} gate: {_measure(row)}" + (f" ({where})" if where else "")
-
-
 def _worst(rows: list[dict[str, Any]]) -> str:
-    row = _worst_row(rows)
+    row = worst_row(rows)
     by = f" {row['integrator']}" if row["integrator"] else ""
-    return f"the {row['gate']} gate fails on {row['scenario']}{by}, {_measure(row)}"
-
-
-def _worst_row(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """The worst measure of the first gate that fails; later gates fail for the same reason."""
-    gate = min((row["gate"] for row in rows), key=GATES.index)
-    return max((row for row in rows if row["gate"] == gate), key=_excess)
-
-
-def _measure(row: Mapping[str, Any]) -> str:
-    channel = row["channel"].replace("omega_dot", "omega-dot").replace("_", " ")
-    # A share of a bound, or no number: the note states what is wrong.
-    if row["note"] and (row["bound"] == 1.0 or not isfinite(row["value"] or 0.0)):
-        return f"{channel}: {row['note']}"
-    metric, after = row["metric"].replace("_", " "), ""
-    if metric.endswith(OF_SIBLING):
-        metric, after = metric.removesuffix(OF_SIBLING), f" {row['note']}".rstrip()
-    text = f"{channel} {metric} {quantity(row['value'], row['unit'])}{after}"
-    excess = _excess(row)
-    if row["bound"] is not None and 1.0 < excess < float("inf"):
-        text += f", {short(excess)} times its bound"
-    return text
-
-
-def _excess(row: Mapping[str, Any]) -> float:
-    """Orders, which are too low, come last."""
-    return 0.0 if row["metric"] == "observed_order" else times_its_bound(row["value"], row["bound"])
+    return f"the {row['gate']} gate fails on {row['scenario']}{by}, {measure(row)}"
 
 
 def _extent(tasks: list[Mapping[str, Any]]) -> str:
-    failing = [t for t in tasks if "fail" in (t.get("gates") or {}).values()]
+    failing = list(filter(failing_gates, tasks))
     return f" ({len(failing)} of {times(len(tasks), 'run')} fail)" if failing else ""
 
 
@@ -105,7 +57,7 @@ def _worth(metrics: pl.DataFrame, who: tuple[str, ...], rows: list[dict[str, Any
         )
         passes = metrics.filter(judged & of_engine)["verdict"].to_list()
         return ". Its trajectories pass" if "pass" in passes else ""
-    worst = _worst_row(stepped)
+    worst = worst_row(stepped)
     where = judged & (pl.col("channel") == "attitude") & (pl.col("metric") == "error_max")
     where &= (pl.col("scenario") == worst["scenario"]) & ~pl.col("engine").is_in(YARDSTICKS)
     known = [row for row in metrics.filter(where).to_dicts() if row["timestep"]]
@@ -127,7 +79,7 @@ def _is_of(row: Mapping[str, Any], worst: Mapping[str, Any]) -> bool:
 
 def _likeliest(tasks: list[Mapping[str, Any]]) -> str:
     """The cause that explains most runs, with how many others there are."""
-    causes = Counter(t["cause"] for t in tasks if t.get("cause"))
+    causes = Counter(filter(None, map(cause_of, tasks)))
     known = [(cause, n) for cause, n in causes.most_common() if not cause.startswith(UNKNOWN)]
     if not known:
         return ""

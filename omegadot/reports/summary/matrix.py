@@ -19,6 +19,7 @@ NUMBERS = {
     "drift": "angular-momentum drift (relative)",
     "attitude": "attitude error (rad)",
 }
+FAILED = "failed"
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,9 @@ class Shown:
     """One cell as text.
 
     mark and status: a sign and its name.  part: how many of its runs passed, where not all did.
-    numbers: text by the keys of NUMBERS.  card: the number of its card among `cards`.  rank: for
-    sorting, the worst first.  gate: the first that fails, if one does.
+    numbers: text by the keys of NUMBERS; where a gate fails, by FAILED its worst measure alone: no
+    number that passes stands beside a failure.  card: the number of its card among `cards`.  rank:
+    for sorting, the worst first.  gate: the first that fails, if one does.
     """
 
     mark: str
@@ -54,8 +56,9 @@ def shown(cell: Cell, card: int = 0) -> Shown:
         "drift": _span(cell.drift),
         "attitude": _span(cell.attitude),
     }
-    rank = STATUSES.index(cell.status)
-    gate = cell.failed.partition(" gate:")[0]
+    if cell.failed:
+        numbers = {FAILED: cell.failed.number}
+    rank, gate = STATUSES.index(cell.status), cell.failed.gate if cell.failed else ""
     return Shown(MARKS.get(cell.status, "–"), text_of(cell.status), part, numbers, card, rank, gate)
 
 
@@ -82,7 +85,11 @@ def lines(summary: Summary, scenario: str, sources: Sources) -> list[dict[str, A
         figures = [cell.residual, *(figure for pair in ends for figure in pair)]
         numbers = [named(figure) for figure in figures]
         source = sources.number(origin_of(column))
-        line = {"engine": column.name, "shown": shown(cell), "failed": cell.failed}
+        line = {
+            "engine": column.name,
+            "shown": shown(cell),
+            "failed": cell.failed.text if cell.failed else "",
+        }
         found.append({**line, "numbers": numbers, "source": source})
     return found
 
@@ -116,7 +123,7 @@ def cards(summary: Summary, sources: Sources, anchors: Mapping[str, str]) -> lis
             for what, figure in _figures(cell)
         ]
         whole = sources.number(origin_of(column))
-        part = cell.failed or shown(cell).part
+        part = (cell.failed.text if cell.failed else "") or shown(cell).part
         found.append([anchors[name], text_of(cell.status), part, numbers, whole])
     return found
 

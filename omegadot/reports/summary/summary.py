@@ -16,8 +16,10 @@ import polars as pl
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.run_json import impossible_bodies
 from omegadot.reports.record.schema import YARDSTICKS
-from omegadot.reports.summary.failures import failing_cells, failures_of
+from omegadot.reports.summary.failed_gate import FailedGate, failed_gates
+from omegadot.reports.summary.failures import failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
+from omegadot.reports.summary.reasons import MODEL_ALONE, failing_gates, tests_motion
 from omegadot.reports.text.numbers import times
 
 # From the worst to the best. A skip is never a pass, and neither is a run that was not judged.
@@ -63,7 +65,7 @@ class Cell:
     status: the worst over its runs, of STATUSES.  runs: how many runs have which status.
     residual: the worst omega-dot residual at identical states.  drift and attitude: the range over
     the integrators, at the finest step, of the angular-momentum drift and the attitude error.
-    failed: the failing gate with its worst measure, if one fails.
+    failed: the first gate that fails with its worst measure, if one fails.
     """
 
     status: str
@@ -71,7 +73,7 @@ class Cell:
     residual: Figure | None
     drift: Range | None
     attitude: Range | None
-    failed: str = ""
+    failed: FailedGate | None = None
 
 
 @dataclass(frozen=True)
@@ -117,12 +119,17 @@ def worst(statuses: Iterable[str]) -> str:
 
 
 def task_status(task: Mapping[str, Any]) -> str:
-    """What one run came to: its outcome where it did not end, else the worst of its gates."""
+    """What one run came to: its outcome where it did not end, else the worst of its gates.
+
+    A run of which nothing but the model was judged is not judged: that is no pass.
+    """
     verdicts = list((task.get("gates") or {}).values())
     if "fail" in verdicts:
         return "fail"
     if task["outcome"] != "ok":
         return str(task["outcome"])
+    if not tests_motion(task) and "declared" not in verdicts:
+        return "not-judged"
     return worst([v for v in verdicts if v != "info"] or ["not-judged"])
 
 
@@ -130,21 +137,24 @@ def summarise(record: Record) -> Summary:
     """The matrix of scenarios and engines, the counts, and what did not run."""
     tasks = record.run["tasks"]
     singles = {e["name"] for e in record.run["engines"] if e.get("precision") == "float32"}
-    failed = failing_cells(record.metrics)
+    failed = failed_gates(record.metrics)
     failing = {key[1:] for key in failed}
     failing |= {column_of(task) for task in tasks if task_status(task) == "fail"}
     columns = _columns(tasks, singles, failing)
     named = [entry["name"] for entry in record.run["scenarios"]]
     scenarios = tuple(dict.fromkeys([*named, *(task["scenario"] for task in tasks)]))
     statuses: dict[Key, list[str]] = {}
+    unmeasured: dict[Key, FailedGate] = {}  # a task's verdict counts even where it has no row
     for task in tasks:
         statuses.setdefault((task["scenario"], *column_of(task)), []).append(task_status(task))
+        for gate in failing_gates(task)[:1]:
+            unmeasured.setdefault((task["scenario"], *column_of(task)), FailedGate(gate))
     figures = figures_of(record.metrics)
     cells = {}
     for scenario, column in product(scenarios, columns):
         key = (scenario, column.engine, column.version, column.setup)
-        own = statuses.get(key, []), figures.get(key, {})
-        cells[scenario, column] = _cell(failed.get(key, ""), *own)
+        first = failed.get(key) or unmeasured.get(key)
+        cells[scenario, column] = _cell(first, statuses.get(key, []), figures.get(key, {}))
     return Summary(
         bool(record.run.get("complete", True)),
         scenarios,
@@ -199,9 +209,13 @@ def _unstepped(run: Mapping[str, Any]) -> Iterator[str]:
     ran = {t["engine"] for t in run["tasks"] if t["outcome"] == "ok"} - set(YARDSTICKS)
     for engine in run["engines"]:
         name = engine["name"]
-        if name in ran and engine.get("integrators") == []:
+        if name not in ran or engine.get("integrators") != []:
+            continue
+        if any(tests_motion(task) for task in run["tasks"] if task["engine"] == name):
             judged = "its model and the equations that it offers are judged"
             yield f"{name} has no integrators: {judged}."
+        else:
+            yield f"{name} has no integrators and no dynamics: {MODEL_ALONE}."
 
 
 def _truths(trajectories: pl.DataFrame) -> Counter[str]:
@@ -231,7 +245,7 @@ def _columns(
     return tuple(columns)
 
 
-def _cell(failed: str, statuses: list[str], figures: dict[str, list[Figure]]) -> Cell:
+def _cell(failed: FailedGate | None, statuses: list[str], figures: dict[str, list[Figure]]) -> Cell:
     # A row's verdict counts even where its task has none: no failure gets lost.
     return Cell(
         "fail" if failed else worst(statuses),

@@ -6,6 +6,7 @@ from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.provenance import command_of
+from omegadot.reports.summary.reasons import reason_of
 from omegadot.reports.summary.summary import STATUSES, Cell, Summary, counts, summarise, task_status
 from omegadot.reports.text.markdown_text import COMMENT, code, escape, folded, table
 from omegadot.reports.text.numbers import first, times
@@ -49,15 +50,19 @@ def _matrix(summary: Summary, room: int) -> list[str]:
         (name, *(_cell(summary.cells[name, column]) for column in summary.columns))
         for name in sorted(summary.scenarios, key=rank)
     ]
-    signs = "✓ every gate holds, ✗ a gate fails, ! a declared exception; the number is the worst"
-    message = f"{signs} omega-dot residual at identical states, relative."
+    message = (
+        "✓ every gate holds, with the worst omega-dot residual at identical states, relative; "
+        "✗ a gate fails, the first that does and its worst measure; ! a declared exception."
+    )
     return [*table(heads, rows, room, "more scenarios, none of them worse"), "", message]
 
 
 def _cell(cell: Cell) -> str:
     shown = matrix.shown(cell)
     term = "" if cell.status in ("pass", "fail") else shown.status
-    return " ".join(filter(None, (shown.mark, term, shown.numbers["residual"], shown.part)))
+    number = shown.numbers.get(matrix.FAILED, shown.numbers.get("residual"))
+    found = " ".join(filter(None, (shown.mark, term, shown.gate, number)))
+    return ", ".join(filter(None, (found, shown.part)))
 
 
 def _failures(record: Record, room: int) -> list[str]:
@@ -67,8 +72,8 @@ def _failures(record: Record, room: int) -> list[str]:
         status = task_status(task)
         if status in _FAILING:
             gates = [gate for gate, v in (task.get("gates") or {}).items() if v == status]
-            why = task.get("reason") or task.get("why") or ""
-            key = (status, task["engine"], task.get("integrator") or "", ", ".join(gates), why)
+            own = task["engine"], task.get("integrator") or "", ", ".join(gates)
+            key = (status, *own, reason_of(task))
             groups.setdefault(key, []).append(task["scenario"])
     if not groups:
         return []

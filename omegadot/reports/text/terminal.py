@@ -9,6 +9,7 @@ from rich.text import Text
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
+from omegadot.reports.summary.failed_gate import FailedGate
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.summary import Cell, Missing, Summary, counts, summarise
@@ -19,7 +20,11 @@ _STYLES = {"pass": "green", "fail": "bold red", "declared": "yellow", "absent": 
 _NOT_RUN = "magenta"
 # Nothing is cut off there.
 _WIDTH_WHEN_PIPED = 240
-_SIGNS = {"pass": "every gate holds", "fail": "a gate fails", "declared": "declared exception"}
+_SIGNS = {
+    "pass": "every gate holds",
+    "fail": "a gate fails, the first with its worst measure",
+    "declared": "declared exception",
+}
 _WITH_NUMBERS = ("pass", "fail", "declared", "not-judged")
 # The heading of each number, and what it stands for.
 _NUMBERS = (
@@ -33,8 +38,8 @@ def print_summary(record: Record, console: Console | None = None) -> None:
     """Print scenario by engine: verdict and numbers, then what did not run, then the verdict.
 
     Each cell holds the verdict, the worst omega-dot residual, and of the worst integrator at its
-    finest step the angular-momentum drift and the attitude error. Numbers give way from the right
-    where the terminal is too narrow for them.
+    finest step the angular-momentum drift and the attitude error; or the gate that fails, with its
+    worst measure. Numbers give way from the right where the terminal is too narrow for them.
     """
     console = console or plain_console(_WIDTH_WHEN_PIPED)
     summary = summarise(record)
@@ -96,15 +101,29 @@ def _column(cells: list[Cell], shown: int, console: Console) -> list[Text]:
         terms = [f"{text:<{width}}" for text, width in zip(own, widths, strict=True)]
         style = _STYLES.get(cell.status, _NOT_RUN)
         text = Text(_mark(cell, console), style)
-        if cell.status in _WITH_NUMBERS:
+        if cell.failed:  # the numbers that are headed may all be of gates that hold
+            text.append(_failed(cell.failed, shown, console), style)
+        elif cell.status in _WITH_NUMBERS:
             text.append(" ".join(["", *terms]).rstrip(), "default")
         texts.append(text)
     return texts
 
 
+def _failed(failed: FailedGate, shown: int, console: Console) -> str:
+    """The gate that fails, and its number where there is room for several."""
+    number = failed.number if shown == len(_NUMBERS) else ""
+    text = "".join(f" {part}" for part in (failed.gate, number) if part and shown)
+    return text if _is_wide(console) else text.replace("×", "x")
+
+
+def _is_wide(console: Console) -> bool:
+    """Whether it can print signs that are no ASCII."""
+    return console.encoding.startswith("utf")
+
+
 def _mark(cell: Cell, console: Console) -> str:
     """A sign for what was judged, the outcome for what did not run, with how many runs passed."""
-    wide = console.encoding.startswith("utf")
+    wide = _is_wide(console)
     signs = {"pass": "✓" if wide else "ok", "fail": "✗" if wide else "FAIL"}
     signs |= {"declared": "!", "absent": "-"}
     if cell.status in signs:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from omegadot.reports.record.record import Record
+from omegadot.reports.summary.reasons import reason_of
 from omegadot.reports.summary.summary import column_of, task_status, worst
 
 # Scenario keys that change no number: its description, and the steps it is run with.
@@ -80,8 +81,8 @@ def tasks_of(side: Side, versioned: set[str]) -> dict[RunKey, Task]:
         integrator = "" if engine == "exact" else entry.get("integrator") or ""
         knobs = entry.get("timestep"), entry.get("accuracy")
         key = RunKey(entry["scenario"], engine, own, setup, integrator, *knobs)
-        why = entry.get("reason") or entry.get("why") or ""
-        task = Task(key, task_status(entry), entry["outcome"], entry.get("gates") or {}, why)
+        verdict = task_status(entry), entry["outcome"], entry.get("gates") or {}
+        task = Task(key, *verdict, reason_of(entry))
         if key not in found or worst((task.status, found[key].status)) == task.status:
             found[key] = task
     return found

@@ -25,13 +25,18 @@ USES = {
     "in the parallel-axis theorem,": "inertia",
     "in the linear acceleration,": "report",
 }
+OF_CENTER = "the centre of mass's distance from the origin is taken, not from the pivot"
+MIRRORED = "the lever has the wrong sign"
+# What has been named with gravity; and in the parallel-axis theorem the sign is squared.
+ELSEWHERE = {("gravity", OF_CENTER), ("gravity", MIRRORED), ("inertia", MIRRORED)}
 
 
 def lever_hypotheses() -> Iterator[Hypothesis]:
     """Every change of the lever in every one of its uses."""
     for where, part in USES.items():
         for text, change in _changes():
-            yield of_form(f"{where} {text}", part, given(part, change, _with_lever))
+            if (part, text) not in ELSEWHERE:
+                yield of_form(f"{where} {text}", part, given(part, change, _with_lever))
 
 
 def _with_lever(part: str, change: Change, form: Form, system: System) -> dict[str, Any]:
@@ -47,10 +52,10 @@ def _with_lever(part: str, change: Change, form: Form, system: System) -> dict[s
 
 
 def _changes() -> Iterator[tuple[str, Change]]:
-    yield "the centre of mass's distance from the origin is taken, not from the pivot", _of_center
+    yield OF_CENTER, _of_center
     yield "the pivot's distance from the origin is taken, not from the centre of mass", _of_pivot
     yield "the pivot is added to the centre of mass, not taken from it", _added
-    yield "the lever has the wrong sign", lambda r, s: -r
+    yield MIRRORED, lambda r, s: -r
     yield "the lever loses its signs", lambda r, s: np.abs(r)
     for axis, name in enumerate(AXES):
         alone = np.arange(3) == axis

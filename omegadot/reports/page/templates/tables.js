@@ -23,7 +23,7 @@ function columnsOf(table) {
 function sizeOf(cell) {
   const shown = [...cell.querySelectorAll(".n")].find((n) => n.offsetWidth > 0);
   const text = textOf(shown ?? cell);
-  if (text === "not finite") return Infinity;
+  if (text === "not finite" || text === "no number") return Infinity;
   const found = leading.exec(text);
   return found ? Number(found[0].replace("−", "-")) : null;
 }

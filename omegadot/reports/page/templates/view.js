@@ -1,19 +1,6 @@
 // The controls of the 3-D view.
-// Of each engine one integrator to begin with: the first's least exact, the second's most exact...
-function firstRuns(scenario) {
-  const { lines } = loaded.data, engines = new Map();
-  for (const [line, rank, , , , , , largest] of scenario.runs) {
-    if (!engines.has(lines[line].engine)) engines.set(lines[line].engine, []);
-    engines.get(lines[line].engine).push({ line, rank, largest });
-  }
-  const own = [...engines.keys()], others = own.filter((name) => name !== "reference");
-  return (others.length ? others : own).slice(0, 3).map((name, k) => {
-    const coarsest = Math.max(...engines.get(name).map((run) => run.rank));
-    const runs = engines.get(name).filter((run) => run.rank === coarsest);
-    return runs.sort((a, b) => (k % 2 ? 1 : -1) * (a.largest - b.largest) || a.line - b.line)[0].line;
-  });
-}
-
+// What the reader has picked stays from scenario to scenario; else each opens with its own.
+const picked = { runs: false, step: false };
 function choose() {
   const number = Number(element("view-scenario").value), scenario = loaded.data.scenarios[number];
   const fresh = scenario !== show.scenario;
@@ -27,10 +14,11 @@ function choose() {
     element("view-time").step = exact.end / 1000;
     scenario.tipOverReach ??= times(scenario.tip, 1 / scenario.geometry.reach);
     offer(scenario);
+    if (!picked.step) element("view-step").value = scenario.rank;
   }
   const rank = Number(element("view-step").value || 0);
-  const picked = [...document.querySelectorAll(".view-engine")].map((select) => Number(select.value)).filter((line) => line >= 0);
-  const trajectories = [...new Set(picked)].map((line) => {
+  const lines = [...document.querySelectorAll(".view-engine")].map((select) => Number(select.value)).filter((line) => line >= 0);
+  const trajectories = [...new Set(lines)].map((line) => {
     const own = scenario.runs.filter((entry) => entry[0] === line), most = Math.max(...own.map((entry) => entry[1]));
     return runTrajectory(loaded, scenario, exact, own.find((entry) => entry[1] === Math.min(rank, most)) ?? own[0]);
   });
@@ -48,6 +36,7 @@ function choose() {
 function listed(trajectory) {
   const swatch = made("i", { ariaHidden: "true" }), number = made("span");
   const item = made("li", {}, swatch, made("b", { textContent: fullName(trajectory) }), " ", number);
+  if (trajectory.gates) item.append(" ", made("span", { className: "v-fail", textContent: `fails: ${trajectory.gates}` }));
   const content = { textContent: trajectory.line < 0 ? "" : divergenceOf(trajectory) };
   const there = () => { if (show.playing) play(false); goTo(trajectory.diverges); announce(`${trajectory.name} ${divergenceOf(trajectory)}.`); };
   item.append(" ", trajectory.diverges === null ? made("span", content) : made("button", { ...content, type: "button", onclick: there }));
@@ -55,9 +44,9 @@ function listed(trajectory) {
 }
 
 function offer(scenario) {
-  const { lines } = loaded.data, there = [...new Set(scenario.runs.map((entry) => entry[0]))], first = firstRuns(scenario);
+  const { lines } = loaded.data, there = [...new Set(scenario.runs.map((entry) => entry[0]))], first = scenario.first;
   document.querySelectorAll(".view-engine").forEach((select, k) => {
-    const kept = select.options.length && (there.includes(Number(select.value)) || select.value === "-1") ? Number(select.value) : first[k] ?? -1;
+    const kept = picked.runs && (there.includes(Number(select.value)) || select.value === "-1") ? Number(select.value) : first[k] ?? -1;
     const option = (text, value) => new Option(text, value, false, value === kept);
     select.replaceChildren(option("none", -1), ...there.map((line) => option(lines[line].name, line)));
   });
@@ -92,12 +81,13 @@ async function begin() {
 function connect() {
   const page = element("step"), own = element("view-step");
   element("view-scenario").addEventListener("change", choose);
-  document.querySelectorAll(".view-engine").forEach((select) => select.addEventListener("change", choose));
+  document.querySelectorAll(".view-engine").forEach((select) => select.addEventListener("change", () => { picked.runs = true; choose(); }));
   // One step for the whole page: a change here is a change there.
   own.addEventListener("change", () => {
+    picked.step = true;
     if (page && page.value !== own.value) { page.value = own.value; page.dispatchEvent(new Event("change", { bubbles: true })); } else choose();
   });
-  page?.addEventListener("change", () => { own.value = page.value; choose(); });
+  page?.addEventListener("change", () => { picked.step = true; own.value = page.value; choose(); });
   document.querySelectorAll(".view-option").forEach((input) => input.addEventListener("change", settle));
   element("view-play").addEventListener("click", () => play(!show.playing));
   element("view-time").addEventListener("input", (event) => { if (show.playing) play(false); goTo(Number(event.target.value)); });

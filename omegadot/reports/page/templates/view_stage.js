@@ -96,7 +96,7 @@ function caption(context, cell, together, show, theme) {
     return;
   }
   const [{ trajectory, colour, status }] = together;
-  title(context, cell, trajectory.name, colour, theme, status ?? "");
+  title(context, cell, trajectory.gates ? `✗ ${trajectory.name}` : trajectory.name, colour, theme, status ?? "");
   frame(context, cell, trajectory, colour, show.time);
 }
 

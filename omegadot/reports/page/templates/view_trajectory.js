@@ -46,12 +46,12 @@ function exactTrajectory({ codes, data }, scenario) {
 }
 const normal = (q) => q.map((part) => part / Math.hypot(...q));
 function runTrajectory({ codes, data }, scenario, exact, entry) {
-  const [line, rank, knob, clock, start, count, diverges, largest, end] = entry;
+  const [line, rank, knob, clock, start, count, diverges, largest, end, gates] = entry;
   const frames = scenario.frames[clock];
   const error = columns(codes, start, count, 3, Math.PI);
   const spin = columns(codes, start + 3 * count, count, 3, data.spins * scenario.fastest);
   return {
-    name: data.lines[line].name, knob, line, rank, diverges, largest, end,
+    name: data.lines[line].name, knob, line, rank, diverges, largest, end, gates,
     time: frames.map((f) => scenario.times[f]),
     q: frames.map((f, i) => product(exact.q[f], turnBy(error[i]))),
     w: frames.map((f, i) => plus(exact.w[f], spin[i])),

@@ -22,6 +22,7 @@ from omegadot.reports.charts.payload import rank_of
 from omegadot.reports.page.templating import script
 from omegadot.reports.page.view_3d.attitudes import DIVERGED, Attitudes, attitudes_of
 from omegadot.reports.page.view_3d.bodies import look_of
+from omegadot.reports.page.view_3d.opening import Key, failing_runs, key_of, lane_of, opening
 from omegadot.reports.record.record import Record
 from omegadot.reports.text.numbers import knob
 
@@ -78,11 +79,12 @@ def view_payload(
 
     Each scenario's codes begin with its exact solution, w x y z of the attitude and then omega,
     one row of as many codes as it has times each. A run is ``[line, rank, knob, frames, start,
-    count, diverges, largest, end]``: six rows of `count` codes from `start`, the rotation from the
-    exact attitude and omega less the exact one, at the exact times numbered in ``frames``.
+    count, diverges, largest, end, gates]``: six rows of `count` codes from `start`, the rotation
+    from the exact attitude and omega less the exact one, at the exact times numbered in ``frames``;
+    gates, those that fail.  first and rank: the lines and the step to open with.
     """
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
-    attitudes = attitudes_of(record.trajectories)
+    attitudes, failing = attitudes_of(record.trajectories), failing_runs(record.run["tasks"])
     scenarios: list[dict[str, Any]] = []
     codes = Codes()
     for entry in record.run["scenarios"]:
@@ -106,7 +108,8 @@ def view_payload(
         }
         codes.add(normalize(own.orientation), 1.0)
         codes.add(own.angular_velocity, fastest)
-        scenario.update(_runs(own, chart, places, codes, fastest))
+        failed = failing.get(entry["name"], {})
+        scenario.update(_runs(own, chart, places, codes, fastest, failed))
         scenarios.append(scenario)
     description = {
         "lines": [
@@ -125,21 +128,30 @@ def _runs(
     places: Mapping[tuple[str, str, str], int],
     codes: Codes,
     fastest: float,
+    failing: Mapping[Key, list[str]],
 ) -> dict[str, Any]:
     ranks = rank_of(chart)
     clocks: dict[bytes, int] = {}
     runs = []
-    for run in own.runs:
-        line = places.get((run.engine, run.setup, run.integrator))
-        rank = ranks.get((run.timestep, run.accuracy))
-        if line is None or rank is None:
-            continue
+    shown = [
+        run for run in own.runs if lane_of(run) in places and (run.timestep, run.accuracy) in ranks
+    ]
+    shown.sort(key=lambda run: places[lane_of(run)])
+    opened = opening(shown, ranks, failing)
+    for run in shown:
+        line, rank = places[lane_of(run)], ranks[run.timestep, run.accuracy]
         clock = clocks.setdefault(run.frames.tobytes(), len(clocks))
         texts = knob(run.timestep, run.accuracy)
         # When it diverges, s, its largest error, degrees, and when its samples end, s.
         reported = run.diverges, rounded(np.rad2deg(run.largest), 3), run.end
-        runs.append([line, rank, texts, clock, codes.used, len(run.frames), *reported])
+        gates = ", ".join(failing.get(key_of(run), ()))
+        runs.append([line, rank, texts, clock, codes.used, len(run.frames), *reported, gates])
         codes.add(run.error, np.pi)
         codes.add(run.spin, _SPINS * fastest)
     frames = [np.frombuffer(clock, int).tolist() for clock in clocks]
-    return {"frames": frames, "runs": sorted(runs, key=lambda entry: entry[:2])}
+    return {
+        "frames": frames,
+        "runs": sorted(runs, key=lambda entry: entry[:2]),
+        "first": [places[lane] for lane in opened.lanes],
+        "rank": opened.rank,
+    }
