@@ -89,21 +89,21 @@ class DampingAfterAWhile(Timed):
         return Acceleration(sound.angular - 1e-3 * norm(w)[..., None] * w, sound.linear)
 
 
-@extra_torque("asymmetric", named="wrong only where omega_z is below")
+@extra_torque("asymmetric", named="only where omega_z is below")
 def GyroscopicOffAtNegativeSpin(system: System, state: State) -> Array:
     """The gyroscopic term is 1 % too large where the spin about z is negative."""
     backwards = state.angular_velocity[..., 2:] < 0.0
     return np.where(backwards, -0.01 * gyroscopic_term(system, state), 0.0)
 
 
-@extra_torque("asymmetric fast", named="wrong only where |omega| is above")
+@extra_torque("asymmetric fast", named="only where |omega| is above")
 def GyroscopicOffWhenFast(system: System, state: State) -> Array:
     """The gyroscopic term is 1 % too large above 1 rad/s."""
     fast = norm(state.angular_velocity)[..., None] > 1.0
     return np.where(fast, -0.01 * gyroscopic_term(system, state), 0.0)
 
 
-@extra_torque("torque", named="wrong only where the angle from the identity is above")
+@extra_torque("torque", named="only where the angle from the identity is above")
 def TorqueOffFarFromIdentity(system: System, state: State) -> Array:
     """The applied torque is missing where the body has turned by more than 2 rad."""
     far = np.abs(state.orientation[..., :1]) < np.cos(1.0)
