@@ -105,4 +105,4 @@ class StepCauses:
         if np.all(steps.evidence.sound):
             return []
         known = known_difference(self._across, self._kept.name, self._kept.source)
-        return [f"in the steps, {one}" for one in known]
+        return [one.replace("none is known; ", "none is known; in the steps, ", 1) for one in known]

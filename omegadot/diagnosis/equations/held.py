@@ -14,7 +14,7 @@ from omegadot.diagnosis.equations.tried import Tried
 from omegadot.diagnosis.wording.features import Features, in_common
 from omegadot.diagnosis.wording.laws import law_of, power_laws
 from omegadot.harness.loaded_before import LoadedBefore
-from omegadot.reference_impl.system import Array, Body, System
+from omegadot.reference_impl.system import Array, Body, State, System
 
 PRECISE = 1e-5  # relative: what a number must be known to
 VECTORS = {  # what a factor of one vector may be the trace of
@@ -38,7 +38,8 @@ class Scene:
 
     evidence: by where it comes from.  held: the body read back.  scaled: of forward dynamics, by
     what was doubled.  before: what the engine had been loaded with, by source where that is another
-    than of all else (""); nothing where it is unknown.
+    than of all else (""); nothing where it is unknown.  states: one that was set, and what read
+    back of it.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Scene:
     held: Body | None = None
     scaled: Mapping[str, Evidence] = field(default_factory=dict)
     before: Mapping[str, LoadedBefore] = field(default_factory=dict)
+    states: tuple[State, State] | None = None
 
     def loaded_before(self, source: str) -> LoadedBefore | None:
         """What had been loaded before the answers of a source; None where it is unknown."""

@@ -68,7 +68,9 @@ def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult
     }
     features = features_of(case.system, case.initial)
     before = {{drive.RELOADED: RELOADED}.get(k, k): v for k, v in result.before.items()}
-    return Scene(case.name, case.system, features, evidence, held, scaled, before)
+    set_state = evaluation_states.random[0]
+    states = (set_state, State(**result.model.result["state"])) if result.model.ok else None
+    return Scene(case.name, case.system, features, evidence, held, scaled, before, states)
 
 
 def equation_causes(across: Across, name: str, source: str) -> list[str]:

@@ -166,3 +166,30 @@ def settings(system: System) -> tuple[Misreading, ...]:
             ),
         ),
     )
+
+
+FIELDS = {
+    "orientation": "the attitude",
+    "angular_velocity": "omega",
+    "position": "the position",
+    "linear_velocity": "the linear velocity",
+}
+
+
+def losses() -> dict[str, Change]:
+    """What is lost of a state on its way through an engine, and cannot be undone: what is left."""
+
+    def unsigned(q: Array) -> Array:
+        return np.concatenate((np.abs(q[..., :1]), q[..., 1:]), axis=-1)
+
+    found = {
+        "the quaternion's scalar part is read back without its sign": (
+            changed("orientation", unsigned)
+        )
+    }
+    for field, what in FIELDS.items():
+        single = changed(field, lambda values: values.astype(np.float32).astype(float))
+        found[f"{what} is kept in single precision"] = single
+        if field != "orientation":
+            found[f"{what} reads back as zero"] = changed(field, lambda values: 0.0 * values)
+    return found

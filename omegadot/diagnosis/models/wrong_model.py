@@ -9,15 +9,14 @@ import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.hypotheses import hypotheses
-from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
-from omegadot.diagnosis.models.misreadings import misreadings, settings
+from omegadot.diagnosis.models.misread_state import state_causes
 from omegadot.diagnosis.models.tensors import other_tensors
 from omegadot.diagnosis.wording.digits import factor, number, vector
 from omegadot.diagnosis.wording.laws import law_of
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import EvaluationStates
-from omegadot.gates.states.model import body_rows, state_rows
+from omegadot.gates.states.model import body_rows
 from omegadot.harness.drive import CaseResult
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever as lever_of
@@ -50,7 +49,7 @@ def model_causes(
     if found or failed:
         return found
     state = State(**result.model.result["state"])
-    return _state(case, evaluation_states.random[0], state, eps)
+    return state_causes(across, case, evaluation_states.random[0], state, eps)
 
 
 Named = Callable[[System], Iterator[tuple[str, Array]]]
@@ -164,25 +163,6 @@ def _inertias(system: System) -> Iterator[tuple[str, Array]]:
     tensor = np.asarray(system.body.inertia, dtype=float)
     yield "the inertia is kept in single precision", _single(tensor)
     yield from other_tensors(system).items()
-
-
-def _state(case: Case, requested: State, back: State, eps: float) -> list[str]:
-    def failures(state: State) -> set[str]:
-        rows = state_rows(case, requested, state, eps)
-        return {row.channel for row in rows if row.verdict == "fail"}
-
-    failed = failures(back)
-    if not failed:
-        return []
-    known = (*misreadings(case.system), *settings(case.system))
-    for one in (*known, *fitted_misreadings(back, requested, together=False)):
-        if not failures(one.right(back)):
-            return [one.statement]
-    single = State(*(f.astype(np.float32).astype(float) for f in vars(requested).values()))
-    pairs = zip(vars(single).values(), vars(back).values(), strict=True)
-    if eps <= EPS and all(np.array_equal(a, b) for a, b in pairs):
-        return ["the state is kept in single precision"]
-    return []
 
 
 def lever_causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[str]:

@@ -91,6 +91,9 @@ def moves_by_cause(steps: VanishingSteps) -> str:
         k = float(np.sum(found * limit.expected * weight**2)) / size if size > 0.0 else 1.0
         if not np.all(norm(found - k * limit.expected) <= SLACK * bound) or abs(k) < STILL:
             continue
+        clear = abs(k - 1.0) * norm(limit.expected) > CLEAR * bound
+        if np.count_nonzero(clear) < LEAST:
+            continue  # what is hardly off is off by many factors
         text = f"in the steps, the {channel} moves by {factor(k)} times {what}"
         for half, when in ((0.5, "before"), (1.5, "after")):
             if abs(k - half) < 1e-6:

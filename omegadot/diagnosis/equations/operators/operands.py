@@ -117,6 +117,7 @@ OPERANDS = (
     _omega("the damping", (damping_torque,)),
     _attitude("the torque of gravity", gravity_torque),
     _attitude("the torque in world axes", _world),
+    _attitude("all loads", _loads),
     Operand("the attitude on its way in", "", lambda e: e.states.orientation, _whole_attitude),
     Operand("omega on its way in", "rad/s", lambda e: e.states.angular_velocity, _whole_omega),
     Operand(

@@ -1,0 +1,97 @@
+"""Causes of a state that does not read back: another convention, on its way in or out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import comb
+
+import numpy as np
+
+from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
+from omegadot.diagnosis.models.misreadings import Misreading, losses, misreadings, settings
+from omegadot.diagnosis.wording.features import SORTED_BY_KIND, Features, in_common
+from omegadot.gates.bounds.scales import EPS
+from omegadot.gates.case import Case
+from omegadot.gates.states.model import state_rows
+from omegadot.reference_impl.system import State, System
+
+
+@dataclass(frozen=True)
+class _Round:
+    """A state that was set on one scenario, and what read back of it."""
+
+    case: Case
+    features: Features
+    requested: State
+    back: State
+    eps: float
+
+    def fails(self, back: State) -> bool:
+        """Whether this is not the state that was set."""
+        rows = state_rows(self.case, self.requested, back, self.eps)
+        return any(row.verdict == "fail" for row in rows)
+
+
+def state_causes(
+    across: Across, case: Case, requested: State, back: State, eps: float
+) -> list[str]:
+    """What undoes, or makes, all that is read back: on every scenario, or on those of one kind."""
+    scene = across.scenes[case.name]
+    here = _Round(case, scene.features, requested, back, eps)
+    if not here.fails(back):
+        return []
+    every = [
+        _Round(replace(case, system=one.system), one.features, *one.states, eps)
+        for one in across.scenes.values()
+        if one.states is not None
+    ]
+    for way in _ways(case.system):
+        if not here.fails(way.right(back)):
+            fits = [not one.fails(_way(one, way.statement).right(one.back)) for one in every]
+            found = _where(way.statement, every, fits)
+            if found:
+                return [found]
+    for text, left in losses().items():
+        if not any(_differs(one, left(one.requested)) for one in every):
+            return [text]
+    for way in fitted_misreadings(back, requested, together=False):
+        if not here.fails(way.right(back)):
+            return [way.statement]
+    single = State(*(f.astype(np.float32).astype(float) for f in vars(requested).values()))
+    pairs = zip(vars(single).values(), vars(back).values(), strict=True)
+    if eps <= EPS and all(np.array_equal(a, b) for a, b in pairs):
+        return ["the state is kept in single precision"]
+    return []
+
+
+def _ways(system: System) -> tuple[Misreading, ...]:
+    return (*misreadings(system), *settings(system))
+
+
+def _way(one: _Round, statement: str) -> Misreading:
+    return next(way for way in _ways(one.case.system) if way.statement == statement)
+
+
+def _where(text: str, every: Sequence[_Round], fits: Sequence[bool]) -> str:
+    """Where it undoes what is read back: everywhere, or where the others read back as they should.
+
+    "" where it is contradicted, or nothing tells these scenarios apart.
+    """
+    against = [one for one, fit in zip(every, fits, strict=True) if not fit]
+    if any(one.fails(one.back) for one in against):
+        return ""
+    if not against:
+        return text
+    shown = [o for o, fit in zip(every, fits, strict=True) if fit and o.fails(o.back)]
+    if comb(len(shown) + len(against), len(shown)) < SORTED_BY_KIND:
+        return text  # so few are sorted by chance
+    common = in_common([one.features for one in shown], [one.features for one in against])
+    return f"{text}, but only where {' or where '.join(common)}" if 0 < len(common) < 3 else ""
+
+
+def _differs(one: _Round, made: State) -> bool:
+    """Whether what reads back is not what is left of a state."""
+    rows = state_rows(one.case, made, one.back, one.eps)
+    return any(row.verdict == "fail" for row in rows)
