@@ -133,8 +133,13 @@ def one_field(reported: ReportedRun) -> str:
         if reported.agrees(replace(reported.state, **right), reported.own):
             own = right[names[0]]
             off = float(np.max(np.abs(getattr(reported.state, names[0]) - own)))
-            part = off / float(np.max(np.abs(own)))
-            return f"{text} alone is wrong in the run, by up to {part:.1e} of it"
+            size = float(np.max(np.abs(own)))
+            by = (
+                f", by up to {off / size:.1e} of it"
+                if size > 0.0
+                else ", where it is to be nothing"
+            )
+            return f"{text} alone is wrong in the run{by}"
     return ""
 
 
