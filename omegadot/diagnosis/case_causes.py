@@ -98,6 +98,7 @@ class CaseCauses:
         model = (self._case, states, answers)
         if any(gate == "model" for gate, _ in failed):
             found = model_causes(across, *model) or kept_causes(states, answers)
+            found = found or lever_causes(across, *model)
             if found:
                 return found
         alone = batch_cause(failed)
@@ -109,7 +110,7 @@ class CaseCauses:
             if rates:
                 found = equation_causes(across, self._case.name, source)
                 if not found or found[0].startswith("none is known"):
-                    return lever_causes(*model) or found
+                    return lever_causes(across, *model) or found
                 steps = [one.steps for one in self._integrators.values()]
                 right = bool(steps) and all(one is not None and one.sound for one in steps)
                 failing = (one.fails.values() for one in self._over.values())
@@ -135,7 +136,7 @@ class CaseCauses:
             known = (self._case.system, states.random, states.acceleration)
             formula = across.of_inverse_dynamics(self._case.name)
             return inverse_causes(*known, torque, eps) or ([formula] if formula else [])
-        return lever_causes(*model)
+        return lever_causes(across, *model)
 
     def _of_steps_as_well(self) -> str:
         """A load that is wrong in the steps, and by as much in inverse dynamics; "" without any."""

@@ -55,7 +55,7 @@ class Causes:
     def text(self, engine: str, case: str, run: JudgedRun | None) -> str:
         """The cause of a run on one case, or of what all runs share there.
 
-        Where none is named, that of most other cases that fail stands beside what is seen.
+        Where none is named, that of most other cases that fail stands before what is seen here.
         """
         integrator = None if run is None else run.integrator.name
         text = self._text(engine, case, integrator)
@@ -74,7 +74,7 @@ class Causes:
             return text
         shown = next(other for other in others if kind_of(other) == kind)
         where = f"on {count} other scenario{'s' * (count > 1)}: {shown}"
-        return f"{text}; {where}" if text else where
+        return f"{where}; here: {text}" if text else where
 
     def _text(self, engine: str, case: str, integrator: str | None) -> str:
         key = (engine, case, integrator)

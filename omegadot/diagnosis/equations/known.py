@@ -42,7 +42,9 @@ def known_over(
         off = off_over([one for _, _, one in parts])
         it = "it" if len(seen) == 1 else f"what {kind} is off by"
         texts.append(_goes([(s, e) for s, e, _ in parts], off, ATTRIBUTES[kind], it))
-    texts.append(scenarios_in_common([s.features for s in scenes], passing))
+    if texts:  # else something else fails
+        features = [s.features for s in scenes]
+        texts.append(scenarios_in_common(features, passing, "it is so"))
     return "; ".join(text for text in texts if text)
 
 
@@ -75,11 +77,13 @@ def _goes(parts: Sequence[tuple[Scene, Evidence]], off: Off | None, kind: str, i
     return "; ".join(text for text in (*texts, dependence_text(rest, it)) if text)
 
 
-def scenarios_in_common(failing: Sequence[Features], passing: Sequence[Features]) -> str:
+def scenarios_in_common(
+    failing: Sequence[Features], passing: Sequence[Features], it: str = "it fails"
+) -> str:
     """What the scenarios that fail have in common and the others lack."""
     if comb(len(failing) + len(passing), len(failing)) < ways_of(failing):
         return ""  # so few are sorted by chance
     common = in_common(failing, passing)
     if not common or len(common) > 2:
         return ""
-    return f"it fails in scenarios alone where {' or where '.join(common)}"
+    return f"{it} in scenarios alone where {' or where '.join(common)}"

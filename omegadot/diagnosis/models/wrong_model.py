@@ -165,16 +165,31 @@ def _inertias(system: System) -> Iterator[tuple[str, Array]]:
     yield from other_tensors(system).items()
 
 
-def lever_causes(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> list[str]:
+def lever_causes(
+    across: Across, case: Case, evaluation_states: EvaluationStates, result: CaseResult
+) -> list[str]:
     """A pivoted body that is placed by another lever; its attitude and omega are right."""
     if not result.model.ok or case.system.load.pivot is None:
         return []
     state = State(**result.model.result["state"])
-    text = _lever(case.system, evaluation_states.random[0], state)
-    return [text] if text else []
+    held = _held_lever(case.system, evaluation_states.random[0], state)
+    if held is None:
+        return []
+    pairs = list[tuple[Array, Array]]()
+    for one in across.scenes.values():
+        if one.states is not None and one.system.load.pivot is not None:
+            other = _held_lever(one.system, *one.states)
+            due = np.asarray(lever_of(one.system), dtype=float)
+            pairs.append((due, due if other is None else other))
+    law = law_of(pairs, "the lever from the pivot to the centre of mass", "m") if pairs else ""
+    return [law or _lever(case.system, held)]
 
 
-def _lever(system: System, requested: State, back: State) -> str:
+def _held_lever(system: System, requested: State, back: State) -> Array | None:
+    """The lever in body axes, m, by which a body is placed; None where it is the right one.
+
+    None as well where something else is wrong.
+    """
     due = np.asarray(lever_of(system), dtype=float)
     q, w = requested.orientation, requested.angular_velocity
     held = rotate_inverse(back.orientation, back.position)
@@ -184,9 +199,13 @@ def _lever(system: System, requested: State, back: State) -> str:
     same &= np.linalg.norm(back.angular_velocity - w) <= CLOSE * np.linalg.norm(w)
     apart = np.linalg.norm(back.linear_velocity - moved)
     if not np.isfinite(apart) or not same or apart > CLOSE * size * np.linalg.norm(w):
-        return ""
-    if np.linalg.norm(held - due) <= CLOSE * size:
-        return ""
+        return None
+    return held if np.linalg.norm(held - due) > CLOSE * size else None
+
+
+def _lever(system: System, held: Array) -> str:
+    due = np.asarray(lever_of(system), dtype=float)
+    size = float(np.linalg.norm(held)) + float(np.linalg.norm(due))
     for one in hypotheses(system):
         if one.part in ("pivot", "center"):
             other = one.system(system)
@@ -194,6 +213,8 @@ def _lever(system: System, requested: State, back: State) -> str:
             if placed and np.linalg.norm(held - lever_of(other)) <= CLOSE * size:
                 return one.text
     k = float(held @ due) / float(due @ due) if np.any(due) else 0.0
+    if np.linalg.norm(held) <= CLOSE * size:
+        return "the lever from the pivot to the centre of mass is taken for zero"
     if np.linalg.norm(held - k * due) <= CLOSE * size:
         return f"the lever from the pivot to the centre of mass is scaled by {factor(k)}"
     shown = f"{vector(held, due)} m from the pivot, where {vector(due, held)} m was requested"

@@ -15,6 +15,7 @@ from omegadot.diagnosis.stepping.step_ends import (
     kept_ends,
     left_multiplied,
     second_order_turn,
+    single_trigonometry,
     straight_quaternion,
     turned_by_last_omega,
     with_end,
@@ -23,11 +24,14 @@ from omegadot.reference_impl.coordinates import PHRASES, canonical, distinct
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
 
+SINGLE_TURN = "sine and cosine of the turn of a step are in single precision"
 ENDS: dict[str, End] = {
     "the attitude's change in body axes is multiplied from the left": left_multiplied,
     "the attitude is stepped as q + h/2 q omega and not normalised": straight_quaternion,
     "the attitude turns by the step's last omega alone": turned_by_last_omega,
     "the turn of a step is taken by the exponential's series to second order": second_order_turn,
+    SINGLE_TURN: single_trigonometry(of_angle=False),
+    f"{SINGLE_TURN}, as is its angle": single_trigonometry(of_angle=True),
 }
 
 

@@ -85,6 +85,24 @@ def second_order_turn(before: State, after: State, dt: float | Array) -> State:
     return replace(after, orientation=quaternion_product(before.orientation, short))
 
 
+def single_trigonometry(of_angle: bool) -> End:
+    """Sine and cosine of the turn of the step in single precision, the quaternion made unit.
+
+    of_angle: of half the angle rounded so; else the two are rounded alone.
+    """
+
+    def end(before: State, after: State, dt: float | Array) -> State:
+        turn = rotation_between(before.orientation, after.orientation)
+        size = norm(turn)[..., None]
+        half = (0.5 * size).astype(np.float32) if of_angle else 0.5 * size
+        cosine, sine = (f(half).astype(np.float32).astype(float) for f in (np.cos, np.sin))
+        axis = turn / np.where(size > 0.0, size, 1.0)
+        turned = normalize(np.concatenate((cosine, sine * axis), axis=-1))
+        return replace(after, orientation=quaternion_product(before.orientation, turned))
+
+    return end
+
+
 def single_precision(before: State, after: State, dt: float | Array) -> State:
     """Every number rounded to single precision."""
     return State(*(f.astype(np.float32).astype(float) for f in vars(after).values()))

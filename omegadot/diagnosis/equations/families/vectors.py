@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.families.family import Family
 from omegadot.diagnosis.wording.digits import vector
+from omegadot.diagnosis.wording.laws import SAME
 from omegadot.reference_impl.system import Array, System
 
 
@@ -42,8 +44,28 @@ def _load_vector(name: str, what: str, unit: str) -> Family:
         value = getattr(system.load, name)
         return [] if value is None or not (np.any(value) or name == "pivot") else [right(system)]
 
+    def alike(pairs: Sequence[tuple[System, Array]]) -> str:
+        """Of torques: whether they are the requested ones, taken along the principal axes."""
+        if not name.startswith("torque") or not all(
+            _turned(getattr(s.load, name), p, s) for s, p in pairs
+        ):
+            return ""
+        return "these are the numbers of the requested one along the inertia's principal axes"
+
     part = "torque" if name.startswith("torque") else name
-    return Family(name, part, starts, form, text, right, unit)
+    return Family(name, part, starts, form, text, right, unit, alike=alike)
+
+
+def _turned(requested: Array, acting: Array, system: System) -> bool:
+    """Whether a vector is another along the principal axes, whatever their order and signs."""
+    axes = np.linalg.eigh(np.asarray(system.body.inertia, dtype=float))[1]
+    along, back = (np.sort(np.abs(turn @ requested)) for turn in (axes.T, axes))
+    size = SAME * float(np.linalg.norm(requested))
+    reached, came = np.sort(np.abs(acting)), np.sort(np.abs(axes.T @ acting))
+    if np.max(np.abs(along - np.sort(np.abs(requested)))) <= size:
+        return False  # the axes are the body's
+    ways = (along - reached, back - reached, came - np.sort(np.abs(requested)))
+    return any(float(np.max(np.abs(one))) <= size for one in ways)
 
 
 def _arm(form: Form, system: System, p: Array) -> Form:
