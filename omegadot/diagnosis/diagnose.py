@@ -10,14 +10,13 @@ fits one scenario and is contradicted by another is not named.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
 
 from omegadot.diagnosis.case_causes import CaseCauses
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
-from omegadot.diagnosis.wording.kinds import is_named, kind_of
+from omegadot.diagnosis.wording.kinds import beside_others, is_named
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import (
     EvaluationStates,
@@ -68,13 +67,7 @@ class Causes:
             for other in (self._text(engine, name, integrator),)
             if other
         ]
-        kinds = Counter(kind_of(other) for other in others if is_named(other))
-        kind, count = kinds.most_common(1)[0] if kinds else ("", 0)
-        if 2 * count <= len(others):
-            return text
-        shown = next(other for other in others if kind_of(other) == kind)
-        where = f"on {count} other scenario{'s' * (count > 1)}: {shown}"
-        return f"{where}; here: {text}" if text else where
+        return beside_others(text, others)
 
     def _text(self, engine: str, case: str, integrator: str | None) -> str:
         key = (engine, case, integrator)

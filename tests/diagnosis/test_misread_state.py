@@ -1,0 +1,124 @@
+"""States that do not read back: what is made of them, on its way in or out, over scenarios.
+
+What these tests catch: a convention that fits one state by its sign alone, and one that is named
+where another scenario contradicts it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from wrong_equations import CASES
+
+from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.held import Scene
+from omegadot.diagnosis.models.misread_state import state_causes
+from omegadot.diagnosis.wording.features import features_of
+from omegadot.gates.bounds.scales import EPS
+from omegadot.gates.case import Case
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.kinematics import at_point, place_on_pivot
+from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import State
+
+Made = Callable[[Case, State], State]
+FREE = [case for case in CASES if case.system.load.pivot is None]
+
+
+def set_states(case: Case, number: int) -> State:
+    draw = np.random.default_rng(number)
+    q = normalize(draw.normal(size=4))
+    return place_on_pivot(case.system, State(q, *(draw.normal(size=3) for _ in range(3))))
+
+
+def causes(made: Made, cases: list[Case]) -> list[list[str]]:
+    """What is named on each scenario, held against all of them."""
+    across, rounds = Across(), []
+    for number, case in enumerate(cases):
+        requested = set_states(case, number)
+        rounds.append((case, requested, made(case, requested)))
+        features = features_of(case.system, case.initial)
+        across.add(Scene(case.name, case.system, features, {}, states=rounds[-1][1:]))
+    return [state_causes(across, *one, EPS) for one in rounds]
+
+
+def turned(field: str, turn: Callable[[object, object], object]) -> Made:
+    def made(_: Case, state: State) -> State:
+        return replace(state, **{field: turn(state.orientation, getattr(state, field))})
+
+    return made
+
+
+def at_origin(case: Case, state: State) -> State:
+    return at_point(state, case.system.body.center_of_mass)
+
+
+MADE: dict[str, tuple[Made, str]] = {
+    "velocity-in-body": (turned("linear_velocity", rotate), "taken as one in body axes when it is"),
+    "position-in-body": (turned("position", rotate), "position is taken as one in body axes"),
+    "velocity-reported-in-body": (
+        turned("linear_velocity", rotate_inverse),
+        "the linear velocity looks like body axes",
+    ),
+    "of-origin": (at_origin, "are taken as those of the body's origin when they are set"),
+    "degrees": (
+        lambda _, s: replace(s, angular_velocity=np.deg2rad(s.angular_velocity)),
+        "degrees per second when it is set",
+    ),
+    "momentum": (
+        lambda c, s: replace(
+            s, angular_velocity=apply(inverse(moving_inertia(c.system)), s.angular_velocity)
+        ),
+        "omega is taken as the angular momentum when it is set",
+    ),
+    "single": (
+        lambda _, s: replace(s, position=s.position.astype(np.float32).astype(float)),
+        "the position is kept in single precision",
+    ),
+    "nothing": (
+        lambda _, s: replace(s, linear_velocity=0.0 * s.linear_velocity),
+        "the linear velocity reads back as zero",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_what_is_made_of_a_state_is_named(name: str) -> None:
+    made, text = MADE[name]
+    for found in causes(made, FREE):
+        assert len(found) == 1
+        assert text in found[0]
+
+
+def test_a_sound_engine_has_no_cause() -> None:
+    assert causes(lambda _, state: state, CASES[:4]) == [[]] * 4
+
+
+def test_a_lost_sign_is_no_transposed_rotation() -> None:
+    """Of a negative scalar part |w| is the inverse rotation, of a positive one the right one."""
+
+    def unsigned(_: Case, state: State) -> State:
+        q = state.orientation.copy()
+        q[0] = abs(q[0])
+        return replace(state, orientation=q)
+
+    signs = {bool(set_states(case, k).orientation[0] < 0.0) for k, case in enumerate(FREE)}
+    assert signs == {True, False}
+    found = [texts for texts in causes(unsigned, FREE) if texts]
+    assert {text for texts in found for text in texts} == {
+        "the quaternion's scalar part is read back without its sign"
+    }
+
+
+def test_what_holds_of_free_bodies_alone_is_stated_of_these() -> None:
+    def made(case: Case, state: State) -> State:
+        free = case.system.load.pivot is None
+        return turned("linear_velocity", rotate)(case, state) if free else state
+
+    found = {text for texts in causes(made, list(CASES)) for text in texts}
+    assert len(found) == 1
+    assert next(iter(found)).endswith("R v reads back, but only where the body is free")
