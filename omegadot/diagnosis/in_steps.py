@@ -22,6 +22,8 @@ from omegadot.diagnosis.stepping.kinematics import (
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import either
 
+LOADS = ("the applied torque", "the torque", "the damping", "gravity")
+PARTS = {"0.5": "half", "0.333333": "a third", "0.25": "a quarter"}
 IN_THE_FIRST = "at the start of a run alone"
 FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
 
@@ -98,7 +100,11 @@ class StepCauses:
         if "right" in followed:
             first = f"{IN_THE_FIRST}, {text}"
             return either([velocity_share_cause(steps), first])
-        return [f"in the steps, {text}"]
+        part = next((part for k, part in PARTS.items() if text.endswith(f" is scaled by {k}")), "")
+        of_load = part and text.startswith(LOADS)  # the limit of short steps does not tell these
+        return [
+            f"in the steps, {text}{f', or acts in {part} of each step alone' if of_load else ''}"
+        ]
 
     def known(self, steps: VanishingSteps) -> list[str]:
         """What is known of the steps' equation where nothing fits."""
