@@ -140,6 +140,51 @@ def test_every_place_that_contributing_names_is_there() -> None:
             assert (ROOT / place.replace("ENGINE", engine)).exists(), place
 
 
+# What machines read back: a baseline's figures, and a key of what is kept.
+READ_BACK = ("commands/check/baseline.py", "commands/check/baseline_file.py", "catalogue/kept.py")
+OTHER_FORM = re.compile(r"[eEgG]$")
+TEMPLATE = re.compile(r"\{\w*:\.?\d*[eEgG]\}|%\.?\d*[eEgG]\b")
+
+
+def of_another_form(tree: ast.Module) -> list[int]:
+    """The lines that write a number by ``:g`` or ``:e``; ``float(f"{x:.3g}")`` rounds one."""
+    roundings = {
+        id(node)
+        for call in ast.walk(tree)
+        if isinstance(call, ast.Call) and ast.unparse(call.func) == "float"
+        for node in ast.walk(call)
+    }
+    specs = {
+        field.lineno: ast.unparse(field.format_spec).strip("f'\"")
+        for field in ast.walk(tree)
+        if isinstance(field, ast.FormattedValue)
+        and field.format_spec
+        and id(field) not in roundings
+    }
+    texts = (n for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str))
+    found = [line for line, spec in specs.items() if OTHER_FORM.search(spec)]
+    return found + [n.lineno for n in texts if TEMPLATE.search(n.value)]
+
+
+def test_numbers_are_written_in_one_form() -> None:
+    """Caught: 3e+06 beside 2.8e6, and 0.31 beside 3.1e-1."""
+    one = ROOT / "scenarios" / "written.py"
+    for file in ROOT.rglob("*.py"):
+        if file != one and not file.as_posix().endswith(READ_BACK):
+            assert not of_another_form(parsed(file)), file.relative_to(ROOT)
+    for file in (ROOT / "reports" / "page" / "templates").iterdir():
+        text = file.read_text(encoding="utf-8")
+        form = "toExponential" if file.name != "written.js" else "toPrecision"
+        assert not re.search(rf"{form}|toPrecision|%\.\d[eg]|%g", text), file.name
+
+
+def test_the_other_forms_are_seen() -> None:
+    for text in ('f"{x:g}"', 'f"{x:.3g}"', 'f"{x:.{n}e}"', '"{x:.2g}".format(x=1)', '"%.3g" % x'):
+        assert of_another_form(ast.parse(text)), text
+    for text in ('float(f"{x:.3g}")', 'f"{x:.2f}"', 'f"{written(x, 3)}"', 'f"{name:<9}"'):
+        assert not of_another_form(ast.parse(text)), text
+
+
 # Each takes longer to import than a command takes to begin.
 SLOW = ("scipy.signal", "scipy.stats", "scipy.interpolate", "scipy.ndimage", "matplotlib", "pandas")
 

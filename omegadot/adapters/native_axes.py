@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 # A third of a turn about (1, 1, 1): x goes to y, so the two answers cannot be mistaken.
 TURNED = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -30,4 +31,4 @@ def described(value: object) -> str:
     array = np.asarray(value)
     if array.ndim:
         return f"({', '.join(described(item) for item in array.ravel())})"
-    return f"{array.item() + 0.0:.12g}" if array.dtype.kind == "f" else str(array.item())
+    return written(array.item(), 12) if array.dtype.kind == "f" else str(array.item())

@@ -11,6 +11,8 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand
 
+from omegadot.scenarios.written import written
+
 
 class Format(StrEnum):
     """How results are printed."""
@@ -173,5 +175,5 @@ def _help(param: Any) -> str:
         default = default.value
     if _is_argument(param) or param.is_flag or default in (None, "", (), []):
         return text
-    shown = f"{default:g}" if isinstance(default, float) else default
+    shown = written(default) if isinstance(default, float) else default
     return f"{text} [default: {shown}]"

@@ -18,6 +18,7 @@ from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
+from omegadot.scenarios.written import written
 
 
 @dataclass
@@ -64,7 +65,7 @@ class OverScenarios:
         if not any(alone for _, alone in self.turned.values()):
             return ""
         angle = float(np.median([angle for angle, _ in self.turned.values()]))
-        return f"runs begin at an attitude that is some {angle:.0e} rad from the one given"
+        return f"runs begin at an attitude that is some {written(angle, 1)} rad from the one given"
 
     def followed(
         self, one: Candidate, evidence: Mapping[str, Evidence], eps: float

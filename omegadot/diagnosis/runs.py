@@ -36,6 +36,7 @@ from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun, is_finite
+from omegadot.scenarios.written import written
 
 ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
 LIMIT = "is held"
@@ -119,7 +120,7 @@ def _of_several_schemes(guesses: Guesses, runs: Sequence[JudgedRun]) -> str:
     named = {timestep: schemes for timestep, schemes in equal.items() if schemes}
     if len(named) < 2 or set.intersection(*named.values()):
         return ""
-    parts = [f"{' or '.join(sorted(n))} at {h:g} s" for h, n in sorted(named.items())]
+    parts = [f"{' or '.join(sorted(n))} at {written(h)} s" for h, n in sorted(named.items())]
     return f"runs with different steps are of different schemes: {', '.join(parts)}"
 
 
@@ -133,7 +134,8 @@ def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
     )
     if not failed or not sound or max(sound) >= min(failed):
         return found
-    where = f", at steps of {min(failed):g} s and longer; steps of {max(sound):g} s fail no gate"
+    least, most = written(min(failed)), written(max(sound))
+    where = f", at steps of {least} s and longer; steps of {most} s fail no gate"
     kept = [text for text in found.texts if not text.startswith(ALIKE)]
     limit = len(kept) == 1 and LIMIT in kept[0]
     return RunCauses(tuple(text + where for text in kept), found.decisive or limit)

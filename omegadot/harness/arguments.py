@@ -19,6 +19,7 @@ from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.scenarios import Scenario, ScenarioLike, builtin_names, scenario
 from omegadot.scenarios.model import MOST_STEPS
+from omegadot.scenarios.written import written
 
 T = TypeVar("T")
 
@@ -169,21 +170,23 @@ def case_of(
     duration, sample = scenario.run.duration, scenario.run.sample
     for step in timesteps:
         if not (isinstance(step, Real) and math.isfinite(step) and step > 0.0):
-            shown = f"{step:g}" if isinstance(step, Real) else repr(step)
+            shown = written(step) if isinstance(step, Real) else repr(step)
             raise UsageError(f"--timestep {shown}: not a positive number of seconds; give one.")
         if step > duration:
             raise UsageError(
-                f"--timestep {step:g}: longer than the {duration:g} s of {scenario.name}; "
+                f"--timestep {written(step)}: longer than the {written(duration)} s of "
+                f"{scenario.name}; "
                 "give a shorter one."
             )
         if duration / step > MOST_STEPS:
             raise UsageError(
-                f"--timestep {step:g}: {scenario.name} would take {duration / step:.1g} steps; "
-                f"give one of at least {duration / MOST_STEPS:.1g} s."
+                f"--timestep {written(step)}: {scenario.name} would take "
+                f"{written(duration / step, 1)} steps; "
+                f"give one of at least {written(duration / MOST_STEPS, 1)} s."
             )
     for one in accuracies:
         if not (isinstance(one, Real) and 0.0 < one < 1.0):
-            shown = f"{one:g}" if isinstance(one, Real) else repr(one)
+            shown = written(one) if isinstance(one, Real) else repr(one)
             raise UsageError(f"--accuracy {shown}: not a relative tolerance; give one from 0 to 1.")
     steps = tuple(dict.fromkeys(map(float, timesteps))) or scenario.run.timesteps
     sweeps = tuple(sweep_of(duration, step, sample) for step in steps)

@@ -9,6 +9,7 @@ from numbers import Integral, Real
 from typing import get_args
 
 from omegadot.adapters.protocol import Setup
+from omegadot.scenarios.written import written
 
 MOST = 1e9
 
@@ -44,8 +45,8 @@ def check_number(option: str, value: object, least: float) -> None:
     except OverflowError:  # a whole number that no float holds
         number = math.inf
     if not (least <= number <= MOST and number > 0.0):
-        limit = f"of at least {least:g}" if least else "above 0"
-        limit += f" and at most {MOST:g}" if number > MOST else ""
+        limit = f"of at least {written(least)}" if least else "above 0"
+        limit += f" and at most {written(MOST)}" if number > MOST else ""
         raise UsageError(f"{option} {value}: give a number {limit}.")
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import datetime
 
+from omegadot.scenarios.written import exactly
+
 SHOWN = 60  # characters of a value that a sentence can carry
 
 
@@ -50,8 +52,11 @@ def describe(value: object, depth: int = 2) -> str:
             return f"an integer of {value.bit_length()} bits"
         case str():
             return repr(value) if len(value) <= SHOWN else repr(value[:SHOWN]) + "..."
-        case int() | float():
+        case int():
             return repr(value)
+        case float():
+            text = exactly(value)
+            return text if {*".enf"} & {*text} else f"{text}.0"  # a float, no whole number
         case datetime.date() | datetime.time():
             return value.isoformat()
         case dict():

@@ -16,6 +16,8 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, PlainValidator
 from pydantic_core import PydanticCustomError
 
+from omegadot.scenarios.written import written
+
 LARGEST = 1e50
 SMALLEST = 1e-50
 
@@ -43,7 +45,9 @@ def read_number(value: object, *, key: str = "") -> float:
     if isinstance(value, float) and not math.isfinite(value):
         raise refuse("give a finite number", key=key, found=value)
     if abs(value) > LARGEST:
-        raise refuse(f"give a number of at most {LARGEST:g} in SI units", key=key, found=value)
+        raise refuse(
+            f"give a number of at most {written(LARGEST)} in SI units", key=key, found=value
+        )
     return float(value)
 
 
@@ -53,7 +57,9 @@ def read_positive(value: object, *, key: str = "") -> float:
     if number <= 0.0:
         raise refuse("give a number greater than zero", key=key, found=value)
     if number < SMALLEST:
-        raise refuse(f"give a number of at least {SMALLEST:g} in SI units", key=key, found=value)
+        raise refuse(
+            f"give a number of at least {written(SMALLEST)} in SI units", key=key, found=value
+        )
     return number
 
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from omegadot.scenarios.errors import Phrase
 from omegadot.scenarios.parts import Box, Capsule, Cylinder, Ellipsoid, Part, Point, Sphere
 from omegadot.scenarios.quantities import LARGEST, SMALLEST, refuse
+from omegadot.scenarios.written import written
 
 EPS = float(np.finfo(float).eps)
 
@@ -84,7 +85,7 @@ def check_body_of_parts(parts: tuple[Part, ...]) -> None:
     for index, (part, amount) in enumerate(zip(parts, masses, strict=True)):
         if not SMALLEST <= amount <= LARGEST:
             raise refuse(
-                f"choose sizes for a mass of {SMALLEST:g} to {LARGEST:g} kg",
+                f"choose sizes for a mass of {written(SMALLEST)} to {written(LARGEST)} kg",
                 key=f"part[{index}].density",
                 found=getattr(part, "density", None),
             )
@@ -107,7 +108,10 @@ def check_body_of_parts(parts: tuple[Part, ...]) -> None:
         )
     if small + middle < SMALLEST or middle + large > LARGEST:
         raise refuse(
-            f"choose parts for an inertia of {SMALLEST:g} to {LARGEST:g} kg m^2",
+            f"choose parts for an inertia of {written(SMALLEST)} to {written(LARGEST)} kg m^2",
             key="part",
-            found=Phrase(f"a body with moments from {small + middle:.3g} to {middle + large:.3g}"),
+            found=Phrase(
+                f"a body with moments from {written(small + middle, 3)} to "
+                f"{written(middle + large, 3)}"
+            ),
         )

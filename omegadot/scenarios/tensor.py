@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic import PlainValidator, ValidationInfo
 
 from omegadot.scenarios.quantities import SMALLEST, read_number, read_positive, refuse
+from omegadot.scenarios.written import written
 
 EPS = float(np.finfo(float).eps)
 LAPACK = 16 * EPS  # it finds 3x3 eigenvalues to a few ulps of the largest
@@ -64,7 +65,7 @@ def _read_rows(value: list[object] | tuple[object, ...]) -> Matrix:
         floor = max(SMALLEST, LAPACK * float(largest))
     if moments[0] < floor:
         raise refuse(
-            f"make it positive definite, its smallest principal moment is {moments[0]:.6g}",
+            f"make it positive definite, its smallest principal moment is {written(moments[0])}",
             found=value,
         )
     a, b, c = ((float(row[0]), float(row[1]), float(row[2])) for row in tensor)
@@ -91,7 +92,9 @@ def broken_triangle(tensor: NDArray[np.float64]) -> str | None:
     size = 2.0 * np.linalg.norm(tensor) + np.trace(tensor)
     if large - (small + middle) <= rounding * size:
         return None
-    shown = (f"{large:.{digits}g} > {small + middle:.{digits}g}" for digits in range(6, 18))
+    shown = (
+        f"{written(large, digits)} > {written(small + middle, digits)}" for digits in range(6, 18)
+    )
     return next(pair for pair in shown if len(set(pair.split(" > "))) == 2)
 
 

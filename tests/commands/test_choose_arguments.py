@@ -191,9 +191,7 @@ def test_a_body_takes_a_scenarios_motion_and_the_horizon_is_the_users(tmp_path: 
 def test_nothing_to_simulate_is_an_error() -> None:
     with pytest.raises(UsageError, match="--body"):
         cases_of(Motion())
-    with pytest.raises(UsageError, match=r"^--duration 1e\+12 needs 5e\+13 steps of 0.02 s; the"):
+    with pytest.raises(UsageError, match=r"^--duration 1e12 needs 5e13 steps of 0.02 s; the"):
         cases_of(Motion(["t-handle"], duration=1e12))
-    with pytest.raises(
-        UsageError, match=r"needs 2.5e\+07 samples of 0.04 s; the limit is 10,000,000"
-    ):
+    with pytest.raises(UsageError, match=r"needs 2.5e7 samples of 0.04 s; the limit is 10,000,000"):
         cases_of(Motion(["t-handle"], duration=1e6))

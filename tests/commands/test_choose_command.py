@@ -188,7 +188,7 @@ def test_what_is_just_missed_differs_in_its_digits() -> None:
     """It read "1.0e-6, required at most 1.0e-6"."""
     missed = {"requirement": "energy-drift", "found": 1.04e-6, "limit": 1e-6, "factor": 1.04}
     text = missed_text({**missed, "unit": "1"})
-    assert text == "energy drift 1.04e-6, required at most 1.00e-6 (off by 1.04x)"
+    assert text == "energy drift 1.04e-6, required at most 1e-6 (off by 1.04x)"
 
 
 def test_nothing_qualifies(tmp_path: Path) -> None:

@@ -7,6 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 from score_line import BRICK, run_score, runge_kutta, tumble, turns
 
+from omegadot.scenarios.written import written
+
 TIMES = 0.2 * np.arange(101)
 MAPPED = ("--scenario", BRICK)
 NAMES = "t,wx,wy,wz,qw,qx,qy,qz,px,py,pz,vx,vy,vz"
@@ -49,7 +51,7 @@ def test_a_world_that_turns_is_found_and_undone(score, rate):
     result = score(attitude(exact, seen))
     assert not passes(result, "attitude")
     line, options = advised(result)
-    assert f"{np.linalg.norm(rate):.4g} rad/s about" in line
+    assert f"{written(np.linalg.norm(rate), 4)} rad/s about" in line
     assert score(attitude(exact, seen), *options).json["channels"]["attitude"]["max"] < 1e-8
     given = ",".join(map(repr, rate))
     assert passes(score(attitude(exact, seen), f"--world-rate={given}"))
@@ -103,7 +105,7 @@ def test_an_early_trace_in_a_turning_world_is_both(score):
     assert found.json["shift"]["explains"]
     assert found.json["shift"]["after"] < 1e-9
     line, _ = advised(found)
-    assert "turns at 7.3e-05 rad/s about x" in line
+    assert "turns at 7.3e-5 rad/s about x" in line
 
 
 def test_the_first_samples_may_be_on_time(score):

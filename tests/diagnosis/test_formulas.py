@@ -92,7 +92,7 @@ def world_torque_turned_twice(s: System, x: State) -> Array:
 
 TORQUES: dict[str, tuple[Torque, str]] = {
     "lever": (on_lever, "a torque k d r x v is added, with k = -0.3 1/m^2, r the lever"),
-    "gradient": (gradient, "a torque k (g x I_c g) / |g| is added, with k = 1e-06 1/m"),
+    "gradient": (gradient, "a torque k (g x I_c g) / |g| is added, with k = 1e-6 1/m"),
     "friction": (friction, "a torque -0.001 m|g||r| omega / |omega| is added"),
     "each": (each_axis, "a torque k d |omega_i| omega_i is added, with k = -0.02 s"),
     "momentum": (of_momentum, "omega x I_c I_c omega is added, with k = 0.1 1/(kg m^2)"),

@@ -29,6 +29,7 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.scenarios import scenario
+from omegadot.scenarios.written import written
 
 SWEEP = Sweep(0.0371234567, 40, 4)
 CLOCKS = {
@@ -39,7 +40,7 @@ CLOCKS = {
     "micro": (lambda t: np.floor(t * 1e6) / 1e6, "the times are whole microseconds"),
     "huge": (
         lambda t: np.append(t[:-1], 1e300),
-        f"the last time alone is off: 1e+300 s, where {SWEEP.times[-1]:.6g} s was due",
+        f"the last time alone is off: 1e300 s, where {written(SWEEP.times[-1])} s was due",
     ),
     "last": (lambda t: np.append(t[:-1], t[-1] + 0.1), "the last time alone is off"),
     "missing": (lambda t: t[:-1], "the last sample is missing"),
@@ -193,7 +194,8 @@ def test_the_time_constant_of_a_filter_is_found_in_its_samples(tau: float) -> No
     came = replace(state, angular_velocity=logged[sweep.sample_steps])
     reported: Any = SimpleNamespace(sweep=sweep, state=came)
     ways = {text: made for text, made, _ in ways_of_steps(reported, every, "angular_velocity", "w")}
-    text = f"w is reported through a low-pass of the first order with a time constant of {tau:g} s"
+    constant = f"a time constant of {written(tau)} s"
+    text = f"w is reported through a low-pass of the first order with {constant}"
     assert np.max(np.abs(ways[text] - came.angular_velocity)) < 1e-12
 
 

@@ -233,7 +233,7 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "rate": (damping_as_rate, "the damping acts as a rate"),
     "rate-no-gyro": (rate_and_no_gyroscopic_term, "the gyroscopic term is missing"),
     "mirrored": (mirrored_center, "the centre of mass is mirrored"),
-    "armature": (armature, "1e-06 kg m^2 is added to the inertia's diagonal"),
+    "armature": (armature, "1e-6 kg m^2 is added to the inertia's diagonal"),
     "clamp": (
         under(damping=lambda s: np.minimum(s.load.damping, 1.0)),
         "the damping is limited to 1 N m s/rad",
@@ -262,7 +262,7 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "constant": (constant_rate, "omega-dot has a constant (0, 0, 0.002) rad/s^2 in body axes"),
     "turning": (
         turning_world,
-        "omega x c in it with c = (0, 0, 7.292e-05) rad/s, constant in world",
+        "omega x c in it with c = (0, 0, 7.292e-5) rad/s, constant in world",
     ),
     "torque-back": (torque_turned_back, "turned into the body by the transposed rotation"),
     "moment": (scaled_moment, "the moment of inertia zz is scaled by 1.03"),
@@ -270,7 +270,7 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "drag": (air_drag, "the acceleration has -0.03 |v| v in it"),
     "height": (
         weaker_with_height,
-        "gravity changes with the place: by -3e-07 of it a metre along z",
+        "gravity changes with the place: by -3e-7 of it a metre along z",
     ),
     "gravity-up": (
         under(gravity=lambda s: s.load.gravity[[0, 2, 1]] * np.array([1.0, 1.0, -1.0])),

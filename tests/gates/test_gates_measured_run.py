@@ -95,7 +95,7 @@ def test_each_run_has_an_excess_of_its_own() -> None:
     assert all(one < 1.0 for one in excess[1:])
     assert [evidence_of(run, runs, "omega", 2).settled for run in runs] == [True] + 3 * [False]
     found = findings_of(runs[0], Declared(None, dict.fromkeys(CHANNELS, 2)), runs)["omega"]
-    assert found.note.startswith("at this step the error is 3.1e+01 times")
+    assert found.note.startswith("at this step the error is 31 times")
 
 
 def test_evidence_holds_what_was_measured() -> None:
@@ -125,7 +125,7 @@ def test_findings_name_every_channel() -> None:
     assert failed == {"energy", "position"}
     explained = [measured(0.04, 1e-3, BOUND)]
     assert findings_of(explained[0], Declared("euler", orders), explained)["energy"].note == (
-        "explained by euler, to 1.0e-12"
+        "explained by euler, to 1e-12"
     )
 
 

@@ -99,7 +99,7 @@ def test_round_off_holds_at_every_sample() -> None:
 def test_a_scheme_explains_at_every_sample() -> None:
     error = [0.0, 1e-3, 1e-3]
     found = judge(evidence(error, BOUND), "euler", 1)
-    assert found == Finding("explained", "explained by euler, to 1.0e-11")
+    assert found == Finding("explained", "explained by euler, to 1e-11")
     for place in range(3):
         left = 2.0 * BOUND  # the engine's rounding and the reference's
         assert judge(evidence(error, left, None, SLOW, SLOW), "euler", 1).kind == "explained"
@@ -127,7 +127,7 @@ def test_where_a_scheme_blows_up_there_is_nothing_to_judge_by() -> None:
     assert judge(within, "euler", 1).kind == "unexplained"
     explained = Evidence(error, np.array([1e-15, 1e-12, np.inf]), np.array([0, 1e-13, 9]), (SLOW,))
     assert judge(explained, "euler", 1).note == (
-        "explained by euler, to 1.0e-13, until the scheme blows up"
+        "explained by euler, to 1e-13, until the scheme blows up"
     )
 
 
@@ -149,7 +149,7 @@ def test_an_error_that_finer_steps_do_not_explain_fails() -> None:
     seen = replace(evidence([0.0, 1.0, 1.0], None, None, ObservedOrder(1.0, True)), excess=1.1)
     assert judge(seen, "euler", 1) == Finding(
         "unexplained",
-        "at this step the error is 1.1e+00 times what the errors at finer steps let it be",
+        "at this step the error is 1.1 times what the errors at finer steps let it be",
     )
     assert judge(replace(seen, excess=1.0), "euler", 1).kind == "consistent"
     assert judge(replace(seen, settled=False), "euler", 1).kind == "unsettled"

@@ -36,6 +36,7 @@ from omegadot.reference_impl.rotations import (
 )
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, Body, Load, State, System
+from omegadot.scenarios.written import written
 
 SINGLES = 2.0**-23
 RATIO = 2.0**29
@@ -269,7 +270,7 @@ def test_the_step_where_rounding_meets_truncation(order: int, meet: float) -> No
         assert row.bound is not None
         assert row.bound > row.value
         assert row.verdict == "info"
-        assert f"rounding outweighs truncation below h = {meet:.2g} s" in row.note
+        assert f"rounding outweighs truncation below h = {written(meet, 2)} s" in row.note
 
 
 def test_errors_that_grow_from_the_coarsest_step_on_are_rounding_at_every_step() -> None:

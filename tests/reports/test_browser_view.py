@@ -19,6 +19,7 @@ from omegadot.reference_impl.rotations import (
 from omegadot.reports.page.page import draw_page
 from omegadot.reports.page.templating import asset
 from omegadot.reports.page.view_3d.view import Codes
+from omegadot.scenarios.written import written
 
 HOSTILE = "<img src=x onerror=\"document.title='broken'\">"
 READY = "document.getElementById('view-box').dataset.ready === '1'"
@@ -379,3 +380,16 @@ def test_what_fails_is_shown_at_first_and_marked(browser, tmp_path):
         *("mujoco Euler", "dart semi-implicit"),
     ]
     assert page.evaluate("document.getElementById('view-step').value") == "0"
+
+
+def test_the_script_writes_numbers_as_the_page_does(seen):
+    """Caught: 1.23e+5 in a hover text beside 1.2e5 in a table."""
+    random = np.random.default_rng(5)
+    numbers = [0.0, 0.005, 2.0, 1e-4, 9.9999e-5, 99999.96, 1e5, 2.8e6, 5e-324, 1.7e308]
+    numbers += (random.normal(size=200) * 10.0 ** random.uniform(-20, 20, 200)).tolist()
+    digits = [2 + k % 5 for k in range(len(numbers))]
+    script = (
+        f"(() => {{ {asset('written.js')}; const d = {digits};"
+        f" return {json.dumps(numbers)}.map((x, k) => written(x, d[k])); }})()"
+    )
+    assert seen.evaluate(script) == [written(*pair) for pair in zip(numbers, digits, strict=True)]

@@ -111,7 +111,7 @@ def test_the_pareto_front_is_of_engines_without_the_reference():
     assert [(p.engine, p.timestep) for p in front] == [("x", 0.1), ("y", 0.01), ("x", 0.01)]
     assert named(front[1]) == (
         "y a at step 0.01 s",
-        "1.0e-3 rad for 5.0 s per simulated second",
+        "0.001 rad for 5 s per simulated second",
     )
 
 

@@ -169,7 +169,7 @@ def test_no_zero_stands_on_a_logarithmic_axis(charts) -> None:
 def test_a_run_without_an_error_is_named_and_not_drawn(charts) -> None:
     """In the synthetic record dart has the exact rate: omega-dot is right to the last digit."""
     figure = draw(charts, "omega_dot")
-    assert "dart semi-implicit (≤ 1.0e-17)" in texts_of(figure)
+    assert "dart semi-implicit (≤ 1e-17)" in texts_of(figure)
     colour = colours(["dart"])["dart"][0]
     (line,) = [line for line in lines_of(figure) if to_hex(line.get_color()) == colour]
     assert np.isnan(np.asarray(line.get_ydata(), dtype=float)).all()
@@ -188,7 +188,7 @@ def test_round_off_bound_and_floor_are_drawn(charts) -> None:
 def test_a_floor_far_below_is_named_and_does_not_flatten_the_rest(charts) -> None:
     far = Limits(charts.limits.bounds, {"attitude": 1e-16})
     figure = draw_convergence(type(charts)(**{**vars(charts), "limits": far}))
-    assert "floor 1.0e-16, below" in texts_of(figure)
+    assert "floor 1e-16, below" in texts_of(figure)
     assert figure.axes[0].get_ylim()[0] > 1e-16
 
 
@@ -214,7 +214,7 @@ def test_the_pareto_front_is_named(record) -> None:
     figure = draw_work_precision(charts_of(made)[0])
     message = [text for text in texts_of(figure) if text.startswith("1  ")]
     assert len(message) == 1
-    assert message[0].startswith("1  mujoco RK4 at step 0.02 s: 1.0e-8 rad")
+    assert message[0].startswith("1  mujoco RK4 at step 0.02 s: 1e-8 rad")
     assert not [text for text in texts_of(figure) if text.startswith("2  ")]
 
 

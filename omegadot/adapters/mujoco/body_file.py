@@ -24,6 +24,7 @@ from omegadot.scenarios.errors import ScenarioError, printable
 from omegadot.scenarios.links.link import Link
 from omegadot.scenarios.links.place import Place
 from omegadot.scenarios.links.xml_file import decoded
+from omegadot.scenarios.written import written
 
 SECONDS = 60.0  # a humanoid takes a tenth of a second
 RADII = (1.0, 2.0)  # m, of the balls
@@ -41,7 +42,7 @@ def bodies_of_mjcf(path: Path, file: str) -> list[Link]:
         )
         answer: dict[str, Any] = json.loads(ended.stdout.rpartition(b"\n")[2])
     except subprocess.TimeoutExpired:
-        found = f"an MJCF that MuJoCo did not compile within {SECONDS:g} s"
+        found = f"an MJCF that MuJoCo did not compile within {written(SECONDS)} s"
         raise ScenarioError(file, None, found, "make it smaller") from None
     except ValueError:
         found = f"an MJCF at which MuJoCo ended its process (exit code {ended.returncode})"

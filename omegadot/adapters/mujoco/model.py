@@ -11,6 +11,7 @@ import numpy as np
 from omegadot.adapters.protocol import Setup, UnsupportedError
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array, Body, System
+from omegadot.scenarios.written import written
 
 BODY = 1  # body 0 is MuJoCo's world
 
@@ -75,8 +76,9 @@ def check_body(mujoco: Any, system: System) -> None:
     smallest = min(float(system.body.mass), float(moments.min()))
     if not smallest > least:
         raise UnsupportedError(
-            f"MuJoCo takes no mass or principal moment of {least:g} or less, and the smallest "
-            f"here is {smallest:g}; give the body larger units."
+            f"MuJoCo takes no mass or principal moment of {written(least)} or less, and the "
+            "smallest "
+            f"here is {written(smallest)}; give the body larger units."
         )
 
 

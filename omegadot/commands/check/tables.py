@@ -8,6 +8,7 @@ import numpy as np
 
 from omegadot.gates.case import Case
 from omegadot.scenarios import Scenario
+from omegadot.scenarios.written import written
 
 Tables = dict[str, Any]
 
@@ -73,21 +74,23 @@ def ingredients(found: Scenario, stepped: bool = False) -> tuple[str, ...]:
     longest = max(found.run.timesteps)
     steps = max(1, round(found.run.duration / longest))
     named = {
-        f"a mass of {body.mass:g} kg": body.mass != 1.0,
+        f"a mass of {written(body.mass)} kg": body.mass != 1.0,
         "products of inertia": np.any(tensor != np.diag(moments)),
-        f"moments of {', '.join(f'{m:g}' for m in moments)}": moments.tolist() != [1.0, 2.0, 3.0],
+        f"moments of {', '.join(f'{written(m)}' for m in moments)}": moments.tolist()
+        != [1.0, 2.0, 3.0],
         "an offset centre of mass": any(body.center_of_mass or ()),
         "a pivot at the origin": load.pivot is not None and not any(load.pivot),
         "a pivot off the origin": load.pivot is not None and any(load.pivot),
         gravity: any(load.gravity),
-        f"a damping of {load.damping:g} N m s/rad": load.damping > 0.0,
+        f"a damping of {written(load.damping)} N m s/rad": load.damping > 0.0,
         f"a torque in {load.torque.frame} axes": any(load.torque.value),
         "a turned start": list(start.orientation) != IDENTITY,
         "a start at rest": not any(start.angular_velocity),
         "a start of several components of omega": sum(map(bool, start.angular_velocity)) > 1,
-        f"an omega of {rate:g} rad/s": rate > 0.0 and abs(np.log10(rate)) > UNUSUAL,
+        f"an omega of {written(rate)} rad/s": rate > 0.0 and abs(np.log10(rate)) > UNUSUAL,
         "a moving centre of mass": any(start.linear_velocity),
         f"{steps} steps": stepped and steps > 1,
-        f"a turn of {longest * rate:.2g} rad a step": stepped and longest * rate > LARGE_TURN,
+        f"a turn of {written(longest * rate, 2)} rad a step": stepped
+        and longest * rate > LARGE_TURN,
     }
     return tuple(name for name, holds in named.items() if holds)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from omegadot.commands.choose.candidate import Candidate
-from omegadot.commands.choose.eligible import unmet
+from omegadot.commands.choose.eligible import unmet, untestable
 from omegadot.commands.choose.ranking import Key, Spread, time_all
 from omegadot.commands.choose.requirements import Requirements
 from omegadot.commands.choose.ruler import NoTruthError, Ruler
@@ -77,7 +77,8 @@ class Choice:
 
     def _seek_all(self) -> None:
         for engine in self.engines.started:
-            self.refused[engine.name] = unmet(engine.description, self.requirements)
+            own = engine.description
+            self.refused[engine.name] = untestable(own) + unmet(own, self.requirements)
         fit = [e for e in self.engines.started if not self.refused[e.name]]
         total = sum(len(e.integrators) for e in fit) * len(self.cases)
         self._count = Count(self.report, "seeking the largest steps", total)

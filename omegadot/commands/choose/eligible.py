@@ -23,9 +23,14 @@ def unmet(description: Description, wanted: Requirements) -> list[str]:
     return list(_clauses(description, wanted))
 
 
+def untestable(description: Description) -> list[str]:
+    """The same of an engine whose motion over time cannot be tried."""
+    if description.integrators:
+        return []
+    return ["integrators: it has none, so nothing about its motion over time can be tested"]
+
+
 def _clauses(description: Description, wanted: Requirements) -> Iterator[str]:
-    if not description.integrators:
-        yield "integrators: it has none, so nothing about its motion over time can be tested"
     own = PRECISION[description.precision]
     if wanted.precision not in (None, own):
         yield f"precision: it computes in {own} precision, {wanted.precision} is required"

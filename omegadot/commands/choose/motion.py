@@ -14,6 +14,7 @@ from omegadot.scenarios import Scenario, ScenarioLike, scenario_of
 from omegadot.scenarios.links.body_file import body_of_argument
 from omegadot.scenarios.model import MOST_SAMPLES, MOST_STEPS
 from omegadot.scenarios.tensor import ALLOWED
+from omegadot.scenarios.written import written
 
 STEPS_TO_BEGIN = (500, 1000, 2000)  # a horizon, where no scenario states which steps are usual
 
@@ -93,6 +94,7 @@ def _run_of(run: dict[str, Any], duration: float) -> dict[str, Any]:
 
 def _too_long(duration: float, what: str, gap: float, most: int) -> UsageError:
     return UsageError(
-        f"--duration {duration:g} needs {duration / gap:.3g} {what} of {gap:g} s; "
+        f"--duration {written(duration)} needs {written(duration / gap, 3)} {what} of "
+        f"{written(gap)} s; "
         f"the limit is {most:,}."
     )

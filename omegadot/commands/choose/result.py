@@ -13,6 +13,7 @@ from omegadot.reports.choice.page import draw_choice, write_choice
 from omegadot.reports.notebook import framed
 from omegadot.reports.record.record import RUN
 from omegadot.reports.record.whole_file import path_of
+from omegadot.scenarios.written import written
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class Ranked:
     def setting(self) -> str:
         """The step or the accuracy, as text."""
         if self.timestep is None:
-            return f"an accuracy of {self.accuracy:.1e}"
-        return f"{self.timestep:g} s"
+            return f"an accuracy of {written(self.accuracy, 2)}"
+        return f"{written(self.timestep)} s"
 
 
 @dataclass(frozen=True, repr=False)

@@ -19,6 +19,7 @@ from omegadot.gates.runs.phase import middle_axis
 from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State, System
+from omegadot.scenarios.written import written
 from omegadot.workers.harness_end.process import Answer
 
 
@@ -133,7 +134,8 @@ class Ruler:
         if not len(flips.times):
             raise UsageError(
                 f"--flip-time: omega does not change its sign along the middle axis in the "
-                f"{self.duration:g} s of {self.case.name}; leave it out or give a longer duration."
+                f"{written(self.duration)} s of {self.case.name}; leave it out or give a longer "
+                "duration."
             )
         return flips
 

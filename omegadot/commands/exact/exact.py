@@ -16,6 +16,7 @@ from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.solutions.exact_solution import exact_solution
 from omegadot.reference_impl.system import Array, State
 from omegadot.scenarios import ScenarioLike
+from omegadot.scenarios.written import written
 
 if TYPE_CHECKING:
     import polars as pl
@@ -81,7 +82,8 @@ def exact(scenario: ScenarioLike, times: ArrayLike | None = None) -> ExactStates
         solution = exact_solution(case.system, case.initial, followed)
     if not all(np.isfinite(values).all() for values in vars(solution.state).values()):
         raise UsageError(
-            f"exact solution of {case.name}: at {followed[-1]:g} s double precision holds no digit "
+            f"exact solution of {case.name}: at {written(followed[-1])} s double precision "
+            "holds no digit "
             "of the motion; give earlier times."
         )
     state = State(*(values[rows] for values in vars(solution.state).values()))

@@ -15,6 +15,7 @@ from omegadot.commands.faults.faults import FaultsResult
 from omegadot.commands.faults.matrix import SOUND, EngineMatrix
 from omegadot.commands.faults.published_checks import PUBLISHED
 from omegadot.reports.text.text_grid import plain_console
+from omegadot.scenarios.written import written
 
 HEADS = ("fault", "built-in", *GATES, "one system", "24 systems", "no scheme", "cause named")
 WIDTH_WHEN_PIPED = 200
@@ -99,7 +100,7 @@ def _caught(rows: Sequence[Detection], caught: Sequence[Detection]) -> str:
     missed = [row.fault.name for row in rows if row not in caught]
     share = 100 * len(caught) / max(1, len(rows))
     more = f"; missed: {', '.join(missed)}." if missed else "."
-    return f"{len(caught)} are caught ({share:.3g} %){more}"
+    return f"{len(caught)} are caught ({written(share, 3)} %){more}"
 
 
 def plain(found: FaultsResult) -> dict[str, Any]:

@@ -25,6 +25,7 @@ from omegadot.commands.typed import typed
 from omegadot.harness.usage import UsageError, check_number
 from omegadot.reports.record.whole_file import check_target, path_of, write_whole
 from omegadot.scenarios import scenario
+from omegadot.scenarios.written import written
 
 
 @typed
@@ -130,7 +131,7 @@ def _bias(own: Estimates, reading: Reading) -> list[str]:
     if not np.any(own.bias) or how.omega_frame == "world":
         return []
     inner = own.bias @ how.body_axes / how.scale_of("rate")
-    return ["--omega-bias=" + ",".join(f"{part:.6g}" for part in inner)]
+    return ["--omega-bias=" + ",".join(written(part) for part in inner)]
 
 
 _READING = (

@@ -18,6 +18,7 @@ from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.sentences import direction
 from omegadot.reference_impl.system import Array
 from omegadot.reports.text.text_grid import plain_console
+from omegadot.scenarios.written import written
 
 WIDTH_WHEN_PIPED = 200
 UNKNOWN = "not determined"
@@ -34,9 +35,9 @@ def print_text(result: FitResult, out: Path | None) -> None:
     samples = result.samples
     console.print(
         Text(
-            f"{samples.file}: {len(samples.times)} samples from {samples.times[0]:g} to "
-            f"{samples.times[-1]:g} s, in which the body turns by "
-            f"{samples.data(np.zeros(3)).turned[-1]:.3g} rad"
+            f"{samples.file}: {len(samples.times)} samples from {written(samples.times[0])} to "
+            f"{written(samples.times[-1])} s, in which the body turns by "
+            f"{written(samples.data(np.zeros(3)).turned[-1], 3)} rad"
         )
     )
     if result.shape_determined:
@@ -69,7 +70,7 @@ def _moments(result: FitResult) -> Table:
     )  # fmt: skip
     for letter, (moment, error, sure, axis, turn, fixed) in zip("xyz", rows, strict=True):
         shown = _pair(moment, error) if sure else (UNKNOWN, "")
-        angle = f"{np.rad2deg(turn):.2g}"
+        angle = written(np.rad2deg(turn), 2)
         table.add_row(
             f"near {letter}", *shown, *((direction(axis), angle) if fixed else (UNKNOWN, ""))
         )
@@ -102,7 +103,7 @@ def _others(result: FitResult) -> Table:
         table.add_row("damping", " +- ".join(_pair(own.damping, own.damping_error)), "", "", unit)
     _row(table, "residual, rms", result.rms, None, "rad/s")
     if result.rms_attitude is not None:
-        table.add_row("residual of attitude, rms", f"{result.rms_attitude:.3g}", "", "", "rad")
+        table.add_row("residual of attitude, rms", written(result.rms_attitude, 3), "", "", "rad")
     return table
 
 
@@ -115,7 +116,7 @@ def _row(
     known: NDArray[np.bool_] | None = None,
 ) -> None:
     if errors is None:
-        table.add_row(name, *(f"{value:.3g}" for value in values), unit)
+        table.add_row(name, *(written(value, 3) for value in values), unit)
         return
     sure = [True] * len(values) if known is None else known
     rows = zip(values, errors, sure, strict=True)
@@ -128,19 +129,19 @@ def _models(result: FitResult) -> Table:
     for model in result.models:
         shown = ", ".join(f"{moment:.3f}" for moment in model.moments)
         terms = " and ".join(("plain", *model.terms)[bool(model.terms) :])
-        table.add_row(terms, shown, f"{model.rms:.3g}", "chosen" if model.chosen else "")
+        table.add_row(terms, shown, written(model.rms, 3), "chosen" if model.chosen else "")
     return table
 
 
 def _pair(value: float, error: float) -> tuple[str, str]:
     """A number to the second digit of its standard error, and that."""
     if error <= SET * abs(value):
-        return f"{value:.6g}", "0"
+        return written(value), "0"
     decimals = 1 - int(np.floor(np.log10(error)))
     if decimals > 12 or decimals < 0 or abs(value) < 1e-3 or abs(value) >= 1e6:
         digits = max(1, int(np.floor(np.log10(max(abs(value), error)))) + decimals + 1)
-        return f"{value:.{min(digits, 12)}g}", f"{error:.2g}"
-    return f"{value:.{decimals}f}", f"{error:.2g}"
+        return written(value, min(digits, 12)), written(error, 2)
+    return f"{value:.{decimals}f}", written(error, 2)
 
 
 def _next(result: FitResult, out: Path) -> list[str]:

@@ -12,6 +12,7 @@ from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import Trace, trace_of
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array, Body, System
+from omegadot.scenarios.written import written
 
 LEAST_SAMPLES = 6  # 18 numbers, for the 8 to 12 that are fitted
 MOST_TURNED = 5000.0  # rad; an evaluation of the motion takes seconds then
@@ -89,7 +90,8 @@ def _check(found: Samples, units: str) -> None:
     turned = float(found.data(np.zeros(3)).turned[-1])
     if turned > np.pi * (count - 1):
         raise TraceError(
-            f"{found.file}: read in {units}, the body turns by {turned / (count - 1):.3g} rad from "
+            f"{found.file}: read in {units}, the body turns by "
+            f"{written(turned / (count - 1), 3)} rad from "
             "sample to sample, more than samples can show; give the units of the file with "
             "--rate-unit and --time-unit."
         )

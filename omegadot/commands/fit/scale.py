@@ -11,6 +11,7 @@ from omegadot.commands.fit.spread import Spread
 from omegadot.commands.score.convention import LARGEST
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 AXES = {"x": 0, "y": 1, "z": 2}
 PLACES = {"smallest": 0, "middle": 1, "largest": 2}
@@ -72,7 +73,7 @@ def torque_of(given: str | Sequence[float] | None) -> Array:
         shown = given if isinstance(given, str) else ",".join(map(str, parts))
         raise UsageError(
             f"--torque {shown}: write three numbers of N m in the body's axes, of at most "
-            f"{LARGEST:g} and not all zero, like 0,0,0.02."
+            f"{written(LARGEST)} and not all zero, like 0,0,0.02."
         )
     return torque
 

@@ -9,6 +9,7 @@ from omegadot.commands.fit.determined import Determined
 from omegadot.commands.fit.estimates import Estimates, open_directions
 from omegadot.commands.fit.scale import Scale
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 FLAT = 1e-5  # of the largest moment: nearer to the sum of the other two it is at the limit
 POOR = 0.1  # rms of the residuals, of omega
@@ -44,7 +45,7 @@ def _no_shape(known: Determined, own: Estimates) -> list[str]:
     if known.compared.rich.scale and own.size_known:
         value, error = known.moment_about(axis)
         found.append(
-            f"The moment about that axis is {value:.6g} +- {error:.2g} kg m^2; "
+            f"The moment about that axis is {written(value)} +- {written(error, 2)} kg m^2; "
             "the others are not determined."
         )
     return found
@@ -64,14 +65,14 @@ def _open(known: Determined, own: Estimates) -> list[str]:
         longest = seconds
         if not fewest:
             break
-    shown = f"{best[0]:.2g} s of this motion ({best[1]:.2g} rad)"
+    shown = f"{written(best[0], 2)} s of this motion ({written(best[1], 2)} rad)"
     if not fewest:
         return [f"{found}; some {shown} would."]
     if len(fewest) < len(left):
         gained = [name for name in left if name not in fewest]
         found += f"; some {shown} would determine {_listed(gained)}"
     if longest:
-        found += f"; {longest:.2g} s of it would not determine {_listed(fewest)}"
+        found += f"; {written(longest, 2)} s of it would not determine {_listed(fewest)}"
     return [f"{found}."]
 
 
@@ -134,10 +135,11 @@ def _bias(known: Determined, own: Estimates) -> list[str]:
         ]
     if compared.chosen.bias:
         return []
-    errors = ", ".join(f"{error:.2g}" for error in own.bias_errors)
+    errors = ", ".join(written(error, 2) for error in own.bias_errors)
     return [
         "A gyro bias is not supported by the data: noise alone gains as much with a probability of "
-        f"{compared.chances.get('bias', 1.0):.2g}. It is taken as zero; its standard errors are "
+        f"{written(compared.chances.get('bias', 1.0), 2)}. It is taken as zero; its standard "
+        "errors are "
         f"{errors} rad/s."
     ]
 
@@ -161,10 +163,13 @@ def _damping(compared: Compared, scale: Scale, own: Estimates, terms: Terms) -> 
     else:
         found = (
             "Damping is not supported by the data: noise alone gains as much with a probability of "
-            f"{chance:.2g}."
+            f"{written(chance, 2)}."
         )
     unit = "N m s/rad" if scale.unit else "1/s"
-    return [f"{found} It is taken as zero; its standard error is {own.damping_error:.2g} {unit}."]
+    return [
+        f"{found} It is taken as zero; its standard error is {written(own.damping_error, 2)} "
+        f"{unit}."
+    ]
 
 
 def _quality(compared: Compared) -> list[str]:
@@ -183,7 +188,8 @@ def _quality(compared: Compared) -> list[str]:
     step = float(np.median(np.diff(compared.data.turned)))
     if step > COARSE:
         found.append(
-            f"The body turns by {step:.2g} rad from sample to sample: another motion may fit as "
+            f"The body turns by {written(step, 2)} rad from sample to sample: another motion "
+            "may fit as "
             "well."
         )
     return found

@@ -52,8 +52,8 @@ class RunResult:
 
     @property
     def untested(self) -> tuple[str, ...]:
-        """The engines of which the model was judged and nothing about its motion."""
-        tasks = [task for task in self.record.run["tasks"] if task["gates"]]
+        """The engines without integrators of which the model was judged and nothing else."""
+        tasks = [t for t in self.record.run["tasks"] if t["gates"] and not t["integrator"]]
         moved = {task["engine"] for task in tasks if tests_motion(task)}
         return tuple(dict.fromkeys(t["engine"] for t in tasks if t["engine"] not in moved))
 

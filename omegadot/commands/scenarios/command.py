@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 from omegadot.commands.options import Format, Output
+from omegadot.scenarios.written import written
 
 
 def scenarios(output: Output = Format.text) -> None:
@@ -24,9 +25,9 @@ def scenarios(output: Output = Format.text) -> None:
     console = Console(highlight=False)
     for scenario in found:
         run = scenario.run
-        steps = ", ".join(f"{step:g}" for step in run.timesteps)
+        steps = ", ".join(written(step) for step in run.timesteps)
         console.print(f"[bold]{scenario.name}[/]  {escape(scenario.title)}")
         console.print(f"  {escape(scenario.shows or '')}")
-        console.print(f"  {run.duration:g} s at steps of {steps} s", style="dim")
+        console.print(f"  {written(run.duration)} s at steps of {steps} s", style="dim")
         if scenario.source:
             console.print(f"  Source: {escape(scenario.source)}", style="dim")

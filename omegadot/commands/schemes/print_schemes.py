@@ -13,6 +13,7 @@ from omegadot.diagnosis.scheme_study.orders import COARSEST
 from omegadot.diagnosis.scheme_study.record import Record
 from omegadot.gates.errors.orders import ORDER_TOLERANCE
 from omegadot.reports.text.text_grid import plain_console, text_grid
+from omegadot.scenarios.written import written
 
 WIDTH_WHEN_PIPED = 240
 _HEAD = """\
@@ -51,7 +52,7 @@ higher still in a channel whose error comes from others.
 def markdown_of(record: Record) -> str:
     """The page; it has no dates and no timings, so the same engines give the same page."""
     probes = "\n".join(f"- *{probe['kind']}*: {probe['shows']}" for probe in record["probes"])
-    coarsest, tolerance = f"{COARSEST:g}", f"{ORDER_TOLERANCE:g}"
+    coarsest, tolerance = written(COARSEST), written(ORDER_TOLERANCE)
     head = _HEAD.format(probes=probes, coarsest=coarsest, tolerance=tolerance)
     parts = [head]
     for table in tables_of(record):

@@ -10,6 +10,7 @@ from omegadot.diagnosis.scheme_study.record import Record
 from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reports.text.numbers import short
 from omegadot.reports.text.text_grid import Grid
+from omegadot.scenarios.written import written
 
 # Kinds of which one stands for both: damping adds nothing to the name where they agree.
 PAIRS = (("free", "damped"), ("pivoted", "pivoted-damped"))
@@ -84,7 +85,7 @@ HEADS = tuple(channel.replace("_", " ") for channel in CHANNELS)
 def tables_of(record: Record) -> list[Grid]:
     """Three tables, a row an integrator."""
     who = ("engine", "integrator")
-    angle = f"{record['defect_angle']:g}"
+    angle = written(record["defect_angle"])
     schemes, orders, defects = (
         list[tuple[str, ...]](),
         list[tuple[str, ...]](),
@@ -131,7 +132,7 @@ def _match(record: Record, integrator: Record) -> str:
         steps = max(match["steps"] for match in chosen)
         texts.append(f"to {decade_above(worst)} over {steps} steps")
     if any(naming["scheme"] is None for naming in integrator["schemes"]):
-        angle = f"{record['defect_angle']:g}"
+        angle = written(record["defect_angle"])
         orders = [p["orders"] for p in answered(integrator).values()]
         seen = [f"{c} {range_of(o[c]['order'] for o in orders)}" for c in ("omega", "attitude")]
         defect = largest_defect(integrator, "attitude")

@@ -10,6 +10,7 @@ from omegadot.commands.score.table import Table, TraceError
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import conjugate, quaternion_product
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 # Farther from a rotation than this it was misread; nearer, it has drifted, and that is measured.
 MOST_OFF = 0.1
@@ -29,7 +30,8 @@ def _from_quaternions(table: Table, q: Array, opened: Array) -> Angles:
     worst = int(np.argmax(off))
     if off[worst] > MOST_OFF:
         raise TraceError(
-            f"{table.file}: {table.place(worst)}: |q| is {norm(q)[worst]:.6g}, not 1; these are no "
+            f"{table.file}: {table.place(worst)}: |q| is {written(norm(q)[worst])}, not 1; "
+            "these are no "
             "unit quaternions."
         )
     return q, 2.0 * norm(opened)
@@ -57,7 +59,7 @@ def _from_matrices(table: Table, nine: Array, opened: Array) -> Angles:
     if off[worst] > MOST_OFF:
         raise TraceError(
             f"{table.file}: {table.place(worst)}: the nine numbers are no rotation matrix "
-            f"(its columns are off unit length or right angles by {off[worst]:.2g})."
+            f"(its columns are off unit length or right angles by {written(off[worst], 2)})."
         )
     left, _, right = np.linalg.svd(nine.reshape(-1, 3, 3))
     return wxyz(Rotation.from_matrix(left @ right)), np.sqrt(2.0) * norm(opened)

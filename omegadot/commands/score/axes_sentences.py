@@ -11,6 +11,7 @@ from omegadot.commands.score.own_units import factor_of
 from omegadot.commands.score.world import Shifted, Turned, origin_given
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 
 def axes_sentences(found: Judged) -> list[str]:
@@ -25,7 +26,7 @@ def axes_sentences(found: Judged) -> list[str]:
 
 def _numbers(values: Array) -> str:
     """As an option takes them, to ten digits."""
-    return ",".join(f"{value:.10g}" for value in values)
+    return ",".join(written(value, 10) for value in values)
 
 
 def _about(vector: Array) -> str:
@@ -38,15 +39,16 @@ def _about(vector: Array) -> str:
 
 
 def _short(values: Array) -> str:
-    return ", ".join(f"{value:.4g}" for value in values)
+    return ", ".join(written(value, 4) for value in values)
 
 
 def _turned(found: Judged, turned: Turned) -> str:
     factor, unit = factor_of(found, "attitude")
     late = found.shift is not None and found.shift.of == "omega" and found.shift.explains
     left = (
-        f"the attitude is off by {factor * turned.before:.4g} {unit} without that and by "
-        f"{factor * turned.after:.3g} {unit} with it{' and the shift in time' if late else ''}"
+        f"the attitude is off by {written(factor * turned.before, 4)} {unit} without that and by "
+        f"{written(factor * turned.after, 3)} {unit} with "
+        f"it{' and the shift in time' if late else ''}"
     )
     how = found.reading.how
     if turned.kind in ("rate", "drift"):
@@ -55,7 +57,7 @@ def _turned(found: Judged, turned: Turned) -> str:
         declared = how.world_rate @ how.world_axes.T  # as the sum of both is what to give
         whole = how.world_axes.T @ (turned.vector + declared) / how.scale_of("rate")
         return (
-            f"The trace's world turns at {norm(rate):.4g} {how.rate_unit} about "
+            f"The trace's world turns at {written(norm(rate), 4)} {how.rate_unit} about "
             f"{_about(turned.vector)}{changes}: {left}; give --world-rate={_numbers(whole)}."
         )
     turn = Rotation.from_rotvec(turned.vector)
@@ -63,7 +65,8 @@ def _turned(found: Judged, turned: Turned) -> str:
     own = Rotation.from_matrix(how.world_axes if of == "world" else how.body_axes)
     whole_turn = turn * own if of == "world" else turn.inv() * own
     return (
-        f"The trace's {of} axes are turned by {factor * norm(turned.vector):.4g} {unit} about "
+        f"The trace's {of} axes are turned by {written(factor * norm(turned.vector), 4)} {unit} "
+        "about "
         f"{_about(turned.vector)}: {left}; give {option}={_numbers(wxyz(whole_turn))}."
     )
 
@@ -74,7 +77,7 @@ def _shifted(found: Judged, shifted: Shifted) -> str:
     origin = how.world_origin + how.world_axes.T @ shifted.offset
     return (
         f"The positions are shifted by ({_short(factor * shifted.offset)}) {unit}: they are off by "
-        f"{factor * shifted.before:.4g} {unit} without that and by "
-        f"{factor * shifted.after:.3g} {unit} with it; give "
+        f"{written(factor * shifted.before, 4)} {unit} without that and by "
+        f"{written(factor * shifted.after, 3)} {unit} with it; give "
         f"--world-origin={_numbers(factor * origin)}."
     )

@@ -17,6 +17,7 @@ from omegadot.commands.units import UNITS
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import attitude_angle, normalize
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 LONGEST = 20.0  # times the scenario's duration
 # An epoch's stamps: s since 1970, from 1973 on to 2106; in ms, us and ns the ranges do not meet.
@@ -75,7 +76,8 @@ def check_duration(reading: Reading, duration: float) -> None:
     if first < -float(reading.stamps.open[0]):
         start = reading.stamps.text(0)
         raise TraceError(
-            f"{table.file}: {table.place(0)}: starts {-first:.6g} s before the scenario does; give "
+            f"{table.file}: {table.place(0)}: starts {written(-first)} s before the scenario "
+            "does; give "
             f"--time-offset {start} if the motion begins there, or --from with a later time."
         )
     if end <= LONGEST * duration:
@@ -85,9 +87,9 @@ def check_duration(reading: Reading, duration: float) -> None:
     advice = f"give {best.options(reading)} if the motion begins there" if best else ""
     if best and best.offset == "0":
         advice = f"looks like {best.unit}; give {best.options(reading)}"
-    until = reading.stamps.text(-1) if reading.stamps.dated else f"{end:.15g} s"
+    until = reading.stamps.text(-1) if reading.stamps.dated else f"{written(end, 15)} s"
     raise TraceError(
-        f"{table.file}: runs until {until}, the scenario lasts {duration:g} s; "
+        f"{table.file}: runs until {until}, the scenario lasts {written(duration)} s; "
         f"{advice or 'declare the unit with --time-unit, or score it by a longer scenario'}."
     )
 
@@ -123,7 +125,7 @@ def check_clock(found: Measured, reading: Reading, duration: float) -> None:
         if longer or (fits and lasts and _moves(found, other.times)):
             why = "it does not fit the scenario"
             if longer:
-                why = f"it lasts {span:.3g} s of the scenario's {duration:g} s"
+                why = f"it lasts {written(span, 3)} s of the scenario's {written(duration)} s"
             raise TraceError(
                 f"{reading.table.file}: by its time stamps {why}; give {clock.options(reading)} "
                 "if the motion begins there."

@@ -13,6 +13,7 @@ from omegadot.commands.units import UNITS, unit_named
 from omegadot.harness.usage import UsageError, check_number, nearest
 from omegadot.reference_impl.rotations import normalize, rotation_matrix
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 CHOICES = {
     "omega_frame": ("body", "world"),
@@ -125,7 +126,7 @@ def vector_of(text: str, option: str) -> Array:
         parts = np.full(3, np.nan)
     if parts.shape != (3,) or not np.all(np.abs(parts) <= LARGEST):
         raise UsageError(
-            f"{option} {text}: write three numbers of at most {LARGEST:g}, like 0.1,0,-2."
+            f"{option} {text}: write three numbers of at most {written(LARGEST)}, like 0.1,0,-2."
         )
     return parts
 

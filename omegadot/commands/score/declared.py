@@ -13,6 +13,7 @@ from omegadot.reference_impl.flight.euler_angles import Angles
 from omegadot.reference_impl.flight.schemes import FLIGHT_SCHEMES
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 MOST_STEPS = 1_000_000
 # A stamp this part of a step off a whole number of them is of an accumulated, or rounded, time.
@@ -53,11 +54,13 @@ def declared_of(
             raise UsageError(f"--integrator-scheme {scheme}: its step is missing; give --timestep.")
         return trace, None
     if not (np.isfinite(timestep) and timestep > 0.0):
-        raise UsageError(f"--timestep {timestep:g}: not a positive number of seconds; give one.")
+        raise UsageError(
+            f"--timestep {written(timestep)}: not a positive number of seconds; give one."
+        )
     most = float(trace.times[-1]) / timestep
     if most > MOST_STEPS + 0.5:
         raise UsageError(
-            f"--timestep {timestep:g}: makes {most:.0f} steps; give at most {MOST_STEPS:,}."
+            f"--timestep {written(timestep)}: makes {most:.0f} steps; give at most {MOST_STEPS:,}."
         )
     ratio = trace.times / timestep
     numbers = np.round(ratio)
@@ -67,7 +70,8 @@ def declared_of(
     worst = int(np.argmax(off - known))
     if off[worst] > max(known[worst], NEARLY_WHOLE) or numbers[0] < 0.0:
         raise UsageError(
-            f"--timestep {timestep:g}: the sample at {trace.times[worst]:.9g} s stands at no whole "
+            f"--timestep {written(timestep)}: the sample at {written(trace.times[worst], 9)} s "
+            "stands at no whole "
             "number of steps; give the step that the simulator took."
         )
     more = np.where(off > 4 * EPS * ratio, timestep * off, 0.0)

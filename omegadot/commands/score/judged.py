@@ -33,6 +33,7 @@ from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
 from omegadot.reference_impl.flight.euler_angles import Angles
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 GATES = {c: "invariants" if c in INVARIANT_CHANNELS else "trajectory" for c in CHANNELS}
 UNITS = {"omega": "rad/s", "attitude": "rad", "position": "m"}
@@ -171,8 +172,8 @@ def _finding(error: Array, bound: Array, own: Comparison | None, channel: str) -
     if own is not None:
         left = float(np.max(own.left[channel]))
         if own.agrees(channel):
-            return Finding("explained", f"explained by {own.scheme}, to {left:.1e}")
-        return Finding("unexplained", f"not explained by {own.scheme}: {left:.1e} is left")
+            return Finding("explained", f"explained by {own.scheme}, to {written(left, 2)}")
+        return Finding("unexplained", f"not explained by {own.scheme}: {written(left, 2)} is left")
     return Finding("beyond", "measured, not judged: no scheme is declared")
 
 

@@ -16,6 +16,7 @@ from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import trace_of
 from omegadot.commands.units import UNITS
 from omegadot.gates.bounds.scales import norm
+from omegadot.scenarios.written import written
 
 # The motion has moved by then, and an error of the simulator's has not grown large.
 FIRST = 0.25
@@ -36,7 +37,11 @@ def check_units(found: Measured, reading: Reading) -> None:
             misfit = _misfit(measure_trace(found.case, trace, found.truth), channel)
             if misfit * NEARER < _misfit(found, channel) and misfit < GROSS:
                 factor = units[given] / units[unit]
-                times = f"{factor:.3g} times" if factor >= 1.0 else f"1/{1.0 / factor:.3g} of"
+                times = (
+                    f"{written(factor, 3)} times"
+                    if factor >= 1.0
+                    else f"1/{written(1.0 / factor, 3)} of"
+                )
                 raise TraceError(
                     f"{reading.table.file}: {what} {times} what {given} would give here, and looks "
                     f"like {unit}; give {option_of(field)} {unit}."

@@ -19,6 +19,7 @@ from omegadot.commands.score.shift import scatter
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.text.text_grid import plain_console
+from omegadot.scenarios.written import written
 
 STYLES = {"pass": "green", "fail": "bold red", "info": "default"}
 WIDTH_WHEN_PIPED = 200
@@ -31,8 +32,9 @@ def print_text(result: ScoreResult) -> None:
     found, times = result.found, result.found.trace.times
     console.print(
         Text(
-            f"{result.name} ({found.reading.table.file}, {len(times)} samples from {times[0]:g} to "
-            f"{times[-1]:g} s) against the exact solution of {found.case.name} "
+            f"{result.name} ({found.reading.table.file}, {len(times)} samples from "
+            f"{written(times[0])} to "
+            f"{written(times[-1])} s) against the exact solution of {found.case.name} "
             f"({found.truth.source})"
         )
     )
@@ -63,7 +65,7 @@ def _table(found: Judged) -> Table:
         score = in_own_unit(found, channel)
         table.add_row(
             channel.replace("_", " "),
-            *(f"{value:.4g}" for value in (score.max, score.end, score.rms, score.bound)),
+            *(written(value, 4) for value in (score.max, score.end, score.rms, score.bound)),
             score.unit,
             Text(score.verdict, STYLES[score.verdict]),
             Text(score.note),
@@ -146,14 +148,14 @@ def _lines(trace: Path, scenario: str, found: Detected, fitting: list[Reading]) 
         return _ambiguous(found, fitting)
     best = fitting[0]
     lines = [
-        f"One convention fits; its error is {best.misfit:.1e} of the size of the motion:",
+        f"One convention fits; its error is {written(best.misfit, 2)} of the size of the motion:",
         f"  omegadot score {trace} --scenario {scenario} {' '.join(best.options())}",
     ]
     if found.others:
         second = found.others[0]
         times = second.misfit / best.misfit if best.misfit > 0.0 else math.inf
         lines.append(
-            f"The next best is {times:.0e} times as far off ({second.misfit:.1e}): "
+            f"The next best is {written(times, 1)} times as far off ({written(second.misfit, 2)}): "
             f"{' '.join(_different(second, best))}"
         )
     for part, name in ((best.attitude, "an attitude"), (best.omega, "an angular velocity")):
@@ -165,7 +167,7 @@ def _lines(trace: Path, scenario: str, found: Detected, fitting: list[Reading]) 
 def _ambiguous(found: Detected, fitting: list[Reading]) -> list[str]:
     why = "This motion does not distinguish them"
     if found.turn < 0.1:
-        why = f"The body turns by {found.turn:.1e} rad only, too little to distinguish them"
+        why = f"The body turns by {written(found.turn, 2)} rad only, too little to distinguish them"
     lines = [f"Ambiguous: {len(fitting)} conventions fit alike. {why}; nothing is guessed."]
     lines += [f"  {' '.join(reading.options())}" for reading in fitting[:MOST_SHOWN]]
     more = len(fitting) - MOST_SHOWN

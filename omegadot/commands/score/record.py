@@ -26,6 +26,7 @@ from omegadot.reports.record import schema
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.headline import headline
 from omegadot.reports.summary.summary import summarise
+from omegadot.scenarios.written import written
 
 FIELDS = {**COLUMNS, "omega_dot": ("ax", "ay", "az")}
 
@@ -136,7 +137,7 @@ def _sentence(found: Judged, rows: list[Row], name: str) -> str:
     for channel in found.error:
         score = in_own_unit(found, channel)
         unit = "" if score.unit == "relative" else f" {score.unit}"
-        parts.append(f"{channel.replace('_', ' ')} by {score.max:.3g}{unit}")
+        parts.append(f"{channel.replace('_', ' ')} by {written(score.max, 3)}{unit}")
     late = found.shift.as_text if found.shift and found.shift.explains else ""
     why = f" It is {late}, and that is its error." if late else ""
     return f"{name} on {found.case.name} is off at most: {', '.join(parts[:3])}.{why}"

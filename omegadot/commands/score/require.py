@@ -9,6 +9,7 @@ from omegadot.commands.score.judged import GATES, Judged
 from omegadot.commands.units import UNITS, quantity, unit_written
 from omegadot.gates.rows import Row
 from omegadot.harness.usage import UsageError
+from omegadot.scenarios.written import written
 
 KINDS = {
     **{"attitude": "angle", "omega": "rate", "position": "length"},
@@ -34,7 +35,7 @@ class Requirement:
         """A value in the unit that the requirement is written in."""
         kind = KINDS[self.name]
         unit = unit_written(self.text, kind, f"--{self.name}")
-        return f"{value / UNITS[kind][unit]:.4g}{'' if unit == '1' else unit}"
+        return f"{written(value / UNITS[kind][unit], 4)}{'' if unit == '1' else unit}"
 
 
 def requirements_of(texts: Mapping[str, str | None]) -> list[Requirement]:

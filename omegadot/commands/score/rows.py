@@ -20,6 +20,7 @@ from omegadot.gates.runs.invariants import HORIZONS
 from omegadot.gates.states.equation import forward_rows
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.system import Acceleration
+from omegadot.scenarios.written import written
 
 SPINS = ("omega", "attitude")
 MOST_NAMED = 3
@@ -89,7 +90,7 @@ def _shift(found: Judged) -> list[Row]:
         return []
     rows = [row("time", "time_shift", shift.seconds, "s", shift.open, note=shift.note)]
     if shift.of == "omega":
-        note = f"{shift.before / rate:.1e} without the shift"
+        note = f"{written(shift.before / rate, 2)} without the shift"
         left, bound = shift.after / rate, shift.bound / rate
         rows.append(row("omega", "residual_after_shift", left, "1", bound, note=note))
     if shift.attitude_after is not None:
@@ -111,7 +112,7 @@ def _scheme(found: Judged) -> list[Row]:
     if np.isnan(share):
         note = "not judged: the scheme itself blows up at so large a step"
     elif own.found.agree:
-        verdict, note = "pass", f"equals {found.scheme}, to {own.found.distance:.1e}"
+        verdict, note = "pass", f"equals {found.scheme}, to {written(own.found.distance, 2)}"
     else:
         verdict, others = "fail", [one for one in schemes[1:] if one.scheme != own.scheme]
         apart = ", ".join(c for c in SPINS if c in found.error and not own.agrees(c))
@@ -136,7 +137,8 @@ def _equals(found: Judged, schemes: list[Comparison]) -> str:
         elif near is not None:
             factor, unit = factor_of(found, channel)
             left, error = (factor * float(np.max(x[channel])) for x in (near.left, found.error))
-            clause = f"is nearest to {near.scheme}, which leaves {left:.1e} of {error:.3g} {unit}"
+            rest = f"{written(left, 2)} of {written(error, 3)} {unit}"
+            clause = f"is nearest to {near.scheme}, which leaves {rest}"
         else:
             clause = f"equals none of the {len(KNOWN)} that are known"
         clauses.setdefault(clause, []).append(channel)

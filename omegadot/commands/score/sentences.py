@@ -12,6 +12,7 @@ from omegadot.commands.score.own_units import factor_of, in_own_unit
 from omegadot.commands.score.shift import scatter
 from omegadot.commands.score.stamps import gaps_of
 from omegadot.gates.rows import Row
+from omegadot.scenarios.written import written
 
 
 def sentences(found: Judged, rows: list[Row]) -> list[str]:
@@ -38,11 +39,11 @@ def _samples(found: Judged) -> list[str]:
         lines.append(gaps)
     for held in found.held:
         where = f"from {table.place(held.first)} to {table.place(held.last)}"
-        what = f"at its {held.kind} value, {held.value:.10g}, {where}"
+        what = f"at its {held.kind} value, {written(held.value, 10)}, {where}"
         if held.kind == "throughout":
-            what = f"{held.value:.10g} throughout"
+            what = f"{written(held.value, 10)} throughout"
         elif held.kind == "between":
-            what = f"{held.value:.10g} {where}"
+            what = f"{written(held.value, 10)} {where}"
         cause = "stale" if held.kind == "between" else "saturated"
         lines.append(
             f"{held.column} is {what} ({held.count} samples), while the exact one changes: it "
@@ -51,12 +52,14 @@ def _samples(found: Judged) -> list[str]:
     opened = float(np.max(found.trace.open["times"]))
     if stamps.single:
         lines.append(
-            f"The time stamps are in single precision, which leaves up to {opened:.1e} s of each "
+            f"The time stamps are in single precision, which leaves up to {written(opened, 2)} "
+            "s of each "
             "open."
         )
     elif found.declared and found.declared.off:
         lines.append(
-            f"The time stamps lie up to {found.declared.off:.1e} s off whole steps, and so much of "
+            f"The time stamps lie up to {written(found.declared.off, 2)} s off whole steps, and "
+            "so much of "
             "each is taken as open."
         )
     return lines
@@ -74,14 +77,14 @@ def _late(found: Judged) -> list[str]:
         share = "the error" if shift.explains else "only part of the error"
         lines.append(
             f"Best-fit time shift: {shift.as_text}. It explains {share}: {what} is off by "
-            f"{factor * shift.before:.3g} {unit} without the shift and by "
-            f"{factor * shift.after:.3g} {unit} with it."
+            f"{written(factor * shift.before, 3)} {unit} without the shift and by "
+            f"{written(factor * shift.after, 3)} {unit} with it."
         )
     noise = scatter(shift)
     if noise is not None:
         lines.append(
             f"The remaining error of {what} looks like noise: neighbouring samples are "
-            f"uncorrelated, {factor * noise:.3g} {unit} (standard deviation, each axis)."
+            f"uncorrelated, {written(factor * noise, 3)} {unit} (standard deviation, each axis)."
         )
     return lines
 
@@ -92,15 +95,17 @@ def _start(found: Judged) -> list[str]:
     # Four standard deviations in each axis are still noise.
     noisy = {found.shift.of: 4.0 * sqrt(3.0) * noise} if found.shift and noise else {}
     if found.trace.times[0] > 0.0:
-        lines.append(f"The first sample is {found.trace.times[0]:g} s after the scenario's start.")
+        lines.append(
+            f"The first sample is {written(found.trace.times[0])} s after the scenario's start."
+        )
     for channel in ("attitude", "omega", "position"):
         error = found.error.get(channel)
         if error is not None and error[0] > max(found.bound[channel][0], noisy.get(channel, 0.0)):
             factor, unit = factor_of(found, channel)
             lines.append(
                 f"The first sample is not the scenario's state: {channel} is off by "
-                f"{factor * float(error[0]):.3g} {unit}; digits and rounding account for "
-                f"{factor * float(found.bound[channel][0]):.2g}."
+                f"{written(factor * float(error[0]), 3)} {unit}; digits and rounding account for "
+                f"{written(factor * float(found.bound[channel][0]), 2)}."
             )
     return lines
 
@@ -112,11 +117,12 @@ def _notes(rows: list[Row]) -> list[str]:
             lines.append(f"Scheme: {row.note}.")
         elif row.gate == "equation" and row.channel == "omega_dot":
             lines.append(
-                f"omega-dot against the equation at the trace's own states: {row.value:.2e} "
-                f"(bound {row.bound:.1e}), {row.note or 'within it'}."
+                "omega-dot against the equation at the trace's own states: "
+                f"{written(row.value, 3)} "
+                f"(bound {written(row.bound, 2)}), {row.note or 'within it'}."
             )
         elif row.metric == "flip_time_error":
-            lines.append(f"Flip times: off by at most {row.value:.3g} s ({row.note}).")
+            lines.append(f"Flip times: off by at most {written(row.value, 3)} s ({row.note}).")
         elif row.metric == "requirement":
             name = "flip time" if row.channel == "time" else row.channel.replace("_", " ")
             verb = "met" if row.verdict == "pass" else "missed"
@@ -128,7 +134,7 @@ def _digits(found: Judged) -> list[str]:
     scores = {
         c: in_own_unit(found, c) for c in ("omega", "attitude", "position") if c in found.error
     }
-    parts = [f"{score.digits_open:.1g} {score.unit} of {c}" for c, score in scores.items()]
+    parts = [f"{written(score.digits_open, 1)} {score.unit} of {c}" for c, score in scores.items()]
     return [f"Resolution of the data (digits as written): {', '.join(parts)}."] * bool(parts)
 
 

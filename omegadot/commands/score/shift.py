@@ -16,6 +16,7 @@ from omegadot.gates.runs.phase import FARTHEST, MOST_ITERATIONS
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, normalize, rotation_between
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 MOST_COMPARED = 400  # samples, and as many shifts to either side, when a first shift is sought
 # A shift that leaves a tenth of the error or less is what was wrong; more left, and more was.
@@ -56,8 +57,8 @@ class Shift:
 
     @property
     def as_text(self) -> str:
-        """``late by 3.20e-04 s``."""
-        text = f"{'late' if self.seconds < 0.0 else 'early'} by {abs(self.seconds):.3e} s"
+        """``late by 0.00032 s``."""
+        text = f"{'late' if self.seconds < 0.0 else 'early'} by {written(abs(self.seconds), 4)} s"
         if not self.first:
             return text
         number = f"{self.first + 1}th" if self.first > 2 else ("second", "third")[self.first - 1]

@@ -14,6 +14,7 @@ from omegadot.commands.score.digits import is_single, open_time, printed_whole
 from omegadot.commands.score.table import Table, TraceError
 from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 # Stamps this much larger than what they span are differences of large numbers: epochs are.
 FAR = 1e3
@@ -132,7 +133,7 @@ def check_rising(table: Table, stamps: Stamps) -> None:
 def _shown(stamps: Stamps, sample: int) -> str:
     """As the file has it, in its own unit."""
     if stamps.texts is None:
-        return f"{stamps.seconds[sample]:.15g}"
+        return written(stamps.seconds[sample], 15)
     return stamps.texts[sample]
 
 
@@ -152,10 +153,10 @@ def gaps_of(table: Table, stamps: Stamps) -> str:
         return ""
     longest = gaps[np.argsort(-spans[gaps], kind="stable")]
     missing = int(np.sum(np.round(spans[gaps] / usual) - 1))
-    shown = [f"{spans[k]:.6g} s after {table.place(int(k))}" for k in longest[:3]]
+    shown = [f"{written(spans[k])} s after {table.place(int(k))}" for k in longest[:3]]
     more = f" and {len(gaps) - 3} more" if len(gaps) > 3 else ""
     count = f"{len(gaps)} gaps" if len(gaps) > 1 else "One gap"
     return (
-        f"{count} in the samples, which are {usual:.6g} s apart otherwise: {', '.join(shown)}"
+        f"{count} in the samples, which are {written(usual)} s apart otherwise: {', '.join(shown)}"
         f"{more}; {missing} samples are missing."
     )

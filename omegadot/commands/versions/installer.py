@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from omegadot.commands.versions.release import Span, version_of
+from omegadot.scenarios.written import written
 from omegadot.workers.wire import one_line
 
 SECONDS_TO_INSTALL = 900.0
@@ -42,7 +43,7 @@ def _done(command: Sequence[str], given: str = "") -> subprocess.CompletedProces
             timeout=SECONDS_TO_INSTALL,
         )
     except subprocess.TimeoutExpired as error:
-        raise InstallError(f"not done within {SECONDS_TO_INSTALL:g} s") from error
+        raise InstallError(f"not done within {written(SECONDS_TO_INSTALL)} s") from error
     except OSError as error:
         raise InstallError(f"{command[0]} could not be started: {error.strerror}") from error
 

@@ -27,6 +27,7 @@ from omegadot.gates.case import Case
 from omegadot.gates.states.model import of_read_body
 from omegadot.gates.steps.accuracy import usual_for
 from omegadot.reference_impl.system import System
+from omegadot.scenarios.written import written
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
 
@@ -152,7 +153,7 @@ class Sitting:
         figures, rows = equation_figures(case, self._aims.truth(case), features, request)
         for row in map(of_read_body, rows) if self._read else rows:
             if row.verdict == "fail":
-                off = f"{row.value:.1e} against a bound of {row.bound:.1e}"
+                off = f"{written(row.value, 2)} against a bound of {written(row.bound, 2)}"
                 what = row.channel.replace("_", " ")
                 self.portrait.faults.append(f"{case.name}, {row.gate}: {what} off by {off}")
         return figures

@@ -12,6 +12,7 @@ from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.harness.loaded_before import LoadedBefore
 from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.system import Array, System
+from omegadot.scenarios.written import written
 
 DIGITS = 9  # of what systems are found again by
 
@@ -128,7 +129,7 @@ def _last_where_missing(part: Part) -> Donor:
 
 def _first_with_same(key: Callable[[System], Array]) -> Donor:
     def found_by(system: System) -> tuple[str, ...]:
-        return tuple(f"{value:.{DIGITS}g}" for value in np.ravel(key(system)))
+        return tuple(written(value, DIGITS) for value in np.ravel(key(system)))
 
     def donor(system: System, before: LoadedBefore) -> System | None:
         own, found = found_by(system), None

@@ -13,6 +13,7 @@ from omegadot.diagnosis.models.near_numbers import NEAR_RULES, SMALL_RULES, Near
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, System
+from omegadot.scenarios.written import written
 
 SEVERAL = 2  # readings between which nothing decides are said as what they share
 
@@ -142,7 +143,7 @@ def _text(found: Sequence[_Fit]) -> str:
         way = "are below" if small else "differ by less than"
         limit = f"{way} a limit between {limits(*_rounded(low, high), '%')}"
     else:  # nothing is seen of a limit
-        limit = f"{'are' if small else 'differ by'} {100.0 * low:.3g} % or less"
+        limit = f"{'are' if small else 'differ by'} {written(100.0 * low, 3)} % or less"
     of = " of the largest number on its diagonal" * small
     return f"{found[0].place.text}, {what}{about} that {limit}{of} are {done}"
 

@@ -8,6 +8,7 @@ from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING, SLACK, Eviden
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.one_body.body_motion import attitude_motion
 from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.scenarios.written import written
 
 
 def difference_quotient(evidence: Evidence) -> str:
@@ -45,4 +46,4 @@ def difference_quotient(evidence: Evidence) -> str:
     allowed = allowed + h**2 * rate**2 * norm(evidence.true.angular)
     if not np.all(left <= allowed):
         return ""
-    return f"omega-dot looks like a difference quotient over {h:.2g} s"
+    return f"omega-dot looks like a difference quotient over {written(h, 2)} s"

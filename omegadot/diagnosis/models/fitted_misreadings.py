@@ -13,6 +13,7 @@ from omegadot.diagnosis.wording.digits import factor, vector
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import conjugate, normalize, quaternion_product
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 FIELDS = {
     "angular_velocity": "omega",
@@ -83,7 +84,7 @@ def _turned_axes(field: str, what: str, came: Array, due: Array) -> Iterator[Mis
     if np.max(np.abs(came - due @ turn.T)) <= LOOSE * float(np.max(np.abs(due))):
         axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
         angle = float(np.arctan2(norm(axis), np.trace(turn) - 1.0))
-        text = f"{what} is turned by one rotation at every sample, by {angle:.6g} rad"
+        text = f"{what} is turned by one rotation at every sample, by {written(angle)} rad"
         yield Misreading(text, changed(field, lambda values: values @ turn))
 
 
@@ -108,7 +109,8 @@ def _turned_attitude(came: Array, due: Array) -> Iterator[Misreading]:
 
             text = (
                 f"the attitude is turned by one rotation in {axes} axes at every sample, by "
-                f"{angle:.6g} rad about {vector(np.round(turn[1:] / norm(turn[1:]), DECIMALS))}"
+                f"{written(angle)} rad about "
+                f"{vector(np.round(turn[1:] / norm(turn[1:]), DECIMALS))}"
             )
             yield Misreading(text, changed("orientation", right))
 

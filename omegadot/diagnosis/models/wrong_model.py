@@ -22,6 +22,7 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever as lever_of
 from omegadot.reference_impl.rotations import attitude_angle, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, Body, State, System
+from omegadot.scenarios.written import written
 from omegadot.workers.wire import body_from
 
 CLOSE = 1e-9  # relative: numbers of a state that are the same
@@ -118,7 +119,7 @@ def _moments(requested: Array, back: Array) -> str:
         return "the inertia's moments are right, and its axes are not"
     off = float(np.linalg.norm(back - requested, 2) / np.linalg.norm(requested, 2))
     rows = "; ".join(vector(row, own) for row, own in zip(back, requested, strict=True))
-    text = f"the dynamics are those of another inertia, {100 * off:.2g} % off"
+    text = f"the dynamics are those of another inertia, {written(100 * off, 2)} % off"
     return f"{text}: it reads back as {rows} kg m^2"
 
 

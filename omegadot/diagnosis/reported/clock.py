@@ -7,6 +7,7 @@ import numpy as np
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.gates.case import Sweep
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 UNITS = {1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds"}
 GRIDS = {1e-3: "milliseconds", 1e-6: "microseconds", 1e-9: "nanoseconds"}
@@ -26,7 +27,7 @@ def clock_cause(time: Array, sweep: Sweep, eps: float) -> str:
         return ""
     if np.all(np.abs(late - late[0]) <= 2.0 * tolerance):
         steps = late[0] / sweep.timestep
-        return f"every time is reported {late[0]:.4g} s late, {steps:.3g} steps"
+        return f"every time is reported {written(late[0], 4)} s late, {written(steps, 3)} steps"
     return (
         _in_proportion(time, expected, tolerance) or _rounded(time, expected) or _off(late, sweep)
     )
@@ -51,7 +52,7 @@ def _in_proportion(time: Array, expected: Array, tolerance: float) -> str:
     if abs(ratio - 1.0) > 0.1:
         return f"every time is scaled by {factor(ratio)}"
     wrong = "small" if ratio < 1.0 else "large"
-    return f"every time is too {wrong}, by {abs(ratio - 1.0):.3g} of it"
+    return f"every time is too {wrong}, by {written(abs(ratio - 1.0), 3)} of it"
 
 
 def _rounded(time: Array, expected: Array) -> str:
@@ -84,4 +85,4 @@ def _off(late: Array, sweep: Sweep) -> str:
         near = came if abs(came - due) < due else None  # far from it, no more digits are needed
         return f"{which} alone is off: {number(came, due)} s, where {number(due, near)} s was due"
     largest = float(np.max(np.abs(late)))
-    return f"times are off by up to {largest:.3g} s, from sample {int(wrong[0])} on"
+    return f"times are off by up to {written(largest, 3)} s, from sample {int(wrong[0])} on"

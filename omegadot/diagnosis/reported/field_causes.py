@@ -24,6 +24,7 @@ from omegadot.reference_impl.rotations import (
     rotation_between,
 )
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 LEAST = 5  # samples
 NEAR = 1e-6  # a share that is none, or all
@@ -110,7 +111,7 @@ def _attitude_ways(reported: ReportedRun) -> Iterator[Way]:
 def _between(share: float, before: str) -> str:
     if abs(share - 0.5) < NEAR:
         return f"the attitude is reported halfway between {before} and its own"
-    return f"the attitude is reported as {share:.4g} of the way from {before} to its own"
+    return f"the attitude is reported as {written(share, 4)} of the way from {before} to its own"
 
 
 def _quotients(reported: ReportedRun, every: State, name: str, what: str) -> Iterator[Way]:

@@ -15,6 +15,7 @@ from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 CLEAN = 0.05  # of an exponent
 # Times rounding: that of one step then changes the exponent of a halved error by half as much.
@@ -62,7 +63,7 @@ class Known:
             where = AXES.get(self.channel, "the world")
             text += f" in {' and '.join(sorted(self.axes))} of {where} alone"
         powers = {"step": self.step, "time": self.time}
-        goes = [f"as {k}^{p:g}" for k, p in powers.items() if p]
+        goes = [f"as {k}^{written(p)}" for k, p in powers.items() if p]
         text += f", by an error that goes {listed(goes)}" if goes else ""
         return text + (", as far by the shortest steps as by the longest" * (self.step == 0.0))
 

@@ -15,6 +15,7 @@ from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 SLACK = 4.0
 MOST_TRIES, GRID = 12, 2.0 ** np.arange(-6.0, 9.0)  # steps in a time constant
@@ -42,9 +43,9 @@ def ways_of_steps(reported: ReportedRun, every: State, name: str, what: str) -> 
         tau = -reported.sweep.timestep / np.log(share)
         filtered = _filtered(due, share)[numbers]
         text = f"{what} is reported through a low-pass of the first order"
-        yield f"{text} with a time constant of {tau:.{DIGITS}g} s", filtered, SLACK
+        yield f"{text} with a time constant of {written(tau, DIGITS)} s", filtered, SLACK
         if reported.sweep.every > 1:
-            shown = f"that keeps {share:.{DIGITS}g} of itself at each step"
+            shown = f"that keeps {written(share, DIGITS)} of itself at each step"
             yield f"{text} {shown}", filtered, SLACK
     lines = np.stack([np.ravel(due[numbers[1:]]), np.ravel(due[before[1:]])], axis=-1)
     one, other = np.linalg.lstsq(lines, np.ravel(came[1:]), rcond=None)[0]

@@ -18,6 +18,7 @@ from omegadot.reference_impl.energy import rotational_kinetic_energy
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.rotations import quaternion_product
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 
 def begin_apart(reported: ReportedRun, result: CaseResult) -> bool:
@@ -40,7 +41,9 @@ def not_finite(reported: ReportedRun) -> str:
     before = reported.state[: bad[0]]
     sound = bad[0] > 0 and reported.agrees(before, reported.own[: bad[0]], slice(0, bad[0]))
     until = ", after a sound beginning" if sound else ""
-    return f"{' and '.join(names)}: not finite from t = {reported.time[bad[0]]:.4g} s{until}"
+    return (
+        f"{' and '.join(names)}: not finite from t = {written(reported.time[bad[0]], 4)} s{until}"
+    )
 
 
 def misread(reported: ReportedRun) -> list[str]:

@@ -23,6 +23,7 @@ from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import rotate, turn_in_body
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 EPS_SINGLE = float(np.finfo(np.float32).eps)
 LEAST_CHANGES = 3
@@ -49,7 +50,7 @@ def not_unit(reported: ReportedRun) -> str:
     unit = replace(longer, orientation=reported.state.orientation / length)
     if reported.agrees(longer, reported.own) or not reported.agrees(unit, reported.own):
         return ""
-    return f"the quaternion is not of unit length in the run: it is off by up to {off:.1e}"
+    return f"the quaternion is not of unit length in the run: it is off by up to {written(off, 2)}"
 
 
 def half_step(reported: ReportedRun) -> str:
@@ -135,7 +136,7 @@ def one_field(reported: ReportedRun) -> str:
             off = float(np.max(np.abs(getattr(reported.state, names[0]) - own)))
             size = float(np.max(np.abs(own)))
             by = (
-                f", by up to {off / size:.1e} of it"
+                f", by up to {written(off / size, 2)} of it"
                 if size > 0.0
                 else ", where it is to be nothing"
             )
@@ -156,22 +157,24 @@ def intervals(reported: ReportedRun) -> str:
     together = len(wrong) == last - first + 1
     early = together and first == 0 and 2 * len(wrong) <= len(sound)
     if early and _would_show(reported, shares):
-        return (
-            f"only the first steps are wrong: from t = {time[last + 1]:.4g} s on, the run is sound"
-        )
+        start = written(time[last + 1], 4)
+        return f"only the first steps are wrong: from t = {start} s on, the run is sound"
     if len(wrong) == 1 and first + 1 < len(sound):
-        between = f"between t = {time[first]:.4g} s and {time[first + 1]:.4g} s"
+        between = f"between t = {written(time[first], 4)} s and {written(time[first + 1], 4)} s"
         return f"the run is wrong once, {between}: before and after it is sound"
     alone = len(wrong) == 2 and together and first > 0 and last + 1 < len(sound)
     if alone and len(sound) >= LEAST_BESIDE and _goes_on(reported, first):
         pairs = (values[last] == values[last - 1] for values in vars(reported.state).values())
         twice = all(bool(np.all(pair)) for pair in pairs)
         what = "is the one before, reported twice" if twice else "alone does not belong to the run"
-        return f"the sample at t = {time[last]:.4g} s {what}"
+        return f"the sample at t = {written(time[last], 4)} s {what}"
     if len(wrong) == 1:
-        return f"only the steps after t = {time[first]:.4g} s, the last of the run, are wrong"
+        return (
+            f"only the steps after t = {written(time[first], 4)} s, the last of the run, are wrong"
+        )
     if first > 0 and len(wrong) == len(sound) - first:
-        return f"the run is sound until t = {time[first]:.4g} s, and every step after it is wrong"
+        until = written(time[first], 4)
+        return f"the run is sound until t = {until} s, and every step after it is wrong"
     if np.count_nonzero(np.diff(sound.astype(int))) < LEAST_CHANGES:
         return ""  # what changes once goes with the time as well as with anything that grows
     where = only_where([(reported.case.system, reported.state[: len(sound)], sound)])

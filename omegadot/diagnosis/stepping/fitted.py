@@ -14,6 +14,7 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.solutions.growth import changes
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 MOST_TRIES = 8
 CONVERGES = 0.3  # what a try must leave of the distance before it
@@ -84,7 +85,7 @@ def longer(reported: ReportedRun) -> str:
     single = float(np.float32(h))
     if single != h and reported.is_made(partial(ReportedRun.stepped, timestep=single), SLACK):
         return "the step is kept in single precision"
-    text = f"steps are {100 * abs(part):.4g} % too {'long' if part > 0 else 'short'}"
+    text = f"steps are {written(100 * abs(part), 4)} % too {'long' if part > 0 else 'short'}"
     return f"{text}{_grid(h, h * (1.0 + part))}"
 
 
@@ -120,4 +121,4 @@ def damped(reported: ReportedRun) -> str:
     found = search(reported, stepped, 1e-6 * scale)
     if found is None or found == 0.0:
         return ""
-    return f"a damping of {found:.3g} N m s/rad acts in the steps that was not requested"
+    return f"a damping of {written(found, 3)} N m s/rad acts in the steps that was not requested"

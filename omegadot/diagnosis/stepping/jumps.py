@@ -17,6 +17,7 @@ from omegadot.diagnosis.wording.digits import factor, limits
 from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION, norm
 from omegadot.reference_impl.rotations import attitude_angle, quaternion_product
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 SLIGHT = BEYOND_ROUNDING * AMPLIFIED * ROUNDINGS_PER_EVALUATION  # times the rounding of a number
 CLOSE = 1e-2  # relative: a change that is in proportion
@@ -87,7 +88,7 @@ def slight_jump_cause(steps: VanishingSteps) -> str:
         if np.all(norm(off - k * was) <= CLOSE * abs(k) * size + allowed):
             times = factor(1.0 + k)
             return f"{what} is multiplied by {times} in the first step, however short it is"
-        some = f"{float(np.median(norm(off))):.0e} {unit}".strip()
+        some = f"{written(float(np.median(norm(off))), 1)} {unit}".strip()
         return f"the first step changes {what} by some {some}, however short it is"
     return ""
 
@@ -182,12 +183,12 @@ def _limit(
         if np.ptp(ends) <= near < np.min(beyond) and len(ends) > 1:
             end = float(np.median(ends)) if abs(np.median(ends)) > near else 0.0
             side = "above" if np.all(was[jumped, k] < end) else "below"
-            return f"{what} along {'xyz'[k]} is held {side} {end:.6g} {unit}"
+            return f"{what} along {'xyz'[k]} is held {side} {written(end)} {unit}"
     limit = float(np.median(held[jumped]))
     scaled = was * np.minimum(1.0, limit / np.where(size > 0.0, size, 1.0))[:, None]
     if np.all(norm(now - scaled) <= 10 * allowed):
-        return f"{what} is held below {limit:.6g} {unit}"
+        return f"{what} is held below {written(limit)} {unit}"
     largest = float(np.max(np.abs(now[jumped])))
     if np.all(norm(now - np.clip(was, -largest, largest)) <= 10 * allowed):
-        return f"each component of {what} is held within {largest:.6g} {unit}"
+        return f"each component of {what} is held within {written(largest)} {unit}"
     return ""

@@ -11,6 +11,7 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 CLEAR = 10.0  # times what is allowed: a part of omega-dot is distinguished from another
 LEAST = 3  # states at which it is
@@ -138,7 +139,6 @@ def omega_share_cause(steps: VanishingSteps) -> str:
         return ""
     for k, when in ((0.5, "before"), (1.5, "after")):
         if np.all(norm(found - k * true) <= SLACK * bound) and np.any(true):
-            return (
-                f"omega is reported as of half a step {when}: in one step it moves by {k:g} of it"
-            )
+            moved = f"in one step it moves by {written(k)} of it"
+            return f"omega is reported as of half a step {when}: {moved}"
     return ""

@@ -10,6 +10,7 @@ import numpy as np
 from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 MISSED, MOST_MISSED = 0.2, 2  # of the runs that fail: in some there may be other rounding
 LEAST = 2  # runs that fail
@@ -40,7 +41,8 @@ def length_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     if _whole_rates(np.append(steps[upto], right), np.append(parts[upto], np.zeros(len(right)))):
         return ["the step is rounded to a whole number of steps in a second"]
     return [
-        f"steps are up to {100 * largest:.2g} % longer or shorter than requested: by another part "
+        f"steps are up to {written(100 * largest, 2)} % longer or shorter than requested: by "
+        "another part "
         "at each step size"
     ]
 

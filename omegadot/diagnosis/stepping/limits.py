@@ -19,6 +19,7 @@ from omegadot.diagnosis.stepping.step_ends import (
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 SLOW = 0.1  # rad/s, below which engines put a body to sleep
 
@@ -32,8 +33,8 @@ def asleep(reported: ReportedRun) -> str:
     if not np.all(still[first:]):
         return ""
     rate = float(norm(reported.own.angular_velocity[first]))
-    when = f"from t = {reported.time[first]:.4g} s on"
-    text = f"omega is zero {when}, where it should be {rate:.2g} rad/s"
+    when = f"from t = {written(reported.time[first], 4)} s on"
+    text = f"omega is zero {when}, where it should be {written(rate, 2)} rad/s"
     before = slice(0, first)
     sound = first > 1 and reported.agrees(reported.state[before], reported.own[before], before)
     # a damping that is taken wrongly may stop the body as well, in its first step
@@ -76,19 +77,19 @@ def _limit(
 def held(reported: ReportedRun) -> str:
     """Omega is scaled down to a limit."""
     found = _limit(reported, norm, held_below)
-    return "" if found is None else f"omega is held below {found:.6g} rad/s"
+    return "" if found is None else f"omega is held below {written(found)} rad/s"
 
 
 def clipped(reported: ReportedRun) -> str:
     """Every component of omega is cut at a limit."""
     found = _limit(reported, np.abs, clipped_at)
-    return "" if found is None else f"each component of omega is held within {found:.6g} rad/s"
+    return "" if found is None else f"each component of omega is held within {written(found)} rad/s"
 
 
 def speed(reported: ReportedRun) -> str:
     """The linear velocity is scaled down to a limit."""
     found = _limit(reported, norm, speed_below, "linear_velocity")
-    return "" if found is None else f"the linear velocity is held below {found:.6g} m/s"
+    return "" if found is None else f"the linear velocity is held below {written(found)} m/s"
 
 
 def turn_held(reported: ReportedRun) -> str:
@@ -103,5 +104,7 @@ def turn_held(reported: ReportedRun) -> str:
 
     more = search(reported, stepped, 1e-6)
     return (
-        "" if more is None else f"the turn of a step is held within {greatest * (1 + more):.6g} rad"
+        ""
+        if more is None
+        else f"the turn of a step is held within {written(greatest * (1 + more))} rad"
     )

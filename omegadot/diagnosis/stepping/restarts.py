@@ -11,6 +11,7 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 
 def restart_cause(truth: Truth, result: CaseResult, run: JudgedRun) -> str:
@@ -45,7 +46,8 @@ def restart_cause(truth: Truth, result: CaseResult, run: JudgedRun) -> str:
         steps = int(sweep.sample_steps[sample + first_apart] - sweep.sample_steps[sample])
         return (
             f"the steps depend on how many went before: restarted at t = "
-            f"{sweep.times[sample]:.4g} s, the run is the same for a while and another after "
+            f"{written(sweep.times[sample], 4)} s, the run is the same for a while and another "
+            "after "
             f"{steps} steps"
         )
     return ""

@@ -16,6 +16,7 @@ from omegadot.reference_impl.rotations import (
     attitude_angle,
 )
 from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.scenarios.written import written
 
 EXACT = Tolerated()
 AMPLIFIED = 8.0  # what the extrapolation from five halved steps makes of a rounding
@@ -79,7 +80,7 @@ class VanishingSteps:
         k = None if self.sound else common_factor(self.rates)
         if k is None or abs(k) < STILL:
             return ""
-        return f"steps are {100 * abs(k - 1.0):.4g} % too {'long' if k > 1.0 else 'short'}"
+        return f"steps are {written(100 * abs(k - 1.0), 4)} % too {'long' if k > 1.0 else 'short'}"
 
 
 def vanishing_steps(

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 MOST = 17
 NOTHING = 1e-9  # of what it is held against, a number is zero
@@ -19,8 +20,8 @@ def number(value: float, other: float | None = None) -> str:
         return "0"
     same = other is None or abs(value - other) <= NOISE * max(abs(value), abs(other))
     for digits in range(6, MOST):
-        text = f"{value:.{digits}g}"
-        if same or text != f"{other:.{digits}g}":
+        text = f"{written(value, digits)}"
+        if same or text != f"{written(other, digits)}":
             return text
     return repr(value)
 
@@ -38,7 +39,7 @@ def factor(value: float) -> str:
     """A factor; one that is nearly one as what it is off by, ``1 + 1e-12``."""
     off = value - 1.0
     if 0.0 < abs(off) < 5e-6:
-        return f"1 {'+' if off > 0 else '-'} {abs(off):.3g}"
+        return f"1 {'+' if off > 0 else '-'} {written(abs(off), 3)}"
     return number(value)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.errors.measured_run import ROTATION, Declared, MeasuredRun
 from omegadot.gates.rows import Row
+from omegadot.scenarios.written import written
 
 GATE = "scheme"
 METRIC = "rounding_step"
@@ -47,5 +48,5 @@ def _row(measured_runs: Sequence[MeasuredRun], channel: str, order: int | None) 
     (coarse, truncation, most), power = (steps[-1], errors[-1], bounds[-1]), 1.0 / (order + 1.0)
     meet = coarse * (errors[0] * steps[0] / (truncation * coarse)) ** power
     bound = coarse * (most / truncation) ** power
-    note = f"{text} below h = {meet:.2g} s"
+    note = f"{text} below h = {written(meet, 2)} s"
     return Row(GATE, channel, METRIC, meet, "s", bound, "info", note)

@@ -14,6 +14,7 @@ import numpy as np
 
 from omegadot.gates.errors.orders import ORDER_TOLERANCE, ObservedOrder, is_whole
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 ONE_STEP = "one step size cannot show an order"
 UNSETTLED = "the sweep does not resolve the order"
@@ -110,7 +111,7 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
     if known and evidence.left is not None and evidence.equals_scheme:
         largest = float(np.max(evidence.left[bounded]))
         until = "" if bounded.all() else ", until the scheme blows up"
-        return Finding("explained", f"explained by {scheme}, to {largest:.1e}{until}")
+        return Finding("explained", f"explained by {scheme}, to {written(largest, 2)}{until}")
     if evidence.floor is not None and np.all(evidence.error <= evidence.round_off + evidence.floor):
         return Finding("beyond", "not judged: below the resolvable floor of this motion")
     finite = bool(np.all(np.isfinite(evidence.error)))
@@ -151,7 +152,7 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
         doubtful = not evidence.settled and (lowest.value > 0.5 or lowest.same)
         return Finding("unsettled" if doubtful else "unexplained", text)
     if evidence.excess > 1.0:
-        times = f"{evidence.excess:.1e} times what the errors at finer steps let it be"
+        times = f"{written(evidence.excess, 2)} times what the errors at finer steps let it be"
         note = f"at this step the error is {times}"
         if evidence.settled:
             return Finding("unexplained", note)

@@ -15,6 +15,7 @@ from omegadot.gates.truth import Truth
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State, System
+from omegadot.scenarios.written import written
 
 GATE = "trajectory"
 # A shift is sought up to this part of the run, so that enough samples stay to be compared.
@@ -150,8 +151,8 @@ def rows(truth: Truth, measured: MeasuredRun, state: State) -> list[Row]:
         bend = _bend(exact)
         floor = rounding + bend * error_factor(abs(best.shift) / gap % 1.0)
         before = float(np.max(measured.error["omega"]))
-        text = f"{before:.1e} without the shift"
-        when = f"{'late' if best.shift < 0.0 else 'early'} by {abs(best.shift):.2e} s"
+        text = f"{written(before, 2)} without the shift"
+        when = f"{'late' if best.shift < 0.0 else 'early'} by {written(abs(best.shift), 3)} s"
         between = rounding + bend * error_factor(0.5)
         flips = flip_rows(truth.yardstick.system, exact, state, between, rounding)
     return [

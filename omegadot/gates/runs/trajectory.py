@@ -20,6 +20,7 @@ from omegadot.gates.rows import Row, within
 from omegadot.gates.states import equation
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.system import Array, State, System
+from omegadot.scenarios.written import written
 
 GATE = "trajectory"
 DIGITS, SINGLE_DIGITS = 53, 24  # of a double's and of a single's mantissa
@@ -92,7 +93,7 @@ def _length(sweep: Sweep, state: State, eps: float) -> Row:
     allowed = ROUNDINGS_PER_STEP * eps * (sweep.sample_steps + 1.0)
     place = int(np.argmax(off / allowed))
     worst, bound = float(off[place]), float(allowed[place])
-    note = f"the quaternion is not of unit length: it is off by {worst:.1e}"
+    note = f"the quaternion is not of unit length: it is off by {written(worst, 2)}"
     return within(GATE, "attitude", "unit_length", worst, "1", bound, note)
 
 

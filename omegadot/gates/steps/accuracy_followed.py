@@ -27,6 +27,7 @@ from omegadot.gates.steps.accuracy import (
 )
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 LEAST_SLOPE, MOST_SLOPE = 0.5, 2.0
 SATURATED = 0.5  # rad, or of the size of omega
@@ -124,7 +125,7 @@ def _follows(runs: Sequence[AccuracyRun], channel: str) -> Finding:
     over, spaced = _split(runs)
     finest = spaced[-1]
     error = float(np.max(finest.error[channel]))
-    text = f"{error:.1e} at an accuracy of {finest.sweep.knob:g}"
+    text = f"{written(error, 2)} at an accuracy of {written(finest.sweep.knob)}"
     if _is_round(finest, channel):
         return Finding("consistent", f"follows its accuracy down to rounding: {text}")
     if np.all(finest.error[channel] <= finest.kept[channel]):
@@ -161,7 +162,8 @@ def _finding(measured: AccuracyRun, runs: Sequence[AccuracyRun], channel: str) -
         pair = _pair(measured, finer, channel)
         if pair.leaps:
             times = pair.coarse / max(pair.fine, pair.rounding)
-            text = f"at this accuracy the error is {times:.0e} times that at {finer.sweep.knob:g}"
+            at = written(finer.sweep.knob)
+            text = f"at this accuracy the error is {written(times, 1)} times that at {at}"
             return Finding("unexplained", text)
     return _follows(runs, channel)
 

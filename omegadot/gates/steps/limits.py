@@ -34,6 +34,7 @@ from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, State, System
+from omegadot.scenarios.written import written
 
 
 def _extrapolants(quotients: Array) -> tuple[Array, Array, Array]:
@@ -89,7 +90,7 @@ class Limit:
         if self.jump is None or self.jump[place] == 0.0:
             return ""
         own = unit.replace("/s^2", "/s") if unit.endswith("/s^2") else unit.removesuffix("/s")
-        return f"{self.jump[place]:.1e} {own}"
+        return f"{written(self.jump[place], 2)} {own}"
 
     def off(self, unit: str) -> str:
         """How far it is from the equation's at the worst of the states, relative or in its unit."""
@@ -97,8 +98,8 @@ class Limit:
         apart = float(np.min(norm(self.found - self.expected)[:, place]))
         size = float(norm(self.expected[place]))
         if size <= float(np.max(self.bound[:, place])):
-            return f"it is {apart:.1e} {unit} instead of nothing"
-        return f"the relative error is {apart / size:.1e}"
+            return f"it is {written(apart, 2)} {unit} instead of nothing"
+        return f"the relative error is {written(apart / size, 2)}"
 
 
 @dataclass(frozen=True)

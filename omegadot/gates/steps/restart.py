@@ -18,6 +18,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 GATE = "scheme"
 METRIC = "restarted"
@@ -80,6 +81,6 @@ def row(
         return Row(GATE, *start, "info", "steps use earlier ones, as is declared")
     if yardstick.is_stiff(sweep.timestep):
         return Row(GATE, *start, "info", STIFF)
-    when = f"t = {sweep.times[sample]:.4g} s"
+    when = f"t = {written(sweep.times[sample], 4)} s"
     note = f"a run restarted at its own sample at {when} gives other samples: they are not the"
     return Row(GATE, *start, "fail", f"{note} state that is stepped, or steps depend on the past")

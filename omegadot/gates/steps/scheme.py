@@ -28,6 +28,7 @@ from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
+from omegadot.scenarios.written import written
 
 GATE = "scheme"
 BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
@@ -168,8 +169,8 @@ def _declared_row(
     if np.isnan(found.share):
         return _row(found, "info", BLOWN_UP)
     if found.agree:
-        return _row(found, "pass", f"equals {integrator.scheme}, to {found.distance:.1e}")
+        return _row(found, "pass", f"equals {integrator.scheme}, to {written(found.distance, 2)}")
     others = _equalled(like_schemes(truth, measured.sweep, state))
     instead = f"equals {others}" if others else "steps otherwise"
     text = f"declares {integrator.scheme}, but {instead}: {found.channel} diverges from it"
-    return _row(found, "fail", f"{text} {found.share:.0e} times as far as rounding can")
+    return _row(found, "fail", f"{text} {written(found.share, 1)} times as far as rounding can")

@@ -10,6 +10,7 @@ from omegadot.gates.rows import Row, within
 from omegadot.gates.steps.limits import NOTHING, Limit, Tolerated, limits
 from omegadot.gates.steps.probe import Probe, ladder_of
 from omegadot.reference_impl.system import State, System
+from omegadot.scenarios.written import written
 
 GATE = "scheme"
 METRIC = "rate_at_no_step"
@@ -68,7 +69,7 @@ def _note(limit: Limit, factor: float | None, digits: int, unit: str) -> str:
     if factor is not None and abs(factor) < 10.0**-digits:  # it would read 100 % too short
         return "a run of one step does not move"
     if factor is not None:
-        off = f"{100 * abs(factor - 1.0):.{digits}g} %"
+        off = f"{written(100 * abs(factor - 1.0), digits)} %"
         return f"steps are {off} too {'long' if factor > 1 else 'short'}"
     if jump := limit.jumps(unit):
         return f"as the step vanishes, it still changes by {jump}"

@@ -18,6 +18,7 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.engine import held
 from omegadot.reference_impl.system import State
+from omegadot.scenarios.written import written
 from omegadot.workers.harness_end.process import Answer
 
 Run = TypeVar("Run", bound=MeasuredRun)
@@ -90,7 +91,7 @@ def diverged(
     """
     finite = np.isfinite(measured.saturating_error) & np.isfinite(answer.result["time"])
     bad = np.flatnonzero(~finite)
-    when = f" from t = {sweep.times[bad[0]]:g} s" if len(bad) else ""
+    when = f" from t = {written(sweep.times[bad[0]])} s" if len(bad) else ""
     note = f"the state is not finite{when}"
     of_state = [finding for channel, finding in findings.items() if channel in STATE]
     worst = min(of_state, key=lambda f: _FINDINGS.index(f.kind))

@@ -22,6 +22,7 @@ from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import State, System
+from omegadot.scenarios.written import written
 from omegadot.workers.harness_end.process import Answer
 
 SOLVABLE = 1.0  # rad a step
@@ -29,7 +30,7 @@ LOST = 1e-3  # of omega
 ROUNDINGS = 2**12  # of a run of a few steps
 NO_ROOT = "not judged: at so long a step omega solves no equation, or another, and keeps its size"
 OVERFLOWS = "not judged: the scheme itself blows up at so large a step, where the engine raises {}"
-NO_STEP = "not judged: at steps of {turn:.2g} rad the engine raises {reason}, and not at finer ones"
+NO_STEP = "not judged: at steps of {turn} rad the engine raises {reason}, and not at finer ones"
 
 
 def unjudged_row(note: str) -> Row:
@@ -71,7 +72,7 @@ def reason_without_a_solution(
     raised = answer.outcome == "raised" and bool(finer) and all(finer)
     if not raised or integrator.scheme is not None or turn <= SOLVABLE:
         return ""
-    return NO_STEP.format(turn=turn, reason=answer.reason)
+    return NO_STEP.format(turn=written(turn, 2), reason=answer.reason)
 
 
 def _turn_of_a_step(truth: Truth, sweep: Sweep) -> float:

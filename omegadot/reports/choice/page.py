@@ -18,6 +18,7 @@ from omegadot.reports.record.schema import RecordError
 from omegadot.reports.record.whole_file import PAGE_MARK, write_whole
 from omegadot.reports.summary.provenance import command_of
 from omegadot.reports.text.numbers import knob
+from omegadot.scenarios.written import written
 
 NAME = "choice.json"
 _FRAME = Frame(width=720, height=340, left=62, right=12, top=12, bottom=44)
@@ -136,7 +137,7 @@ def _drawing(case: Mapping[str, Any], engines: list[dict[str, Any]]) -> Drawing 
     for (engine, integrator), found in runs.items():
         name = f"{engine} {integrator}"
         marks = [
-            (x.at(cost), y.at(ratio), f"{name}, {setting}: {ratio:.3g}")
+            (x.at(cost), y.at(ratio), f"{name}, {setting}: {written(ratio, 3)}")
             for cost, ratio, setting in found
         ]
         path = "M" + " L".join(f"{a} {b}" for a, b, _ in marks)

@@ -9,6 +9,7 @@ from typing import Any
 from omegadot.reports.record.run_json import impossible_bodies
 from omegadot.reports.summary.headline import step_notes
 from omegadot.reports.text.numbers import grouped, listed, plain, quantity, times
+from omegadot.scenarios.written import written
 
 Row = Mapping[str, Any]
 MOST_DIGITS = 17  # of a double
@@ -36,7 +37,7 @@ def step_text(timestep: float, duration: float) -> str:
 def setting_text(found: Row, duration: float) -> str:
     """The step in s, or the accuracy of an integrator that chooses its own steps."""
     if found["timestep"] is None:
-        return f"accuracy {found['accuracy']:.1e}"
+        return f"accuracy {written(found['accuracy'], 2)}"
     return step_text(found["timestep"], duration)
 
 

@@ -14,10 +14,11 @@ from markupsafe import Markup, escape
 from omegadot.reports.page.glossary import linked
 from omegadot.reports.page.tables import Table, unit_text
 from omegadot.reports.text.numbers import knob, short
+from omegadot.scenarios.written import written
 
 # One idea a file; later files use what earlier ones define.
 SCRIPTS = (
-    *("unpack", "copying", "cards", "tables"),
+    *("unpack", "written", "copying", "cards", "tables"),
     *("looks", "lines", "deviations", "sweeps", "equation", "linked", "report", "scenarios"),
 )
 
@@ -70,7 +71,7 @@ def environment() -> Environment:
         finalize=without_scheme,
     )
     found.filters |= {"short": short, "unit": unit_text, "unbroken": unbroken}
-    found.filters |= {"body": table_body, "linked": linked, "knob": _knob_of}
+    found.filters |= {"written": written, "body": table_body, "linked": linked, "knob": _knob_of}
     return found
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.record.schema import VERDICTS, RecordError
+from omegadot.scenarios.written import exactly
 
 # Rows of engine and scenario, without integrator and step, belong to each of its tasks.
 _WHOLE = ("scenario", "engine", "engine_version", "setup")
@@ -89,4 +90,4 @@ def _named(task: Mapping[str, Any]) -> str:
     """A run in a sentence, such as ``mujoco RK4 on sphere at 0.01``."""
     name = " ".join(filter(None, (task["engine"], task.get("integrator"))))
     knob = task.get("timestep") or task.get("accuracy")
-    return f"{name} on {task['scenario']}" + (f" at {knob!r}" if knob else "")
+    return f"{name} on {task['scenario']}" + (f" at {exactly(knob)}" if knob else "")

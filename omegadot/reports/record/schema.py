@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
+from omegadot.scenarios.written import written
+
 if TYPE_CHECKING:
     import pyarrow as pa
 
@@ -143,7 +145,9 @@ def conform(frame: pl.DataFrame, fields: Mapping[str, Field], where: str) -> pl.
             wrong = column.filter(~(column.is_finite() & (column >= field.least)))
             if len(wrong):
                 kind = "no positive number" if field.least else "no number from 0 on"
-                raise RecordError(f"{where}: the column {name!r} holds {wrong[0]:g}, {kind}.")
+                raise RecordError(
+                    f"{where}: the column {name!r} holds {written(wrong[0])}, {kind}."
+                )
         if field.allowed is not None:
             unknown = column.filter(~column.is_in(field.allowed))
             if len(unknown):

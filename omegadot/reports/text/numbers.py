@@ -1,21 +1,18 @@
-"""How numbers are written: short, in scientific form, the same in the terminal and on the page."""
+"""Numbers and names in the terminal, on the page and in comments: written in one way."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 
+from omegadot.scenarios.written import written
+
 
 def short(value: float | None, digits: int = 2) -> str:
-    """A number to `digits` significant digits: 3.1e-15, 0, not finite, or – where there is none."""
-    if value is None:
-        return "–"
-    if not math.isfinite(value):
+    """A measured number: 3.1e-15, 0.21, 0, not finite, or – where there is none."""
+    if value is not None and not math.isfinite(value):
         return "not finite"
-    if value == 0.0:
-        return "0"
-    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    return mantissa if int(exponent) == 0 else f"{mantissa}e{int(exponent)}"
+    return written(value, digits)
 
 
 def magnitude(value: float | None) -> float:
@@ -31,19 +28,14 @@ def times_its_bound(value: float | None, bound: float | None) -> float:
 
 def plain(value: float | None) -> str:
     """A setting as its author would write it: 0.005, not 5e-3; – where there is none."""
-    if value is None:
-        return "–"
-    try:
-        return f"{value:.6g}"
-    except OverflowError:  # a whole number that no float holds, as a damaged record may have
-        return "beyond 1e308"
+    return written(value)
 
 
 def grouped(value: float) -> str:
     """A plain factor to three digits: 1.06, 33, 2,465; with an exponent where it is extreme."""
     if not math.isfinite(value) or not 1e-3 <= abs(value) < 1e7:
         return short(value, 3)
-    return f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+    return f"{value:,.0f}" if abs(value) >= 100.0 else written(value, 3)
 
 
 def times(count: int, noun: str) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 
 from omegadot.reports.page.tables import channel_name
-from omegadot.reports.text.numbers import engine_name, plain, quantity, short
+from omegadot.reports.text.numbers import engine_name, quantity, short
 from omegadot.reports.two_runs.sides import RunKey
 
 # Verdicts and outcomes as a sentence has them.
@@ -95,7 +95,7 @@ def of_factor(measure: Measure) -> str:
 
 def _times(factor: float) -> str:
     """1.05, 24100, 3.1e9: three digits, and written out where that is short."""
-    return plain(float(f"{factor:.3g}")) if factor < 1e6 else short(factor, 3)
+    return short(factor, 3)
 
 
 def from_to(change: Change) -> str:

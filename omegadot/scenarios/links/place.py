@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 
 from omegadot.scenarios.errors import ScenarioError, describe, printable
 from omegadot.scenarios.quantities import LARGEST, SMALLEST
+from omegadot.scenarios.written import written
 
 # decimal ASCII, as XML Schema and C++ streams have it: no underscores, no infinity, no nan
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -39,7 +40,7 @@ class Place:
         if len(values) != count:
             self.refuse(describe(text.strip()), f"give {what}")
         if max(map(abs, values)) > LARGEST:
-            self.refuse(describe(text.strip()), f"give at most {LARGEST:g} in SI units")
+            self.refuse(describe(text.strip()), f"give at most {written(LARGEST)} in SI units")
         return values
 
     def number(self, text: str | None, what: str) -> float:

@@ -20,6 +20,7 @@ from omegadot.adapters.protocol import (
 from omegadot.reference_impl.coordinates import COORDINATES
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, Array, Body, State
+from omegadot.scenarios.written import written
 from omegadot.workers.wire import one_line
 
 Shape = tuple[int, ...]
@@ -86,7 +87,8 @@ def checked_seconds(seconds: Any, whole: float) -> float:
     found = float(numbers("run().seconds", seconds, ()))
     if not 0.0 <= found <= whole:
         raise AnswerError(
-            f"run().seconds is {found:g}; give a part of the {whole:g} s that the call took"
+            f"run().seconds is {written(found)}; give a part of the {written(whole)} s that the "
+            "call took"
         )
     return found
 
@@ -176,7 +178,8 @@ def _check_integrator(integrator: Integrator) -> None:
     finest = numbers(f"the finest accuracy of {integrator.name}", integrator.finest_accuracy, ())
     if not 0.0 <= finest < 1.0:
         raise AnswerError(
-            f"the finest accuracy of {integrator.name} is {finest:g}; give a number from 0 to 1"
+            f"the finest accuracy of {integrator.name} is {written(finest)}; give a number from "
+            "0 to 1"
         )
     if integrator.scheme is not None:
         _expect(f"the scheme of {integrator.name}", integrator.scheme, str)

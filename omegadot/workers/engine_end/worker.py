@@ -20,6 +20,7 @@ from typing import Any, BinaryIO, cast
 
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import OURS, AdapterError, build_adapter
+from omegadot.scenarios.written import written
 from omegadot.workers.engine_end.checked import AnswerError, description_of
 from omegadot.workers.engine_end.command import (
     CommandAdapter,
@@ -56,7 +57,8 @@ def failure(error: BaseException) -> dict[str, Any]:
     reason = f"{type(error).__name__}: {texts}".rstrip(": ") + where
     limit = os.environ.get(MEMORY_VARIABLE)
     if isinstance(error, MemoryError) and limit:
-        reason += f"; the limit is {int(limit) / 2**30:.3g} GiB, omegadot run --memory sets another"
+        size = written(int(limit) / 2**30, 3)
+        reason += f"; the limit is {size} GiB, omegadot run --memory sets another"
     return {"outcome": "raised", "reason": one_line(reason)}
 
 

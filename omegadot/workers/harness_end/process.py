@@ -16,6 +16,7 @@ from typing import Any
 
 import psutil
 
+from omegadot.scenarios.written import written
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE
 from omegadot.workers.harness_end.family import GUARD, marked
 from omegadot.workers.harness_end.pipes import Lost, Pipes
@@ -98,7 +99,7 @@ class WorkerProcess:
             return Answer("crashed", f"the worker could not be started: {error}")
         self._pipes = pipes = Pipes(process, mark)
         seconds = max(self._timeout, SECONDS_TO_START)
-        answer = self._wait(pipes, seconds, f"not started within {seconds:g} s")
+        answer = self._wait(pipes, seconds, f"not started within {written(seconds)} s")
         if not answer.ok:
             self.stop()
         return answer
@@ -122,7 +123,7 @@ class WorkerProcess:
         if pipes is None:
             return Answer("crashed", "the worker is not running")
         pipes.send({"operation": operation, **fields})
-        return self._wait(pipes, self._timeout, f"no answer within {self._timeout:g} s")
+        return self._wait(pipes, self._timeout, f"no answer within {written(self._timeout)} s")
 
     def peak_memory(self) -> int | None:
         """Bytes that the living process has held in memory at most; None where it is not known."""

@@ -110,7 +110,7 @@ def TorqueOffFarFromIdentity(system: System, state: State) -> Array:
     return np.where(far, -applied_torque(system, state), 0.0)
 
 
-@other_load("pivot", named=("the pivot lies at", "the pivot lies 1e-06 m"))
+@other_load("pivot", named=("the pivot lies at", "the pivot lies 1e-6 m"))
 def PivotSlightlyOff(load: Load) -> Load:
     """The pivot lies a thousandth of a millimetre aside."""
     return replace(load, pivot=None if load.pivot is None else load.pivot + ASIDE)

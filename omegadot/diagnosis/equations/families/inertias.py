@@ -24,6 +24,7 @@ from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import torque
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, System
+from omegadot.scenarios.written import written
 
 
 def _least(
@@ -141,7 +142,7 @@ def _inertia_family(name: str, where: str, parts: tuple[str, ...]) -> Family:
             off = float(np.linalg.norm(tensor - requested, 2) / np.linalg.norm(requested, 2))
             rows = "; ".join(vector(a, b) for a, b in zip(tensor, requested, strict=True))
             about = " up to a factor, which no torque shows,"
-        return f"{where} another inertia, {100 * off:.2g} % off:{about} {rows} kg m^2"
+        return f"{where} another inertia, {written(100 * off, 2)} % off:{about} {rows} kg m^2"
 
     return Family(
         name,

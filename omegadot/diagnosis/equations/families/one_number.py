@@ -22,6 +22,7 @@ from omegadot.diagnosis.equations.families.inertias import scale_of_inertia
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, System
+from omegadot.scenarios.written import written
 
 
 def _mass_scaled(form: Form, k: float) -> Form:
@@ -87,7 +88,7 @@ def _solve_text(_: System, k: float) -> str:
 def _damping_text(system: System, p: Array) -> str:
     acting, requested = float(p[0]), float(system.load.damping)
     if not requested:
-        return f"a damping of {acting:.3g} N m s/rad acts that was not requested"
+        return f"a damping of {written(acting, 3)} N m s/rad acts that was not requested"
     shown, due = number(acting, requested), number(requested, acting)
     return f"the damping that acts is {shown} N m s/rad, where {due} was requested"
 
@@ -201,7 +202,8 @@ ONE_NUMBER: tuple[Family, ...] = (
         always,
         lambda f, s, d: replace(f, damping=f.damping + d * np.linalg.inv(f.solve)),
         lambda s, d: (
-            f"omega-dot has {-d:.3g} omega in it that was not requested, whatever the inertia: a "
+            f"omega-dot has {written(-d, 3)} omega in it that was not requested, whatever the "
+            "inertia: a "
             "damping as a rate, not as a torque"
         ),
     ),
@@ -211,7 +213,9 @@ ONE_NUMBER: tuple[Family, ...] = (
         0.0,
         always,
         lambda f, s, d: replace(f, drag_square=f.drag_square + d),
-        lambda s, d: f"a damping torque of -{d:.3g} |omega| omega N m acts that was not requested",
+        lambda s, d: (
+            f"a damping torque of -{written(d, 3)} |omega| omega N m acts that was not requested"
+        ),
     ),
     scalar(
         "drag",
@@ -219,7 +223,9 @@ ONE_NUMBER: tuple[Family, ...] = (
         0.0,
         lambda s: s.load.pivot is None,
         lambda f, s, d: replace(f, drag=f.drag + d),
-        lambda s, d: f"the linear velocity is damped: the acceleration has {-d:.3g} v in it",
+        lambda s, d: (
+            f"the linear velocity is damped: the acceleration has {written(-d, 3)} v in it"
+        ),
     ),
     scalar(
         "armature",

@@ -10,6 +10,7 @@ import numpy as np
 from omegadot.diagnosis.equations.formula.facts import MOMENTUM, SIZES, VECTORS, Facts, Unit
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,7 @@ NO_LAW = Law()
 
 def _power(name: str, power: float) -> str:
     shown = name if (name in SIZES and " " not in name) or name.startswith("|") else f"({name})"
-    return shown if power == 1.0 else f"{shown}^{power:g}"
+    return shown if power == 1.0 else f"{shown}^{written(power)}"
 
 
 def number_of(facts: Facts, name: str) -> Array:

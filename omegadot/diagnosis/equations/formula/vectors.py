@@ -12,6 +12,7 @@ from omegadot.diagnosis.equations.formula.facts import MATRICES, VECTORS, Facts,
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 INVERSE = {("I", "I^-1"), ("I^-1", "I"), ("R", "R^T"), ("R^T", "R")}
 SAME = 1e-12  # relative: what is the same on all of a run
@@ -88,7 +89,7 @@ def each(one: Vector, other: Vector) -> Vector:
 def powers(one: Vector, power: float) -> Vector:
     """A power of each component, with its sign."""
     unit = tuple(power * k for k in one.unit)
-    text = f"|{one.text}_i|^{power - 1:g} {one.text}_i" if power else f"sign({one.text}_i)"
+    text = f"|{one.text}_i|^{written(power - 1)} {one.text}_i" if power else f"sign({one.text}_i)"
     text = text.replace("^1 ", " ")
 
     def values(facts: Facts) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from omegadot.diagnosis.wording.digits import number
 from omegadot.reference_impl.system import Array
+from omegadot.scenarios.written import written
 
 WHOLE = 1e-6  # relative: a fitted number is the plain one that is meant
 
@@ -27,8 +28,8 @@ def with_factor(k: float, law: str, what: str, left: Array) -> tuple[str, list[s
 def unit_text(left: Array) -> str:
     """``kg m^2/s``; "" of a plain number."""
     pairs = [(n, float(p)) for n, p in zip(("kg", "m", "s"), left, strict=True) if p]
-    above = " ".join(n if p == 1 else f"{n}^{p:g}" for n, p in pairs if p > 0)
-    below = " ".join(n if p == -1 else f"{n}^{-p:g}" for n, p in pairs if p < 0)
+    above = " ".join(n if p == 1 else f"{n}^{written(p)}" for n, p in pairs if p > 0)
+    below = " ".join(n if p == -1 else f"{n}^{written(-p)}" for n, p in pairs if p < 0)
     if not below:
         return above
     return f"{above or '1'}/{f'({below})' if ' ' in below else below}"

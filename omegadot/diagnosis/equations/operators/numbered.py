@@ -11,6 +11,7 @@ from omegadot.diagnosis.equations.operators.operator import Operator, Seen
 from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array, State
+from omegadot.scenarios.written import written
 
 NOT_ZERO = 1e-3  # an exponent that is one
 NEAR = 1e-5  # a fitted exponent or factor is the plain number that is meant
@@ -156,7 +157,7 @@ def _power(seen: Seen, of: Array) -> Array | None:
 
 def _power_text(of: str) -> Callable[[str, str, Array], str]:
     def text(what: str, unit: str, p: Array) -> str:
-        shown = "" if abs(p[1] - 1.0) < NEAR else f"{p[1]:.6g} times "
-        return f"{what} is multiplied by {shown}{of}^{p[0]:.6g}"
+        shown = "" if abs(p[1] - 1.0) < NEAR else f"{written(p[1])} times "
+        return f"{what} is multiplied by {shown}{of}^{written(p[0])}"
 
     return text

@@ -19,6 +19,7 @@ from omegadot.diagnosis.wording.digits import number, vector
 from omegadot.reference_impl.loads import gravity_torque
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, State, System
+from omegadot.scenarios.written import written
 
 CLOSE = 1e-5  # relative: a factor is the whole number that is meant
 POWERS = (1.0, 0.0, 0.5, 1.5, 2.0, 2.5, 3.0)
@@ -68,7 +69,7 @@ def _powers_text(_: System, p: Array) -> str:
     kept = [*(p + (np.arange(len(p)) == 0))]  # of the damping itself what is left
     kept = [0.0 if abs(k) < CLOSE else float(k) for k in kept]
     shown = [
-        f"{'' if abs(k - 1.0) < CLOSE else f'{number(k)} '}|omega|^{power:g}"
+        f"{'' if abs(k - 1.0) < CLOSE else f'{number(k)} '}|omega|^{written(power)}"
         for k, power in zip(kept, POWERS, strict=True)
         if k
     ]

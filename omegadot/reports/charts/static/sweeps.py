@@ -20,6 +20,7 @@ from omegadot.reports.charts.static.style import (
 )
 from omegadot.reports.charts.sweeps import guides, rounding
 from omegadot.reports.text.numbers import plain
+from omegadot.scenarios.written import written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -107,7 +108,7 @@ def _slopes(axes: Axes, slopes: list[list[float]]) -> Any:
     found: list[Any] = []
     for order, h0, e0, h1, e1 in slopes:
         found += axes.plot([h0, h1], [e0, e1], color=SOFT, linewidth=0.9, zorder=1)
-        _note(axes, f"slope {order:g}", (h1, e1), (-2, 2))
+        _note(axes, f"slope {written(order)}", (h1, e1), (-2, 2))
     return found[0]
 
 

@@ -28,8 +28,8 @@ function facts(origins, source) {
     ["engine", `${source.engine} ${source.version}`.trim()],
     ["setup", source.setup],
     ["integrator", source.integrator ?? "not applicable (no time stepping)"],
-    ["step", source.timestep === null ? null : `${source.timestep} s`],
-    ["accuracy", source.accuracy],
+    ["step", source.timestep === null ? null : `${written(source.timestep)} s`],
+    ["accuracy", source.accuracy === null ? null : written(source.accuracy)],
     ["seed", origins.seed],
   ];
   for (const [name, value] of named) {

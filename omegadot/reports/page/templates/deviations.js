@@ -7,8 +7,10 @@ function deviationTraces({ data, codes }, scenario, place) {
     return {
       type: "scatter", mode: count > 1 ? "lines" : "markers", name: briefOf(group, data), meta: { lines: group.map((run) => run[0]), group: group.map((run) => run[6]) },
       x: data.times[clock], y: Array.from(ownCodes, (code) => value(code, data)),
-      text: Array.from(ownCodes, (code) => code === 0
-        ? `at or below 1e${data.floor}` : value(code, data)?.toExponential(2) + unitText(axis.unit)),
+      text: Array.from(ownCodes, (code) => {
+        const error = value(code, data);
+        return code === 0 ? `at or below 1e${data.floor}` : error === null ? "" : written(error, 3) + unitText(axis.unit);
+      }),
       hovertemplate: "%{fullData.name}<br>%{x} s: %{text}<extra></extra>",
       line: { color: own, width: look.width, dash: dashOf(look) },
       marker: { color: own },

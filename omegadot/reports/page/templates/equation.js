@@ -23,7 +23,7 @@ function equationTraces({ data }, scenario) {
     return {
       type: "scatter", mode: "markers", name, cliponaxis: false, meta: { sources: own.map((row) => row[3]) },
       y: own.map((row) => row[1]), x: own.map((row) => row[place] || 10 ** lane),
-      text: own.map((row) => `${row[place] ? row[place].toExponential(2) : "exactly 0"}, bound ${row[place + 1]?.toExponential(1) ?? "unknown"}`),
+      text: own.map((row) => `${row[place] ? written(row[place], 3) : "exactly 0"}, bound ${row[place + 1] ? written(row[place + 1], 2) : "unknown"}`),
       hovertemplate: `%{y}, ${name}<br>%{text}<extra></extra>`,
       marker: { symbol, size, color: colours, line: { width: 2, color: colours } },
     };

@@ -54,7 +54,7 @@ function showTime(section, time) {
     rule.style.left = `${chart.offsetLeft + plot.l + ((time - low) / (high - low)) * plot.w}px`;
     rule.style.top = `${chart.offsetTop + plot.t}px`;
     rule.style.height = `${plot.h}px`;
-    rule.dataset.time = time.toPrecision(4);
+    rule.dataset.time = written(time, 4);
   }
 }
 

@@ -6,8 +6,8 @@ function sweepTraces({ data }, scenario, kind) {
     return {
       type: "scatter", mode: "lines+markers", name: briefOf(group, data), cliponaxis: false, meta: { lines: [line], sources: points.map((p) => p[3]) },
       x: points.map(over), y: points.map((p) => Math.max(p[1], 10 ** data.floor)),
-      text: points.map((p) => `step ${p[0]} s: ${p[1] > 10 ** data.floor ? p[1].toExponential(2) : `at or below 1e${data.floor}`} rad`
-        + (p[2] ? `<br>${p[2].toExponential(2)} s per simulated second` : "")),
+      text: points.map((p) => `step ${written(p[0])} s: ${p[1] > 10 ** data.floor ? written(p[1], 3) : `at or below 1e${data.floor}`} rad`
+        + (p[2] ? `<br>${written(p[2], 3)} s per simulated second` : "")),
       hovertemplate: "%{fullData.name}<br>%{text}<extra></extra>",
       line: { color: own, width: look.width, dash: dashOf(look) }, marker: { color: own, size: 5 + look.width },
     };
@@ -54,7 +54,7 @@ function sweepLayout(scenario, data, kind) {
   if (kind === "cost" && narrow.matches) found.xaxis.dtick = 1;
   if (kind === "convergence") {
     const steps = [...new Set(values)].sort((a, b) => a - b);
-    Object.assign(found.xaxis, { tickmode: "array", tickvals: steps, ticktext: steps.map(String) });
+    Object.assign(found.xaxis, { tickmode: "array", tickvals: steps, ticktext: steps.map((step) => written(step)) });
   }
   return found;
 }

@@ -16,7 +16,7 @@ function measure() {
 }
 const seconds = (time) => `${time.toFixed(2)} s`;
 const degrees = (angle) => `${angle < 10 ? angle.toFixed(1) : Math.round(angle)}°`;
-const exactly = (angle) => `${angle >= 0.01 || angle === 0 ? Number(angle.toPrecision(angle < 100 ? 2 : 3)) : angle.toExponential(1)}°`;
+const exactly = (angle) => `${written(angle, angle < 100 ? 2 : 3)}°`;
 const fullName = (trajectory) => trajectory.name + (trajectory.knob && ` at ${trajectory.knob}`);
 
 function errorOf(trajectory) {

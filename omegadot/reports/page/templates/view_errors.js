@@ -30,7 +30,7 @@ function paintErrors(canvas, show, theme) {
     context.fillText(`diverges at ${seconds(time)}`, x(time) + (early ? 13 : -5), 12 + 13 * k);
   });
   context.textAlign = "right";
-  context.fillText(`attitude error, to ${most < 10 ? most.toPrecision(2) : Math.round(most)}°`, right, 11);
+  context.fillText(`attitude error, to ${written(most, most < 100 ? 2 : 3)}°`, right, 11);
   context.strokeStyle = theme.ink;
   context.lineWidth = 1.5;
   path(context, [[x(show.time), height], [x(show.time), top - 12]]);

@@ -16,6 +16,7 @@ from omegadot.reports.charts.packing import rounded
 from omegadot.reports.page.view_3d.solids import Solid, solid_of
 from omegadot.scenarios.parts import Part
 from omegadot.scenarios.solids import mass
+from omegadot.scenarios.written import written
 
 _MOST_PARTS = 200
 # A solid of the body's inertia is drawn at least this thick, over its length: a needle is thinner.
@@ -108,7 +109,9 @@ def _of_inertia(system: System) -> tuple[tuple[Solid, ...], str]:
     axis = centre / distance
     towards = solid.height(-axis) + distance
     scale = min(1.0, 0.6 * distance / towards)
-    description += f", at {scale:.2g} of its size," * (scale < 1.0) + " on a rod from the pivot"
+    description += (
+        f", at {written(scale, 2)} of its size," * (scale < 1.0) + " on a rod from the pivot"
+    )
     shrunk = Solid(shape, scale * size, centre, turned)
     return (shrunk, _rod(axis, distance - scale * towards, 0.05 * distance)), description
 

@@ -31,7 +31,7 @@ _LARGEST = 32767
 _SPINS = 8.0
 # One idea a file; what comes first is used by what comes after.
 _SCRIPTS = (
-    *("unpack", "view_trajectory", "view_shapes", "view_scene", "view_polhode"),
+    *("unpack", "written", "view_trajectory", "view_shapes", "view_scene", "view_polhode"),
     *("view_canvas", "view_stage", "view_errors", "view_clock", "view"),
 )
 
