@@ -10,7 +10,7 @@ from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.wrong_equation import known_difference
 from omegadot.diagnosis.kept_case import KeptCase
 from omegadot.diagnosis.over_scenarios import OverScenarios
-from omegadot.diagnosis.stepping.follows import keeps_pace
+from omegadot.diagnosis.stepping.follows import Followed, keeps_pace
 from omegadot.diagnosis.stepping.jumps import jump_cause, jumps
 from omegadot.diagnosis.stepping.kinematics import (
     kinematic_causes,
@@ -93,7 +93,9 @@ class StepCauses:
         evidence = {
             n: scenes[n].evidence[where[1]] for n in alike if where[1] in scenes[n].evidence
         }
-        followed = self._over.followed(one, evidence, steps.eps) if one is not None else set()
+        followed = set[Followed | None]()
+        if one is not None and not one.is_limit:
+            followed = self._over.followed(one, evidence, steps.eps)
         if "between" in followed or {"right", "wrong"} <= followed:
             later = "later steps come nearer to the right equation"
             return [f"at the start of a run, {text}; {later}"]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from omegadot.adapters.protocol import Description
+from omegadot.adapters.protocol import Description, Integrator
 from omegadot.commands.choose.eligible import unmet
 from omegadot.commands.choose.motion import Motion, cases_of
 from omegadot.commands.choose.requirements import Requirements, merged, read_requirements
@@ -96,9 +96,12 @@ def test_bad_files_are_refused_in_one_sentence(tmp_path: Path, text: str, messag
     assert "\n" not in str(caught.value)
 
 
+STEPS = (Integrator("euler", "explicit-euler", {"omega": 1}),)
+
+
 def engine(**fields: object) -> Description:
     given: dict[str, object] = {"features": frozenset({"pivot"}), "licence": "MIT", **fields}
-    return Description("toy", "1", (), **given)  # type: ignore[arg-type]
+    return Description("toy", "1", STEPS, **given)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -113,6 +116,14 @@ def test_engines_are_refused_by_what_they_are(wanted: dict[str, object], message
     requested = Requirements({"attitude": 1.0}, {"attitude": "1"}, **wanted)  # type: ignore[arg-type]
     (clause,) = unmet(engine(), requested)
     assert message in clause
+
+
+def test_an_engine_without_integrators_is_refused_whatever_is_required() -> None:
+    """Caught: a choice of an engine that has nothing to step with."""
+    (clause,) = unmet(
+        Description("toy", "1", ()), Requirements({"attitude": 1.0}, {"attitude": "1"})
+    )
+    assert clause.startswith("integrators: it has none")
 
 
 def test_engines_that_are_as_required_are_not_refused() -> None:
@@ -160,7 +171,7 @@ def test_a_minor_version_is_admitted_where_a_release_of_it_is(
 @pytest.mark.parametrize("name", ["mujoco", "pinocchio", "dart"])
 def test_what_the_packages_state_of_python_is_found(name: str) -> None:
     old = Requirements({"attitude": 1.0}, {"attitude": "1"}, python="3.1")
-    found = Description(name, "1", ())
+    found = Description(name, "1", STEPS)
     assert "its package requires" in unmet(found, old)[0]
     assert unmet(found, Requirements({"attitude": 1.0}, {"attitude": "1"}, python="3.12")) == []
 

@@ -52,10 +52,14 @@ class RunResult:
 
     @property
     def untested(self) -> tuple[str, ...]:
-        """The engines without integrators of which the model was judged and nothing else."""
+        """The engines without integrators of which the model was judged and nothing else.
+
+        A trace is none of them: it has no model, and with no scheme declared it is measured alone.
+        """
         tasks = [t for t in self.record.run["tasks"] if t["gates"] and not t["integrator"]]
         moved = {task["engine"] for task in tasks if tests_motion(task)}
-        return tuple(dict.fromkeys(t["engine"] for t in tasks if t["engine"] not in moved))
+        still = [t["engine"] for t in tasks if "model" in t["gates"] and t["engine"] not in moved]
+        return tuple(dict.fromkeys(still))
 
     @property
     def answered(self) -> bool:

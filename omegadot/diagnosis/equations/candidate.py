@@ -57,6 +57,11 @@ class Candidate:
         return isinstance(self.terms, FORMULAS)
 
     @property
+    def is_limit(self) -> bool:
+        """Whether it changes some states alone, as a run passes through them."""
+        return isinstance(self.terms, Changed) and self.terms.operator.guess is not None
+
+    @property
     def by_mass(self) -> bool:
         """Whether it holds by a factor of the mass, which many a number is on one body."""
         return any(BY_MASS.search(one.text) for one in self.fixed)

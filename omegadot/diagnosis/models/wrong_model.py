@@ -207,8 +207,8 @@ def _held_lever(system: System, requested: State, back: State) -> Array | None:
 def _lever(system: System, held: Array) -> str:
     due = np.asarray(lever_of(system), dtype=float)
     size = float(np.linalg.norm(held)) + float(np.linalg.norm(due))
-    for one in hypotheses(system):
-        if one.part in ("pivot", "center"):
+    for one in sorted(hypotheses(system), key=lambda one: one.part != "precision"):
+        if one.part in ("precision", "pivot", "center"):
             other = one.system(system)
             placed = other.load.pivot is not None
             if placed and np.linalg.norm(held - lever_of(other)) <= CLOSE * size:

@@ -63,7 +63,7 @@ def _wrong_rates(steps: VanishingSteps) -> dict[str, dict[str, Array]]:
 def still_cause(steps: VanishingSteps) -> str:
     """Attitude or position does not change in the first step of a run."""
     if steps.still:
-        return "a run of one step does not move"
+        return f"steps of {written(steps.longest, 2)} s and shorter do not move the body"
     channels = ("attitude",) if steps.system.load.pivot is not None else ("attitude", "position")
     for channel in channels:
         limit = steps.rates[channel]

@@ -31,6 +31,7 @@ class VanishingSteps:
 
     start and moved: from the two shortest steps.  limit: from the shortest five, which knows it to
     rounding where the steps are smooth.  longer: from the five before, in double precision.
+    longest: s, of all these steps.
     """
 
     system: System
@@ -41,6 +42,7 @@ class VanishingSteps:
     limit: State
     eps: float = EPS
     longer: State | None = None
+    longest: float = 0.0
 
     @property
     def evidence(self) -> Evidence:
@@ -102,7 +104,8 @@ def vanishing_steps(
     states = (State(*ends), State(*moved), State(*limit))
     before = [f[:, -RANGE - 1 : -1] for f in vars(stepped).values()]
     longer = State(*map(extrapolated, before)) if before[0].shape[1] == RANGE else None
-    return VanishingSteps(system, probe.states, rates, *states, eps, longer)
+    longest = float(np.max(probe.timesteps))
+    return VanishingSteps(system, probe.states, rates, *states, eps, longer, longest)
 
 
 def better(limit: Limit) -> tuple[Array, Array]:

@@ -14,6 +14,7 @@ from omegadot.diagnosis.wording.kinds import NUMBER
 from omegadot.reference_impl.system import Array
 
 SAME = 1e-6  # relative; what fits a run of vanishing steps is no better known
+NOTHING = 1e-12  # of a vector, in one of its components
 CLEAN = 1e-5  # relative: a factor that is one
 LOOSE = 1e-2  # of a power law, in the logarithm, before it is tried
 MOST_DECIMALS = 9
@@ -34,6 +35,7 @@ def law_of(pairs: Sequence[tuple[Array, Array]], what: str, unit: str) -> str:
     size = np.max(np.maximum(np.abs(requested), np.abs(acting)), axis=-1, keepdims=True)
     size = np.where(size > 0.0, size, 1.0)
     changed = np.abs(acting - requested) > SAME * np.maximum(np.abs(requested), np.abs(acting))
+    changed &= np.abs(acting - requested) > NOTHING * size  # rounding of what is nothing
     if np.count_nonzero(changed.any(axis=-1)) < 2:
         return ""
     if np.ptp(np.abs(requested[changed])) > SAME * np.max(np.abs(requested[changed])):
@@ -109,7 +111,7 @@ def _other_law(
         shown = number(float(more[0, 0])) if few else vector(more[0])
         return f"{shown} {unit} is added to {what}"
     k = float(np.sum(acting * requested / size**2) / np.sum((requested / size) ** 2))
-    if _close(k * requested, acting, size):
+    if abs(k - 1.0) > SAME and _close(k * requested, acting, size):
         return f"{what} is scaled by {factor(k)}"
     if not few:
         order = _order(requested, acting, size)
