@@ -167,9 +167,17 @@ def _inertias(system: System) -> Iterator[tuple[str, Array]]:
 
 
 def lever_causes(
-    across: Across, case: Case, evaluation_states: EvaluationStates, result: CaseResult
+    across: Across,
+    case: Case,
+    evaluation_states: EvaluationStates,
+    result: CaseResult,
+    *,
+    numbers: bool = True,
 ) -> list[str]:
-    """A pivoted body that is placed by another lever; its attitude and omega are right."""
+    """A pivoted body that is placed by another lever; its attitude and omega are right.
+
+    numbers: whether a lever of no known kind is stated as well, by its numbers.
+    """
     if not result.model.ok or case.system.load.pivot is None:
         return []
     state = State(**result.model.result["state"])
@@ -183,7 +191,8 @@ def lever_causes(
             due = np.asarray(lever_of(one.system), dtype=float)
             pairs.append((due, due if other is None else other))
     law = law_of(pairs, "the lever from the pivot to the centre of mass", "m") if pairs else ""
-    return [law or _lever(case.system, held)]
+    found = law or _known_lever(case.system, held)
+    return [found] if found else [_numbers(case.system, held)] * numbers
 
 
 def _held_lever(system: System, requested: State, back: State) -> Array | None:
@@ -204,7 +213,7 @@ def _held_lever(system: System, requested: State, back: State) -> Array | None:
     return held if np.linalg.norm(held - due) > CLOSE * size else None
 
 
-def _lever(system: System, held: Array) -> str:
+def _known_lever(system: System, held: Array) -> str:
     due = np.asarray(lever_of(system), dtype=float)
     size = float(np.linalg.norm(held)) + float(np.linalg.norm(due))
     for one in sorted(hypotheses(system), key=lambda one: one.part != "precision"):
@@ -218,5 +227,10 @@ def _lever(system: System, held: Array) -> str:
         return "the lever from the pivot to the centre of mass is taken for zero"
     if np.linalg.norm(held - k * due) <= CLOSE * size:
         return f"the lever from the pivot to the centre of mass is scaled by {factor(k)}"
+    return ""
+
+
+def _numbers(system: System, held: Array) -> str:
+    due = np.asarray(lever_of(system), dtype=float)
     shown = f"{vector(held, due)} m from the pivot, where {vector(due, held)} m was requested"
     return f"the centre of mass is placed {shown}: either of them is another"
