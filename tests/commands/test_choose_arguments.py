@@ -193,7 +193,5 @@ def test_nothing_to_simulate_is_an_error() -> None:
         cases_of(Motion())
     with pytest.raises(UsageError, match=r"^--duration 1e12 needs 5e13 steps of 0.02 s; the"):
         cases_of(Motion(["t-handle"], duration=1e12))
-    with pytest.raises(
-        UsageError, match=r"needs 2.5e7 samples of 0.04 s; the limit is 10,000,000"
-    ):
+    with pytest.raises(UsageError, match=r"needs 2.5e7 samples of 0.04 s; the limit is 10,000,000"):
         cases_of(Motion(["t-handle"], duration=1e6))
