@@ -40,15 +40,40 @@ def failing(record: Record, cause: str = "the gyroscopic term is missing") -> Re
     return with_metrics(replace(record, run={**record.run, "tasks": tasks}), *rows)
 
 
-def test_a_failing_engine_is_one_sentence(record: Record) -> None:
-    (line,) = summarise(failing(record)).failures
-    assert line == (
-        "dart: the equation gate fails on sphere semi-implicit, omega-dot residual 0.002, 2e10 "
-        "times its bound (3 of 6 runs fail). On sphere its attitude errs by 0.006 rad, that of "
-        "engines that pass by 7.5e-10 rad to 0.006 rad (step 0.005 s). Likely cause: the "
-        "gyroscopic term is missing."
+def test_a_failing_engine_is_which_where_why_and_what_it_costs(record: Record) -> None:
+    (found,) = summarise(failing(record)).failures
+    assert found.sentence == (
+        "dart fails the equation gate (omega-dot at given states) in 3 of 6 runs, worst on sphere, "
+        "semi-implicit: omega-dot residual 0.002, 2e10 times its bound. Likely cause: the "
+        "gyroscopic term is missing. Cost: its attitude is off by 0.006 rad on sphere "
+        "(semi-implicit, step 0.005 s); that of engines that pass by 7.5e-10 to 0.006 rad."
     )
     assert summarise(record).failures == ()
+
+
+def test_what_it_costs_is_of_the_scenario_that_is_named(record: Record) -> None:
+    """Caught: an equation that is worst on one scenario, and the cost of another."""
+    equation = metric("sphere", "dart", None, None, "equation", "omega_dot", "residual", 1.0)
+    runs = [
+        metric(name, *FAILING, 0.02, "trajectory", "attitude", "error_max", value)
+        for name, value in (("spun-again", 9.0), ("sphere", 3.0))
+    ]
+    rows = [{**row, "verdict": "fail"} for row in (equation, *runs)]
+    (found,) = summarise(with_metrics(record, *rows)).failures
+    assert (found.scenario, found.run) == ("sphere", "")
+    assert found.cost.startswith("its attitude is off by 0.006 rad on sphere (semi-implicit, ")
+
+
+def test_what_fails_in_no_run_costs_nothing_there(record: Record) -> None:
+    row = metric("sphere", "dart", None, None, "equation", "torque", "residual", 1.0)
+    (found,) = summarise(with_metrics(record, {**row, "verdict": "fail"})).failures
+    assert found.cost == "none in its trajectories, which pass"
+    alone = record.metrics.filter(gate="equation")
+    (found,) = summarise(
+        with_metrics(replace(record, metrics=alone), {**row, "verdict": "fail"})
+    ).failures
+    assert found.cost == ""
+    assert "Cost" not in found.sentence
 
 
 def test_the_failing_gate_stands_beside_its_engine_with_its_number(record: Record) -> None:
@@ -65,21 +90,27 @@ def test_the_failing_gate_stands_beside_its_engine_with_its_number(record: Recor
 
 
 def test_a_cause_that_is_not_known_is_not_named(record: Record) -> None:
-    (line,) = summarise(failing(record, "none is known; omega-dot is off in x alone")).failures
-    assert "cause" not in line
+    found = failing(record, "none is known; omega-dot is off in x alone")
+    (failure,) = summarise(found).failures
+    assert failure.cause == ""
+    assert "cause" not in failure.sentence
+    assert "none was found" in draw_page(found)
 
 
 def test_it_stands_wherever_the_run_is_summed_up(
     record: Record, capsys: pytest.CaptureFixture[str]
 ) -> None:
     found = failing(record)
-    (line,) = summarise(found).failures
+    (failure,) = summarise(found).failures
     page = draw_page(found)
-    assert page.index("<h1>") < page.index(line) < page.index("Verdicts")
+    places = [page.index(text) for text in ("<h1>", f"<dd>{failure.cause}</dd>", "Verdicts")]
+    assert places == sorted(places)
+    assert f"<dd>{failure.measured}</dd>" in page.replace("\u2060", "")
+    assert f"<dd>{failure.cost}</dd>" in page.replace("\u2060", "")
     table = page[page.index("Engine by engine") :]
     assert table.index(">dart ") < table.index(">mujoco ")  # the record has mujoco first
     print_summary(found)
-    assert line in " ".join(capsys.readouterr().out.split())
+    assert failure.sentence in " ".join(capsys.readouterr().out.split())
     assert "gyroscopic term is missing" in markdown_of(found)
     assert "The errors over time differ more" not in page  # it follows an agreement alone
 
@@ -87,19 +118,16 @@ def test_it_stands_wherever_the_run_is_summed_up(
 def test_a_share_of_a_bound_is_given_by_its_note(record: Record) -> None:
     more = {"verdict": "fail", "bound": 1.0, "note": "its rate is not the equation's"}
     row = metric("sphere", *FAILING, 0.02, "scheme", "omega", "rate_at_no_step", 3e8, **more)
-    (line,) = summarise(with_metrics(record, row)).failures
-    assert line.startswith(
-        "dart: the scheme gate fails on sphere semi-implicit, omega: its rate is"
-    )
-    assert "3e8" not in line
+    (found,) = summarise(with_metrics(record, row)).failures
+    assert (found.gate, found.looks_at) == ("scheme", "how it steps")
+    assert found.measured == "omega: its rate is not the equation's"
 
 
 def test_samples_that_are_missing_are_given_by_their_note(record: Record) -> None:
     more = {"verdict": "fail", "bound": 1e-12, "note": "the last 5 samples are missing"}
     row = metric("sphere", *FAILING, 0.02, "trajectory", "time", "sample_times", np.inf, **more)
-    (line,) = summarise(with_metrics(record, row)).failures
-    assert "time: the last 5 samples are missing" in line
-    assert "not finite" not in line
+    (found,) = summarise(with_metrics(record, row)).failures
+    assert found.measured == "time: the last 5 samples are missing"
 
 
 def test_no_number_that_passes_stands_beside_a_failing_gate(record: Record) -> None:

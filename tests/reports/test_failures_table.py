@@ -34,8 +34,8 @@ def failing(record: Record) -> Record:
     rows = (
         row("error_max", RUN, 0.02, "trajectory", "attitude", 9e9),
         row("unexplained", RUN, 0.02, "scheme", "omega", 3e-12),
-        row("unexplained", RUN, 0.01, "scheme", "omega", 5e-12, note="farthest"),
-        row("unexplained", RUN, 0.02, "scheme", "attitude", 4e-11),
+        row("unexplained", RUN, 0.01, "scheme", "omega", 5e-12),
+        row("unexplained", RUN, 0.02, "scheme", "attitude", 4e-11, note="farthest"),
         row("observed_order", RUN, None, "scheme", "omega", 0.9, bound=2.0),
         row("residual", engine, None, "equation", "omega_dot", 2e-13),
         row("inertia", engine, None, "model", "model", 1.0, verdict="declared", note="see #1"),
@@ -55,9 +55,7 @@ def test_what_to_look_at_first_comes_first(record: Record) -> None:
     assert [(row.verdict, row.engine, row.gate, row.measure) for row in rows] == [
         ("fail", "mujoco 1.0", "trajectory", "attitude error max"),
         ("fail", "dart 1.0", "equation", "omega-dot residual"),
-        ("fail", "dart 1.0", "scheme", "attitude unexplained"),
-        ("fail", "dart 1.0", "scheme", "omega unexplained"),
-        ("fail", "dart 1.0", "scheme", "omega observed order"),
+        ("fail", "dart 1.0", "scheme", "attitude unexplained and 2 more"),
         ("fail", "dart 1.0", "trajectory", "attitude error max"),
         ("declared", "dart 1.0", "model", "model inertia"),
     ]
@@ -65,25 +63,42 @@ def test_what_to_look_at_first_comes_first(record: Record) -> None:
     assert page.index("Sorted for reading") < page.index('<table class="judged')
 
 
-def test_a_row_is_a_measure_with_its_worst_run(record: Record) -> None:
+def test_a_row_is_a_gate_with_its_worst_measure_and_run(record: Record) -> None:
     rows, _ = shown(failing(record))
-    (worst,) = (row for row in rows if row.measure == "omega unexplained")
-    assert (worst.value, worst.over) == ("5e-12", "50 × 1e-13")
-    assert (worst.run, worst.runs, worst.note) == ("semi-implicit, step 0.01 s", 2, "farthest")
-    (order,) = (row for row in rows if row.measure == "omega observed order")
-    assert order.over == "declared 2"
+    (scheme,) = (row for row in rows if row.gate == "scheme")
+    assert scheme.size == "400 × bound (4e-11)"
+    assert scheme.run == "semi-implicit, step 0.02 s; 2 runs"
+    assert scheme.note == "farthest"
+    (equation,) = (row for row in rows if row.gate == "equation")
+    assert equation.run == ""  # all share it
     page = draw_page(failing(record))
     assert "9e9 ✗ fail, bound 1e-13" in page
+
+
+@pytest.mark.parametrize(
+    ("changed", "size"),
+    [
+        ({"value": 3.0}, "3 × bound"),
+        ({"value": 0.25, "bound": 0.1, "unit": "rad"}, "2.5 × bound (0.25 rad)"),
+        ({"value": 0.9, "bound": 2.0, "metric": "observed_order"}, "0.90 of order 2"),
+        ({"value": 0.25, "bound": None, "unit": "rad"}, "0.25 rad"),
+    ],
+)
+def test_how_far_it_is_beyond_its_bound(
+    record: Record, changed: dict[str, object], size: str
+) -> None:
+    row = metric(*RUN, 0.02, "scheme", "omega", "match", 1.0, bound=1.0, verdict="fail")
+    (found,), _ = shown(with_metrics(record, {**row, **changed}))
+    assert found.size == size
 
 
 def test_every_failure_has_its_cause_beside_it(record: Record) -> None:
     """Caught: the cause of another run, another engine, or none."""
     rows, _ = shown(failing(record))
-    causes = {(row.engine, row.measure): row.cause for row in rows if row.verdict == "fail"}
-    assert causes["dart 1.0", "omega unexplained"] == f"{CAUSE}, at 0.01 s"
-    assert causes["dart 1.0", "attitude unexplained"] == f"{CAUSE}, at 0.02 s"
-    assert causes["dart 1.0", "omega-dot residual"].startswith(CAUSE)
-    assert causes["mujoco 1.0", "attitude error max"] == ""
+    causes = {(row.engine, row.gate): row.cause for row in rows if row.verdict == "fail"}
+    assert causes["dart 1.0", "scheme"] == f"{CAUSE}, at 0.02 s"
+    assert causes["dart 1.0", "equation"].startswith(CAUSE)
+    assert causes["mujoco 1.0", "trajectory"] == ""
     page = draw_page(failing(record))
     table = re.search(r'<table class="judged.*?</table>', page, re.S)
     assert table is not None
@@ -98,14 +113,14 @@ def test_what_is_no_number_is_the_worst(record: Record, value: float | None) -> 
         metric(*RUN, 0.02, "scheme", "omega", "match", 1e300, bound=1.0, verdict="fail"),
         metric(*RUN, 0.02, "scheme", "attitude", "match", value, bound=1.0, verdict="fail"),
     )
-    (first, _), _ = shown(with_metrics(record, *rows))
-    assert (first.measure, first.over) == ("attitude match", "bound 1")
+    (first,), _ = shown(with_metrics(record, *rows))
+    assert (first.measure, first.size) == ("attitude match and 1 more", "no number")
 
 
 def test_an_engine_of_many_failures_hides_no_other(record: Record) -> None:
     """Caught: a table that ends where its first engine is done."""
     rows = [
-        metric(*RUN[:2], None, None, "model", "model", f"m{k}", 1.0, verdict="fail")
+        metric(f"s{k}", "dart", None, None, "model", "model", "mass", 1.0, verdict="fail")
         for k in range(MOST)
     ]
     found, left = shown(with_metrics(record, *rows))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any
 
 import polars as pl
@@ -12,24 +12,24 @@ import polars as pl
 from omegadot.reports.page.tables import channel_name, unit_text
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import GATES
-from omegadot.reports.summary.failed_gate import excess
+from omegadot.reports.summary.failed_gate import excess, over_bound
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.reasons import cause_of
 from omegadot.reports.summary.summary import Column, column_of
-from omegadot.reports.text.numbers import engine_name, knob, quantity, short
+from omegadot.reports.text.numbers import engine_name, knob, quantity, times
 
-MOST = 50  # rows on the page; every engine has its share of them, and three at least
+MOST = 40  # rows on the page; every engine has its share of them, and three at least
 _FEWEST = 3
-_MEASURE = ("verdict", "engine", "engine_version", "setup", "scenario", "gate", "channel", "metric")
-_OF_TASK = ("scenario", "engine", "engine_version", "setup", "integrator", "timestep", "accuracy")
+_RUN = ("integrator", "timestep", "accuracy")
+Row = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A measure of an engine on a scenario that fails, or that fails as declared: its worst run.
+    """A gate of an engine that fails on a scenario, or that fails as declared.
 
-    over: how many times its bound it is, with the bound.  cause: the likely one, where it is known.
-    run: integrator and step.  runs: how many of its runs fail by that measure.
+    measure and size: its worst measure, with how many others there are; how many times its bound
+    that is.  cause: the likely one, where it is known.  run: the worst, with how many there are.
     """
 
     verdict: str
@@ -37,11 +37,9 @@ class Failure:
     gate: str
     scenario: str
     measure: str
-    value: str
-    over: str
+    size: str
     cause: str
     run: str
-    runs: int
     note: str
     source: int
 
@@ -54,90 +52,85 @@ def failures_table(
     Failures come before declared exceptions; then engine by engine in the order of the `columns`;
     of one, the first gate first, as later ones fail for the same reason; then by size over bound.
     """
-    found = _measures(record.metrics)
+    found = [(max(rows, key=excess), rows) for rows in _by_gate(record.metrics)]
     places = {(c.engine, c.version, c.setup): place for place, c in enumerate(columns)}
     found.sort(
-        key=lambda row: (
-            row["verdict"] != "fail",
-            places.get(_engine_of(row), len(places)),
-            GATES.index(row["gate"]),
-            -excess(row),
+        key=lambda pair: (
+            pair[0]["verdict"] != "fail",
+            places.get(_engine_of(pair[0]), len(places)),
+            GATES.index(pair[0]["gate"]),
+            -excess(pair[0]),
         )
     )
-    shown = _shares(found)
-    causes = _causes(record.run["tasks"])
-    return [_failure(row, causes, sources) for row in shown], len(found) - len(shown)
+    causes, kept = _causes(record.run["tasks"]), _shares([worst for worst, _ in found])
+    shown = [_failure(*found[place], causes, sources) for place in kept]
+    return shown, len(found) - len(shown)
 
 
-def _measures(metrics: pl.DataFrame) -> list[dict[str, Any]]:
-    """The worst row of each measure that fails or fails as declared, with its count of rows."""
-    rows = metrics.filter(pl.col("verdict").is_in(["fail", "declared"]))
-    worst: dict[tuple[Any, ...], dict[str, Any]] = {}
-    for row in rows.iter_rows(named=True):
-        key = tuple(row[name] for name in _MEASURE)
-        runs = worst[key]["runs"] + 1 if key in worst else 1
-        if key not in worst or excess(row) > excess(worst[key]):
-            worst[key] = row
-        worst[key] |= {"runs": runs}
-    return list(worst.values())
+def _by_gate(metrics: pl.DataFrame) -> list[list[Row]]:
+    """The rows that fail or fail as declared, of each gate of an engine on a scenario."""
+    found: dict[tuple[str, ...], list[Row]] = {}
+    for row in metrics.filter(pl.col("verdict").is_in(["fail", "declared"])).iter_rows(named=True):
+        key = (row["verdict"], row["scenario"], row["gate"], *_engine_of(row))
+        found.setdefault(key, []).append(row)
+    return list(found.values())
 
 
-def _shares(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Of rows in order those that are shown: a failing engine hides no other."""
-    engines: dict[tuple[str, str, str], int] = {}
-    for row in rows:
-        engines[_engine_of(row)] = 0
-    share = max(_FEWEST, MOST // max(1, len(engines)))
+def _shares(rows: Sequence[Row]) -> list[int]:
+    """Of rows in order the places of those that are shown: no failing engine hides another."""
+    counts = dict.fromkeys(map(_engine_of, rows), 0)
+    share = max(_FEWEST, MOST // max(1, len(counts)))
     shown = []
-    for row in rows:
-        engines[_engine_of(row)] += 1
-        if engines[_engine_of(row)] <= share:
-            shown.append(row)
+    for place, row in enumerate(rows):
+        counts[_engine_of(row)] += 1
+        if counts[_engine_of(row)] <= share:
+            shown.append(place)
     return shown
 
 
-def _engine_of(row: Mapping[str, Any]) -> tuple[str, str, str]:
+def _engine_of(row: Row) -> tuple[str, str, str]:
     return row["engine"], row["engine_version"], row["setup"]
 
 
-def _causes(tasks: Iterable[Mapping[str, Any]]) -> dict[tuple[Any, ...], str]:
+def _causes(tasks: Iterable[Row]) -> dict[tuple[Any, ...], str]:
     """The likely cause by what names a task; by scenario and engine that of its first failure."""
     found: dict[tuple[Any, ...], str] = {}
     for task in tasks:
         if cause := cause_of(task):
             whole = (task["scenario"], *column_of(task))
-            run = task.get("integrator"), task.get("timestep"), task.get("accuracy")
             found.setdefault((*whole, None, None, None), cause)
-            found.setdefault((*whole, *run), cause)
+            found.setdefault((*whole, *map(task.get, _RUN)), cause)
     return found
 
 
-def _over(row: Mapping[str, Any]) -> str:
-    """How many times its bound a value is, as text; the bound alone where that has no meaning."""
-    bound, times = row["bound"], excess(row)
-    if bound is None:
-        return ""
-    if times and math.isfinite(times):
-        return f"{short(times)} × {short(bound)}"
-    return f"{'declared' if row['metric'] == 'observed_order' else 'bound'} {short(bound)}"
+def _size(row: Row) -> str:
+    """How many times its bound, and the value itself where it is no share of a bound."""
+    text = over_bound(row)
+    if row["bound"] == 1.0 or not text.endswith("bound") or not isfinite(row["value"]):
+        return text
+    return f"{text} ({quantity(row['value'], unit_text(row['unit'], row['gate']) or '1')})"
 
 
 def _failure(
-    row: Mapping[str, Any], causes: Mapping[tuple[Any, ...], str], sources: Sources
+    worst: Row, rows: Sequence[Row], causes: Mapping[tuple[Any, ...], str], sources: Sources
 ) -> Failure:
-    measure = f"{channel_name(row['channel'])} {row['metric'].replace('_', ' ')}"
-    run = (row["integrator"], knob(row["timestep"], row["accuracy"]))
+    measures = {(row["channel"], row["metric"]) for row in rows}
+    stepped = [row for row in rows if row["timestep"] or row["accuracy"]]  # no order of a sweep
+    runs = {tuple(row[key] for key in _RUN) for row in stepped}
+    others = f" and {len(measures) - 1} more" if len(measures) > 1 else ""
+    measure = f"{channel_name(worst['channel'])} {worst['metric'].replace('_', ' ')}"
+    run = (worst["integrator"], knob(worst["timestep"], worst["accuracy"]))
+    count = times(len(runs), "run") if runs else ""
+    key = (worst["scenario"], *_engine_of(worst), *(worst[name] for name in _RUN))
     return Failure(
-        row["verdict"],
-        engine_name(*_engine_of(row)),
-        row["gate"],
-        row["scenario"],
-        measure,
-        quantity(row["value"], unit_text(row["unit"], row["gate"]) or "1"),
-        _over(row),
-        causes.get(tuple(row[name] for name in _OF_TASK), ""),
-        ", ".join(filter(None, run)),
-        row["runs"],
-        row["note"] or "",
-        sources.number(row),
+        worst["verdict"],
+        engine_name(*_engine_of(worst)),
+        worst["gate"],
+        worst["scenario"],
+        measure + others,
+        _size(worst),
+        causes.get(key, ""),
+        "; ".join(filter(None, (", ".join(filter(None, run)), count))),
+        worst["note"] or "",
+        sources.number(worst),
     )

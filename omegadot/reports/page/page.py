@@ -28,6 +28,7 @@ from omegadot.reports.summary.headline import headline, remarks, step_notes, tru
 from omegadot.reports.summary.provenance import command_of, provenance_payload, sources_for
 from omegadot.reports.summary.summary import STATUSES, counts, summarise
 
+MOST_FAILING = 3  # engines in full at the top of the page; the others are folded
 CHART_TITLES = {
     "omega_dot": ("Omega-dot error", "|ω̇ − ω̇ exact| along the run"),
     "energy": ("Energy error", "|E − E exact| along the run"),
@@ -70,6 +71,7 @@ def draw_page(record: Record, choice: Section | None = None) -> str:
         remarks=remarks(summary) + truth(summary),
         counts=counts(summary),
         summary=summary,
+        most_failing=MOST_FAILING,
         matrix=matrix.matrix(summary),
         numbers=matrix.NUMBERS,
         anchors=anchors,

@@ -1,9 +1,10 @@
-"""The failing engines, a sentence each: where, by how much, how often, and the likeliest cause."""
+"""The failing engines: which gate, where, by how much, the likeliest cause, and what it costs."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
@@ -13,75 +14,126 @@ from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.failed_gate import measure, worst_row
 from omegadot.reports.summary.reasons import cause_of, failing_gates
-from omegadot.reports.text.numbers import engine_name, knob, quantity, times
+from omegadot.reports.text.numbers import engine_name, knob, quantity, short, times
 
 UNKNOWN = "none is known"
+# What each gate looks at, for readers who do not know their names.
+LOOKS_AT = {
+    "model": "the body that it holds",
+    "equation": "omega-dot at given states",
+    "scheme": "how it steps",
+    "invariants": "what must stay constant",
+    "trajectory": "the motion over time",
+    "cost": "what a step costs",
+}
 WHO = ("engine", "engine_version", "setup")
+Row = Mapping[str, Any]
 
 
-def failures_of(record: Record) -> tuple[str, ...]:
-    """Of every failing engine, the first gate that fails and its worst measure."""
-    who = WHO
+@dataclass(frozen=True)
+class EngineFailure:
+    """An engine that fails: the first gate that does, and its worst measure there.
+
+    run: the integrator that gave it, "" where all share it.  extent: how many of its runs fail.
+    cause: the likeliest, "" where none is known.  cost: what the failure means for the attitude,
+    next to engines that pass; "" where it is not known.
+    """
+
+    engine: str
+    gate: str
+    scenario: str
+    run: str
+    measured: str
+    extent: str
+    cause: str
+    cost: str
+
+    @property
+    def looks_at(self) -> str:
+        """What the gate looks at."""
+        return LOOKS_AT[self.gate]
+
+    @property
+    def sentence(self) -> str:
+        """All of it in a few sentences."""
+        by = f", {self.run}" if self.run else ""
+        head = f"{self.engine} fails the {self.gate} gate ({self.looks_at}) in {self.extent}"
+        parts = [f"{head}, worst on {self.scenario}{by}: {self.measured}"]
+        parts += [f"Likely cause: {self.cause}"] if self.cause else []
+        parts += [f"Cost: {self.cost}"] if self.cost else []
+        return ". ".join(parts) + "."
+
+
+def failures_of(record: Record) -> tuple[EngineFailure, ...]:
+    """Every failing engine, in the order of the record."""
     rows = record.metrics.filter(pl.col("verdict") == "fail").to_dicts()
-    several = Counter(name for name, *_ in {tuple(row[key] for key in who) for row in rows})
-    found: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+    several = Counter(name for name, *_ in {tuple(row[key] for key in WHO) for row in rows})
+    found: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
-        found.setdefault(tuple(row[key] for key in who), []).append(row)
-    sentences = []
+        found.setdefault(tuple(row[key] for key in WHO), []).append(row)
+    failures = []
     for (engine, version, setup), own in found.items():
-        name = engine_name(engine, version if several[engine] > 1 else "", setup)
-        tasks = [t for t in record.run["tasks"] if t["engine"] == engine]
-        worth = _worth(record.metrics, (engine, version, setup), own)
-        sentences.append(f"{name}: {_worst(own)}{_extent(tasks)}{worth}{_likeliest(tasks)}.")
-    return tuple(sentences)
+        tasks = [task for task in record.run["tasks"] if task["engine"] == engine]
+        failing, worst = list(filter(failing_gates, tasks)), worst_row(own)
+        failures.append(
+            EngineFailure(
+                engine_name(engine, version if several[engine] > 1 else "", setup),
+                worst["gate"],
+                worst["scenario"],
+                worst["integrator"] or "",
+                measure(worst),
+                f"{len(failing)} of {times(len(tasks), 'run')}",
+                _likeliest(failing),
+                _cost(record.metrics, (engine, version, setup), own),
+            )
+        )
+    return tuple(failures)
 
 
-def _worst(rows: list[dict[str, Any]]) -> str:
-    row = worst_row(rows)
-    by = f" {row['integrator']}" if row["integrator"] else ""
-    return f"the {row['gate']} gate fails on {row['scenario']}{by}, {measure(row)}"
+def _cost(metrics: pl.DataFrame, who: tuple[str, ...], rows: Sequence[Row]) -> str:
+    """The attitude's error at the finest step, next to that of engines that pass.
 
-
-def _extent(tasks: list[Mapping[str, Any]]) -> str:
-    failing = list(filter(failing_gates, tasks))
-    return f" ({len(failing)} of {times(len(tasks), 'run')} fail)" if failing else ""
-
-
-def _worth(metrics: pl.DataFrame, who: tuple[str, ...], rows: list[dict[str, Any]]) -> str:
-    """What a failure costs: the attitude at the finest step there, next to engines that pass."""
-    judged = pl.col("gate") == "trajectory"
+    On the scenario of the worst measure where a run fails there, else of the worst run.
+    """
     stepped = [row for row in rows if row["integrator"] is not None]
     if not stepped:
-        of_engine = pl.all_horizontal(
-            pl.col(k).eq_missing(v) for k, v in zip(WHO, who, strict=True)
+        judged = metrics.filter(pl.col("gate") == "trajectory").filter(
+            pl.col(key).eq_missing(value) for key, value in zip(WHO, who, strict=True)
         )
-        passes = metrics.filter(judged & of_engine)["verdict"].to_list()
-        return ". Its trajectories pass" if "pass" in passes else ""
-    worst = worst_row(stepped)
-    where = judged & (pl.col("channel") == "attitude") & (pl.col("metric") == "error_max")
-    where &= (pl.col("scenario") == worst["scenario"]) & ~pl.col("engine").is_in(YARDSTICKS)
-    known = [row for row in metrics.filter(where).to_dicts() if row["timestep"]]
-    finest = min((row["timestep"] for row in known), default=None)
-    known = [row for row in known if row["timestep"] == finest and isfinite(row["value"])]
-    own = [r["value"] for r in known if tuple(map(r.get, WHO)) == who and _is_of(r, worst)]
-    theirs = [r["value"] for r in known if tuple(map(r.get, WHO)) != who and r["verdict"] == "pass"]
-    if not own or not theirs:
+        return "none in its trajectories, which pass" if "pass" in judged["verdict"] else ""
+    where = worst_row(rows)["scenario"]
+    here = [row for row in stepped if row["scenario"] == where] or stepped
+    scenario = worst_row(here)["scenario"]
+    failing = {row["integrator"] for row in here if row["scenario"] == scenario}
+    errors = _finest_errors(metrics, scenario)
+    own = [r for r in errors if tuple(map(r.get, WHO)) == who and r["integrator"] in failing]
+    if not own:
         return ""
-    ends = [quantity(end, "rad") for end in dict.fromkeys((min(theirs), max(theirs)))]
-    others = f"that of engines that pass by {' to '.join(ends)}"
-    off = f"its attitude errs by {quantity(max(own), 'rad')}"
-    return f". On {worst['scenario']} {off}, {others} ({knob(finest, None)})"
+    worst = max(own, key=lambda row: row["value"])
+    at = f"on {scenario} ({worst['integrator']}, {knob(worst['timestep'], None)})"
+    others = [
+        r["value"] for r in errors if tuple(map(r.get, WHO)) != who and r["verdict"] == "pass"
+    ]
+    text = f"its attitude is off by {quantity(worst['value'], 'rad')} {at}"
+    ends = [short(end) for end in dict.fromkeys((min(others), max(others)))] if others else []
+    return f"{text}; that of engines that pass by {' to '.join(ends)} rad" if ends else text
 
 
-def _is_of(row: Mapping[str, Any], worst: Mapping[str, Any]) -> bool:
-    return bool(row["integrator"] == worst["integrator"])
+def _finest_errors(metrics: pl.DataFrame, scenario: str) -> list[dict[str, Any]]:
+    """The attitude's largest errors of every engine on a scenario, at the finest step there."""
+    of_attitude = (pl.col("channel") == "attitude") & (pl.col("metric") == "error_max")
+    judged = metrics.filter((pl.col("gate") == "trajectory") & (pl.col("scenario") == scenario))
+    rows = judged.filter(of_attitude & ~pl.col("engine").is_in(YARDSTICKS)).to_dicts()
+    known = [r for r in rows if r["timestep"] and r["value"] is not None and isfinite(r["value"])]
+    finest = min((row["timestep"] for row in known), default=None)
+    return [row for row in known if row["timestep"] == finest]
 
 
-def _likeliest(tasks: list[Mapping[str, Any]]) -> str:
+def _likeliest(failing: Sequence[Row]) -> str:
     """The cause that explains most runs, with how many others there are."""
-    causes = Counter(filter(None, map(cause_of, tasks)))
+    causes = Counter(filter(None, map(cause_of, failing)))
     known = [(cause, n) for cause, n in causes.most_common() if not cause.startswith(UNKNOWN)]
     if not known:
         return ""
     more = f"; {times(len(known) - 1, 'other cause')} elsewhere" if len(known) > 1 else ""
-    return f". Likely cause: {known[0][0].rstrip('.')}{more}"
+    return f"{known[0][0].rstrip('.')}{more}"

@@ -17,7 +17,7 @@ from omegadot.reports.record.record import Record
 from omegadot.reports.record.run_json import impossible_bodies
 from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.failed_gate import FailedGate, failed_gates
-from omegadot.reports.summary.failures import failures_of
+from omegadot.reports.summary.failures import EngineFailure, failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
 from omegadot.reports.summary.reasons import MODEL_ALONE, failing_gates, tests_motion
 from omegadot.reports.text.numbers import times
@@ -96,7 +96,7 @@ class Summary:
 
     runs: by status, how many.  yardsticks: those of the exact solution and the reference, where
     others ran.
-    failures: a sentence on each failing engine.
+    failures: what fails of each engine that does.
     truths: by kind of exact solution, the number of scenarios.  notes: a sentence on each body
     whose inertia is impossible, each process that ended by itself, each engine without integrators.
     """
@@ -108,7 +108,7 @@ class Summary:
     runs: Counter[str]
     yardsticks: Counter[str]
     missing: tuple[Missing, ...]
-    failures: tuple[str, ...]
+    failures: tuple[EngineFailure, ...]
     truths: Counter[str]
     notes: tuple[str, ...]
 

@@ -21,7 +21,8 @@ def markdown_of(record: Record) -> str:
     message = record.run.get("headline") or headline(summary)
     lines = [f"### omegadot: {escape(message, 1000)}", ""]
     lines += [escape(notes, 1000), ""] if notes else []
-    lines += [f"- {escape(line, 600)}" for line in summary.failures] + [""] * bool(summary.failures)
+    lines += [f"- {escape(one.sentence, 600)}" for one in summary.failures]
+    lines += [""] * bool(summary.failures)
     lines += [_counts(summary), ""]
     lines += _matrix(summary, COMMENT // 4)
     lines += _failures(record, COMMENT // 4)

@@ -55,8 +55,8 @@ def print_summary(record: Record, console: Console | None = None) -> None:
         console.print(Text(_missing_line(missing), style=_NOT_RUN))
     console.print(Text("; ".join(counts(summary)) or "No run was made."))
     console.print(Text(headline(summary), style="bold"))
-    for line in summary.failures:
-        console.print(Text(line, _STYLES["fail"]))
+    for failure in summary.failures:
+        console.print(Text(failure.sentence, _STYLES["fail"]))
     console.print(Text(" ".join(remarks(summary) + truth(summary))))
 
 
