@@ -209,7 +209,7 @@ def test_work_is_drawn_against_precision(seen):
     assert drawn["mujoco RK4"]["x"] == pytest.approx([4e-4, 2e-4, 1e-4])
     assert drawn["mujoco RK4"]["y"] == pytest.approx([1.2 * h**4 for h in (0.005, 0.01, 0.02)])
     text = seen.evaluate("document.querySelector('[data-kind=cost]').data[2].text[0]")
-    assert text == "step 0.005 s: 7.50e-10 rad<br>4.00e-4 s per simulated second"
+    assert text == "step 0.005 s: 7.5e-10 rad<br>0.0004 s per simulated second"
 
 
 def test_sweeps_leave_with_their_engine(page):
