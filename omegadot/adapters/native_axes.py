@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 # A third of a turn about (1, 1, 1): x goes to y, so the two answers cannot be mistaken.
 TURNED = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])

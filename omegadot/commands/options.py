@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand
 
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 class Format(StrEnum):

@@ -18,7 +18,7 @@ from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 @dataclass

@@ -36,7 +36,7 @@ from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun, is_finite
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
 LIMIT = "is held"

@@ -19,7 +19,7 @@ from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.scenarios import Scenario, ScenarioLike, builtin_names, scenario
 from omegadot.scenarios.model import MOST_STEPS
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 T = TypeVar("T")
 

@@ -9,7 +9,7 @@ from numbers import Integral, Real
 from typing import get_args
 
 from omegadot.adapters.protocol import Setup
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 MOST = 1e9
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime
 
-from omegadot.scenarios.written import exactly
+from omegadot.written import exactly
 
 SHOWN = 60  # characters of a value that a sentence can carry
 

@@ -16,7 +16,7 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, PlainValidator
 from pydantic_core import PydanticCustomError
 
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 LARGEST = 1e50
 SMALLEST = 1e-50

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from omegadot.scenarios.errors import Phrase
 from omegadot.scenarios.parts import Box, Capsule, Cylinder, Ellipsoid, Part, Point, Sphere
 from omegadot.scenarios.quantities import LARGEST, SMALLEST, refuse
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 EPS = float(np.finfo(float).eps)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import PlainValidator, ValidationInfo
 
 from omegadot.scenarios.quantities import SMALLEST, read_number, read_positive, refuse
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 EPS = float(np.finfo(float).eps)
 LAPACK = 16 * EPS  # it finds 3x3 eigenvalues to a few ulps of the largest

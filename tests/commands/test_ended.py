@@ -145,7 +145,7 @@ def test_an_interruption_as_causes_are_sought_leaves_them_out(
     def interrupted(*arguments: object) -> object:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Causes, "of_case", interrupted)
+    monkeypatch.setattr(Causes, "add", interrupted)
     with pytest.raises(api.RunInterrupted) as caught:
         api.run(folder / "quick.toml", f"{WRONG}:NoGyroscopic", out=folder / "out")
     result = caught.value.result

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from score_line import BRICK, run_score, runge_kutta, tumble, turns
 
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 TIMES = 0.2 * np.arange(101)
 MAPPED = ("--scenario", BRICK)

@@ -29,7 +29,7 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.scenarios import scenario
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 SWEEP = Sweep(0.0371234567, 40, 4)
 CLOCKS = {

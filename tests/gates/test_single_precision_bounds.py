@@ -36,7 +36,7 @@ from omegadot.reference_impl.rotations import (
 )
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, Body, Load, State, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 SINGLES = 2.0**-23
 RATIO = 2.0**29

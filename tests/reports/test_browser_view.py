@@ -19,7 +19,7 @@ from omegadot.reference_impl.rotations import (
 from omegadot.reports.page.page import draw_page
 from omegadot.reports.page.templating import asset
 from omegadot.reports.page.view_3d.view import Codes
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 HOSTILE = "<img src=x onerror=\"document.title='broken'\">"
 READY = "document.getElementById('view-box').dataset.ready === '1'"

@@ -24,7 +24,7 @@ from omegadot.scenarios.errors import ScenarioError, printable
 from omegadot.scenarios.links.link import Link
 from omegadot.scenarios.links.place import Place
 from omegadot.scenarios.links.xml_file import decoded
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 SECONDS = 60.0  # a humanoid takes a tenth of a second
 RADII = (1.0, 2.0)  # m, of the balls

@@ -11,7 +11,7 @@ import numpy as np
 from omegadot.adapters.protocol import Setup, UnsupportedError
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array, Body, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 BODY = 1  # body 0 is MuJoCo's world
 

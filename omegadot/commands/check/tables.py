@@ -8,7 +8,7 @@ import numpy as np
 
 from omegadot.gates.case import Case
 from omegadot.scenarios import Scenario
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 Tables = dict[str, Any]
 

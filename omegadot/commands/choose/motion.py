@@ -14,7 +14,7 @@ from omegadot.scenarios import Scenario, ScenarioLike, scenario_of
 from omegadot.scenarios.links.body_file import body_of_argument
 from omegadot.scenarios.model import MOST_SAMPLES, MOST_STEPS
 from omegadot.scenarios.tensor import ALLOWED
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 STEPS_TO_BEGIN = (500, 1000, 2000)  # a horizon, where no scenario states which steps are usual
 

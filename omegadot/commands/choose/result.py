@@ -13,7 +13,7 @@ from omegadot.reports.choice.page import draw_choice, write_choice
 from omegadot.reports.notebook import framed
 from omegadot.reports.record.record import RUN
 from omegadot.reports.record.whole_file import path_of
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 @dataclass(frozen=True)

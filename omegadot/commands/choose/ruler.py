@@ -19,8 +19,8 @@ from omegadot.gates.runs.phase import middle_axis
 from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State, System
-from omegadot.scenarios.written import written
 from omegadot.workers.harness_end.process import Answer
+from omegadot.written import written
 
 
 class Flips:

@@ -16,7 +16,7 @@ from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.solutions.exact_solution import exact_solution
 from omegadot.reference_impl.system import Array, State
 from omegadot.scenarios import ScenarioLike
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 if TYPE_CHECKING:
     import polars as pl

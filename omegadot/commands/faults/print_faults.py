@@ -15,7 +15,7 @@ from omegadot.commands.faults.faults import FaultsResult
 from omegadot.commands.faults.matrix import SOUND, EngineMatrix
 from omegadot.commands.faults.published_checks import PUBLISHED
 from omegadot.reports.text.text_grid import plain_console
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 HEADS = ("fault", "built-in", *GATES, "one system", "24 systems", "no scheme", "cause named")
 WIDTH_WHEN_PIPED = 200

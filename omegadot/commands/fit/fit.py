@@ -25,7 +25,7 @@ from omegadot.commands.typed import typed
 from omegadot.harness.usage import UsageError, check_number
 from omegadot.reports.record.whole_file import check_target, path_of, write_whole
 from omegadot.scenarios import scenario
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 @typed

@@ -18,7 +18,7 @@ from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.sentences import direction
 from omegadot.reference_impl.system import Array
 from omegadot.reports.text.text_grid import plain_console
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 WIDTH_WHEN_PIPED = 200
 UNKNOWN = "not determined"

@@ -12,7 +12,7 @@ from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import Trace, trace_of
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array, Body, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 LEAST_SAMPLES = 6  # 18 numbers, for the 8 to 12 that are fitted
 MOST_TURNED = 5000.0  # rad; an evaluation of the motion takes seconds then

@@ -11,7 +11,7 @@ from omegadot.commands.fit.spread import Spread
 from omegadot.commands.score.convention import LARGEST
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 AXES = {"x": 0, "y": 1, "z": 2}
 PLACES = {"smallest": 0, "middle": 1, "largest": 2}

@@ -9,7 +9,7 @@ from omegadot.commands.fit.determined import Determined
 from omegadot.commands.fit.estimates import Estimates, open_directions
 from omegadot.commands.fit.scale import Scale
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 FLAT = 1e-5  # of the largest moment: nearer to the sum of the other two it is at the limit
 POOR = 0.1  # rms of the residuals, of omega

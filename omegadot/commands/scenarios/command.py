@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from omegadot.commands.options import Format, Output
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def scenarios(output: Output = Format.text) -> None:

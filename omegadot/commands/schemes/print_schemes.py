@@ -13,7 +13,7 @@ from omegadot.diagnosis.scheme_study.orders import COARSEST
 from omegadot.diagnosis.scheme_study.record import Record
 from omegadot.gates.errors.orders import ORDER_TOLERANCE
 from omegadot.reports.text.text_grid import plain_console, text_grid
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 WIDTH_WHEN_PIPED = 240
 _HEAD = """\

@@ -10,7 +10,7 @@ from omegadot.diagnosis.scheme_study.record import Record
 from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reports.text.numbers import short
 from omegadot.reports.text.text_grid import Grid
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 # Kinds of which one stands for both: damping adds nothing to the name where they agree.
 PAIRS = (("free", "damped"), ("pivoted", "pivoted-damped"))

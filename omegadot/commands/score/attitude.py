@@ -10,7 +10,7 @@ from omegadot.commands.score.table import Table, TraceError
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import conjugate, quaternion_product
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 # Farther from a rotation than this it was misread; nearer, it has drifted, and that is measured.
 MOST_OFF = 0.1

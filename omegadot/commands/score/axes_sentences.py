@@ -11,7 +11,7 @@ from omegadot.commands.score.own_units import factor_of
 from omegadot.commands.score.world import Shifted, Turned, origin_given
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def axes_sentences(found: Judged) -> list[str]:

@@ -17,7 +17,7 @@ from omegadot.commands.units import UNITS
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import attitude_angle, normalize
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 LONGEST = 20.0  # times the scenario's duration
 # An epoch's stamps: s since 1970, from 1973 on to 2106; in ms, us and ns the ranges do not meet.

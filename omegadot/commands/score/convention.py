@@ -13,7 +13,7 @@ from omegadot.commands.units import UNITS, unit_named
 from omegadot.harness.usage import UsageError, check_number, nearest
 from omegadot.reference_impl.rotations import normalize, rotation_matrix
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 CHOICES = {
     "omega_frame": ("body", "world"),

@@ -13,7 +13,7 @@ from omegadot.reference_impl.flight.euler_angles import Angles
 from omegadot.reference_impl.flight.schemes import FLIGHT_SCHEMES
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 MOST_STEPS = 1_000_000
 # A stamp this part of a step off a whole number of them is of an accumulated, or rounded, time.

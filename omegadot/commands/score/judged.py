@@ -33,7 +33,7 @@ from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
 from omegadot.reference_impl.flight.euler_angles import Angles
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 GATES = {c: "invariants" if c in INVARIANT_CHANNELS else "trajectory" for c in CHANNELS}
 UNITS = {"omega": "rad/s", "attitude": "rad", "position": "m"}

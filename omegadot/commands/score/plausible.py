@@ -16,7 +16,7 @@ from omegadot.commands.score.table import TraceError
 from omegadot.commands.score.trace import trace_of
 from omegadot.commands.units import UNITS
 from omegadot.gates.bounds.scales import norm
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 # The motion has moved by then, and an error of the simulator's has not grown large.
 FIRST = 0.25

@@ -19,7 +19,7 @@ from omegadot.commands.score.shift import scatter
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.text.text_grid import plain_console
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 STYLES = {"pass": "green", "fail": "bold red", "info": "default"}
 WIDTH_WHEN_PIPED = 200

@@ -26,7 +26,7 @@ from omegadot.reports.record import schema
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.headline import headline
 from omegadot.reports.summary.summary import summarise
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 FIELDS = {**COLUMNS, "omega_dot": ("ax", "ay", "az")}
 

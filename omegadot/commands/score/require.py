@@ -9,7 +9,7 @@ from omegadot.commands.score.judged import GATES, Judged
 from omegadot.commands.units import UNITS, quantity, unit_written
 from omegadot.gates.rows import Row
 from omegadot.harness.usage import UsageError
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 KINDS = {
     **{"attitude": "angle", "omega": "rate", "position": "length"},

@@ -20,7 +20,7 @@ from omegadot.gates.runs.invariants import HORIZONS
 from omegadot.gates.states.equation import forward_rows
 from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.system import Acceleration
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 SPINS = ("omega", "attitude")
 MOST_NAMED = 3

@@ -12,7 +12,7 @@ from omegadot.commands.score.own_units import factor_of, in_own_unit
 from omegadot.commands.score.shift import scatter
 from omegadot.commands.score.stamps import gaps_of
 from omegadot.gates.rows import Row
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def sentences(found: Judged, rows: list[Row]) -> list[str]:

@@ -16,7 +16,7 @@ from omegadot.gates.runs.phase import FARTHEST, MOST_ITERATIONS
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, normalize, rotation_between
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 MOST_COMPARED = 400  # samples, and as many shifts to either side, when a first shift is sought
 # A shift that leaves a tenth of the error or less is what was wrong; more left, and more was.

@@ -14,7 +14,7 @@ from omegadot.commands.score.digits import is_single, open_time, printed_whole
 from omegadot.commands.score.table import Table, TraceError
 from omegadot.gates.bounds.scales import EPS
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 # Stamps this much larger than what they span are differences of large numbers: epochs are.
 FAR = 1e3

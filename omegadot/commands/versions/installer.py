@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from omegadot.commands.versions.release import Span, version_of
-from omegadot.scenarios.written import written
 from omegadot.workers.wire import one_line
+from omegadot.written import written
 
 SECONDS_TO_INSTALL = 900.0
 LONGEST_REASON = 300

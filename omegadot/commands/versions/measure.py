@@ -27,9 +27,9 @@ from omegadot.gates.case import Case
 from omegadot.gates.states.model import of_read_body
 from omegadot.gates.steps.accuracy import usual_for
 from omegadot.reference_impl.system import System
-from omegadot.scenarios.written import written
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import description_of
+from omegadot.written import written
 
 MOST_TIMEOUTS = 3
 REQUESTED_OF_ENGINE = frozenset({"convention", "default"})

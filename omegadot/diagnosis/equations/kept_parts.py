@@ -12,7 +12,7 @@ from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.harness.loaded_before import LoadedBefore
 from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.system import Array, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 DIGITS = 9  # of what systems are found again by
 

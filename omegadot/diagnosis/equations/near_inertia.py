@@ -13,7 +13,7 @@ from omegadot.diagnosis.models.near_numbers import NEAR_RULES, SMALL_RULES, Near
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 SEVERAL = 2  # readings between which nothing decides are said as what they share
 

@@ -8,7 +8,7 @@ from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING, SLACK, Eviden
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.one_body.body_motion import attitude_motion
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def difference_quotient(evidence: Evidence) -> str:

@@ -13,7 +13,7 @@ from omegadot.diagnosis.wording.digits import factor, vector
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import conjugate, normalize, quaternion_product
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 FIELDS = {
     "angular_velocity": "omega",

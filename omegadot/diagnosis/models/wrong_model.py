@@ -22,8 +22,8 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever as lever_of
 from omegadot.reference_impl.rotations import attitude_angle, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, Body, State, System
-from omegadot.scenarios.written import written
 from omegadot.workers.wire import body_from
+from omegadot.written import written
 
 CLOSE = 1e-9  # relative: numbers of a state that are the same
 

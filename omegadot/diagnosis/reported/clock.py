@@ -7,7 +7,7 @@ import numpy as np
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.gates.case import Sweep
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 UNITS = {1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds"}
 GRIDS = {1e-3: "milliseconds", 1e-6: "microseconds", 1e-9: "nanoseconds"}

@@ -24,7 +24,7 @@ from omegadot.reference_impl.rotations import (
     rotation_between,
 )
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 LEAST = 5  # samples
 NEAR = 1e-6  # a share that is none, or all

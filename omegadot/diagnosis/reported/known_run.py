@@ -15,7 +15,7 @@ from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 CLEAN = 0.05  # of an exponent
 # Times rounding: that of one step then changes the exponent of a halved error by half as much.

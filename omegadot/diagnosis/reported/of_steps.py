@@ -15,7 +15,7 @@ from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 SLACK = 4.0
 MOST_TRIES, GRID = 12, 2.0 ** np.arange(-6.0, 9.0)  # steps in a time constant

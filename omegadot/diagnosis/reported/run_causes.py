@@ -18,7 +18,7 @@ from omegadot.reference_impl.energy import rotational_kinetic_energy
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.rotations import quaternion_product
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def begin_apart(reported: ReportedRun, result: CaseResult) -> bool:

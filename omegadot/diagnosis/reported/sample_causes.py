@@ -23,7 +23,7 @@ from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import rotate, turn_in_body
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 EPS_SINGLE = float(np.finfo(np.float32).eps)
 LEAST_CHANGES = 3

@@ -14,7 +14,7 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.solutions.growth import changes
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 MOST_TRIES = 8
 CONVERGES = 0.3  # what a try must leave of the distance before it

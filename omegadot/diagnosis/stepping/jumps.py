@@ -17,7 +17,7 @@ from omegadot.diagnosis.wording.digits import factor, limits
 from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION, norm
 from omegadot.reference_impl.rotations import attitude_angle, quaternion_product
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 SLIGHT = BEYOND_ROUNDING * AMPLIFIED * ROUNDINGS_PER_EVALUATION  # times the rounding of a number
 CLOSE = 1e-2  # relative: a change that is in proportion

@@ -11,7 +11,7 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 CLEAR = 10.0  # times what is allowed: a part of omega-dot is distinguished from another
 LEAST = 3  # states at which it is

@@ -10,7 +10,7 @@ import numpy as np
 from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 MISSED, MOST_MISSED = 0.2, 2  # of the runs that fail: in some there may be other rounding
 LEAST = 2  # runs that fail

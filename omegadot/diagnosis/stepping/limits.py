@@ -19,7 +19,7 @@ from omegadot.diagnosis.stepping.step_ends import (
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 SLOW = 0.1  # rad/s, below which engines put a body to sleep
 

@@ -11,7 +11,7 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def restart_cause(truth: Truth, result: CaseResult, run: JudgedRun) -> str:

@@ -16,7 +16,7 @@ from omegadot.reference_impl.rotations import (
     attitude_angle,
 )
 from omegadot.reference_impl.system import Acceleration, Array, State, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 EXACT = Tolerated()
 AMPLIFIED = 8.0  # what the extrapolation from five halved steps makes of a rounding

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 MOST = 17
 NOTHING = 1e-9  # of what it is held against, a number is zero

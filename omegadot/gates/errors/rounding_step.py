@@ -14,7 +14,7 @@ import numpy as np
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.errors.measured_run import ROTATION, Declared, MeasuredRun
 from omegadot.gates.rows import Row
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 GATE = "scheme"
 METRIC = "rounding_step"

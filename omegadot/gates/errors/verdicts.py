@@ -14,7 +14,7 @@ import numpy as np
 
 from omegadot.gates.errors.orders import ORDER_TOLERANCE, ObservedOrder, is_whole
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 ONE_STEP = "one step size cannot show an order"
 UNSETTLED = "the sweep does not resolve the order"

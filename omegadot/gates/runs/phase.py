@@ -15,7 +15,7 @@ from omegadot.gates.truth import Truth
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 GATE = "trajectory"
 # A shift is sought up to this part of the run, so that enough samples stay to be compared.

@@ -20,7 +20,7 @@ from omegadot.gates.rows import Row, within
 from omegadot.gates.states import equation
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.system import Array, State, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 GATE = "trajectory"
 DIGITS, SINGLE_DIGITS = 53, 24  # of a double's and of a single's mantissa

@@ -27,7 +27,7 @@ from omegadot.gates.steps.accuracy import (
 )
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 LEAST_SLOPE, MOST_SLOPE = 0.5, 2.0
 SATURATED = 0.5  # rad, or of the size of omega

@@ -34,7 +34,7 @@ from omegadot.reference_impl.motion import acceleration_of
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, State, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def _extrapolants(quotients: Array) -> tuple[Array, Array, Array]:

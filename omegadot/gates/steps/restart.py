@@ -18,7 +18,7 @@ from omegadot.gates.rows import Row
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.solutions.growth import growth_along
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 GATE = "scheme"
 METRIC = "restarted"

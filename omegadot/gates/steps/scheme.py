@@ -28,7 +28,7 @@ from omegadot.gates.truth import SchemeKey, Truth, scheme_key
 from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import State, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 GATE = "scheme"
 BLOWN_UP = "not judged: the scheme itself blows up at so large a step"

@@ -10,7 +10,7 @@ from omegadot.gates.rows import Row, within
 from omegadot.gates.steps.limits import NOTHING, Limit, Tolerated, limits
 from omegadot.gates.steps.probe import Probe, ladder_of
 from omegadot.reference_impl.system import State, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 GATE = "scheme"
 METRIC = "rate_at_no_step"

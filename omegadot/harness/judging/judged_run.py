@@ -18,8 +18,8 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.engine import held
 from omegadot.reference_impl.system import State
-from omegadot.scenarios.written import written
 from omegadot.workers.harness_end.process import Answer
+from omegadot.written import written
 
 Run = TypeVar("Run", bound=MeasuredRun)
 

@@ -22,8 +22,8 @@ from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import State, System
-from omegadot.scenarios.written import written
 from omegadot.workers.harness_end.process import Answer
+from omegadot.written import written
 
 SOLVABLE = 1.0  # rad a step
 LOST = 1e-3  # of omega

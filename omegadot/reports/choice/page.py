@@ -18,7 +18,7 @@ from omegadot.reports.record.schema import RecordError
 from omegadot.reports.record.whole_file import PAGE_MARK, write_whole
 from omegadot.reports.summary.provenance import command_of
 from omegadot.reports.text.numbers import knob
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 NAME = "choice.json"
 _FRAME = Frame(width=720, height=340, left=62, right=12, top=12, bottom=44)

@@ -9,7 +9,7 @@ from typing import Any
 from omegadot.reports.record.run_json import impossible_bodies
 from omegadot.reports.summary.headline import step_notes
 from omegadot.reports.text.numbers import grouped, listed, plain, quantity, times
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 Row = Mapping[str, Any]
 MOST_DIGITS = 17  # of a double

@@ -14,7 +14,7 @@ from markupsafe import Markup, escape
 from omegadot.reports.page.glossary import linked
 from omegadot.reports.page.tables import Table, unit_text
 from omegadot.reports.text.numbers import knob, short
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 # One idea a file; later files use what earlier ones define.
 SCRIPTS = (

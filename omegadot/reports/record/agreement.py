@@ -8,7 +8,7 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.record.schema import VERDICTS, RecordError
-from omegadot.scenarios.written import exactly
+from omegadot.written import exactly
 
 # Rows of engine and scenario, without integrator and step, belong to each of its tasks.
 _WHOLE = ("scenario", "engine", "engine_version", "setup")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def short(value: float | None, digits: int = 2) -> str:

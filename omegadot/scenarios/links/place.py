@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element
 
 from omegadot.scenarios.errors import ScenarioError, describe, printable
 from omegadot.scenarios.quantities import LARGEST, SMALLEST
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 # decimal ASCII, as XML Schema and C++ streams have it: no underscores, no infinity, no nan
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")

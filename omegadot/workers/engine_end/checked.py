@@ -20,8 +20,8 @@ from omegadot.adapters.protocol import (
 from omegadot.reference_impl.coordinates import COORDINATES
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Acceleration, Array, Body, State
-from omegadot.scenarios.written import written
 from omegadot.workers.wire import one_line
+from omegadot.written import written
 
 Shape = tuple[int, ...]
 Arrays = TypeVar("Arrays", bound=State | Acceleration | Body)

@@ -20,7 +20,6 @@ from typing import Any, BinaryIO, cast
 
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import OURS, AdapterError, build_adapter
-from omegadot.scenarios.written import written
 from omegadot.workers.engine_end.checked import AnswerError, description_of
 from omegadot.workers.engine_end.command import (
     CommandAdapter,
@@ -31,6 +30,7 @@ from omegadot.workers.engine_end.command import (
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
+from omegadot.written import written
 
 _SECONDS_TO_LOOK = 0.5
 # Given back when memory runs out, so that there is some to report it.

@@ -16,12 +16,12 @@ from typing import Any
 
 import psutil
 
-from omegadot.scenarios.written import written
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE
 from omegadot.workers.harness_end.family import GUARD, marked
 from omegadot.workers.harness_end.pipes import Lost, Pipes
 from omegadot.workers.machine import memory_of_machine
 from omegadot.workers.wire import one_line
+from omegadot.written import written
 
 SECONDS_TO_LEAVE = 2.0
 # Importing an engine takes its time, however short the limit of a request.

@@ -13,7 +13,6 @@ from omegadot.commands.faults.fault import Spoiled, fault, logged
 from omegadot.diagnosis.stepping import step_ends
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import normalize, turn_in_body
-from omegadot.reference_impl.stepping import kept_steps
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 JITTER = 1e-9  # of omega
@@ -28,40 +27,6 @@ def AttitudeAtHalfStep(run: Run, initial: State, h: float, steps: int, every: in
     back = turn_in_body(found.state.orientation[1:], found.state.angular_velocity[1:], -0.5 * h)
     reported = np.concatenate([found.state.orientation[:1], back])
     return Trajectory(found.time, replace(found.state, orientation=reported))
-
-
-def _of_step_before(run: Run, initial: State, h: float, steps: int, every: int) -> State:
-    """The states one step before each sample; of the start itself."""
-    kept = np.array(kept_steps(steps, every))
-    return rows(run(initial, h, steps, 1).state, np.maximum(kept - 1, 0))
-
-
-@other_run("logging", "scheme", named=("halfway between", "half a step before"))
-def AttitudeHalfway(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
-    """The attitude reported lies halfway between that of the step before and its own."""
-    found = run(initial, h, steps, every)
-    before = _of_step_before(run, initial, h, steps, every).orientation
-    own = found.state.orientation
-    signed = before * np.sign(np.sum(before * own, axis=-1, keepdims=True))
-    return Trajectory(found.time, replace(found.state, orientation=normalize(own + signed)))
-
-
-@other_run("logging", "scheme", "asymmetric", named="omega alone is reported one")
-def OmegaOneStepLate(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
-    """Omega is that of the step before; all else is of the present one."""
-    found = run(initial, h, steps, every)
-    late = _of_step_before(run, initial, h, steps, every).angular_velocity
-    return Trajectory(found.time, replace(found.state, angular_velocity=late))
-
-
-@other_run("logging", "scheme", "gravity free order-4", named="difference quotient of the position")
-def VelocityOfTwoPlaces(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
-    """The velocity is the change of place over the last step, but for the start."""
-    found = run(initial, h, steps, every)
-    before = _of_step_before(run, initial, h, steps, every)
-    v = found.state.linear_velocity.copy()
-    v[1:] = (found.state.position[1:] - before.position[1:]) / h
-    return Trajectory(found.time, replace(found.state, linear_velocity=v))
 
 
 @fault("logging", "scheme", "asymmetric", named="omega is reported as of half a step before")
@@ -79,7 +44,7 @@ class OmegaAtHalfStep(Spoiled):
         return Trajectory(found.time, replace(found.state, angular_velocity=w))
 
 
-@logged("logging", "trajectory", named="every time is too large, by 1e-9 of it")
+@logged("logging", "trajectory", named="every time is too large, by 1e-09 of it")
 def ClockDrifts(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """The clock runs slow by a part in 1e9."""
     return Trajectory(trajectory.time * (1.0 + DRIFT), trajectory.state)

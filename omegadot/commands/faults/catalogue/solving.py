@@ -10,13 +10,12 @@ from omegadot.commands.faults.catalogue.equation import (
     inverse_dynamics,
 )
 from omegadot.commands.faults.catalogue.load import extra_torque
-from omegadot.commands.faults.catalogue.precision import in_single
 from omegadot.commands.faults.fault import Spoiled
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import applied_torque, damping_torque, torque
 from omegadot.reference_impl.rotations import rotate
-from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 
@@ -66,14 +65,6 @@ def SolvedByDiagonal(system: System, state: State) -> Array:
 def TorqueOverDiagonal(system: System, state: State) -> Array:
     """Applied torques are divided by the diagonal of the inertia alone."""
     return _by_diagonal(system, applied_torque(system, state))
-
-
-@extra_torque("asymmetric", named="the inverse of the inertia is kept in single precision")
-def InverseInertiaInSinglePrecision(system: System, state: State) -> Array:
-    """The inverse of the inertia is kept in single precision, and the inertia in double."""
-    inertia = moving_inertia(system)
-    moment = torque(system, state) - gyroscopic_term(system, state)
-    return np.asarray(apply(inertia, apply(in_single(inverse(inertia)), moment)) - moment)
 
 
 def _by_diagonal(system: System, torque: Array) -> Array:

@@ -24,7 +24,7 @@ from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import torque
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def _least(

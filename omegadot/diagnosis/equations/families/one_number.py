@@ -22,7 +22,7 @@ from omegadot.diagnosis.equations.families.inertias import scale_of_inertia
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 def _mass_scaled(form: Form, k: float) -> Form:

@@ -10,7 +10,7 @@ import numpy as np
 from omegadot.diagnosis.equations.formula.facts import MOMENTUM, SIZES, VECTORS, Facts, Unit
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 
 @dataclass(frozen=True)

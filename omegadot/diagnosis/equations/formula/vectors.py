@@ -12,7 +12,7 @@ from omegadot.diagnosis.equations.formula.facts import MATRICES, VECTORS, Facts,
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 INVERSE = {("I", "I^-1"), ("I^-1", "I"), ("R", "R^T"), ("R^T", "R")}
 SAME = 1e-12  # relative: what is the same on all of a run

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from omegadot.diagnosis.wording.digits import number
 from omegadot.reference_impl.system import Array
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 WHOLE = 1e-6  # relative: a fitted number is the plain one that is meant
 

@@ -11,7 +11,7 @@ from omegadot.diagnosis.equations.operators.operator import Operator, Seen
 from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.system import Array, State
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 NOT_ZERO = 1e-3  # an exponent that is one
 NEAR = 1e-5  # a fitted exponent or factor is the plain number that is meant

@@ -19,7 +19,7 @@ from omegadot.diagnosis.wording.digits import number, vector
 from omegadot.reference_impl.loads import gravity_torque
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, State, System
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 CLOSE = 1e-5  # relative: a factor is the whole number that is meant
 POWERS = (1.0, 0.0, 0.5, 1.5, 2.0, 2.5, 3.0)

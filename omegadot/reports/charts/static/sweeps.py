@@ -20,7 +20,7 @@ from omegadot.reports.charts.static.style import (
 )
 from omegadot.reports.charts.sweeps import guides, rounding
 from omegadot.reports.text.numbers import plain
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

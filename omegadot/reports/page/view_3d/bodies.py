@@ -16,7 +16,7 @@ from omegadot.reports.charts.packing import rounded
 from omegadot.reports.page.view_3d.solids import Solid, solid_of
 from omegadot.scenarios.parts import Part
 from omegadot.scenarios.solids import mass
-from omegadot.scenarios.written import written
+from omegadot.written import written
 
 _MOST_PARTS = 200
 # A solid of the body's inertia is drawn at least this thick, over its length: a needle is thinner.
