@@ -44,7 +44,7 @@ class OmegaAtHalfStep(Spoiled):
         return Trajectory(found.time, replace(found.state, angular_velocity=w))
 
 
-@logged("logging", "trajectory", named="every time is too large, by 1e-09 of it")
+@logged("logging", "trajectory", named="every time is too large, by 1e-9 of it")
 def ClockDrifts(self: Spoiled, trajectory: Trajectory) -> Trajectory:
     """The clock runs slow by a part in 1e9."""
     return Trajectory(trajectory.time * (1.0 + DRIFT), trajectory.state)
