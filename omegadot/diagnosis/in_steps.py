@@ -103,7 +103,9 @@ class StepCauses:
             first = f"{IN_THE_FIRST}, {text}"
             return either([velocity_share_cause(steps), first])
         part = next((part for k, part in PARTS.items() if text.endswith(f" is scaled by {k}")), "")
-        of_load = part and text.startswith(LOADS)  # the limit of short steps does not tell these
+        of_load = part and text.startswith(
+            LOADS
+        )  # the limit of short steps does not distinguish these
         return [
             f"in the steps, {text}{f', or acts in {part} of each step alone' if of_load else ''}"
         ]

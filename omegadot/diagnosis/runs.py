@@ -50,7 +50,7 @@ class RunCauses:
     """Causes of which each alone makes the runs of one integrator on a scenario.
 
     decisive: whether the motion has enough in it that what else it could be is ruled out.
-    tried: whether they are off by enough for steps by other hypotheses to be told from them.
+    tried: whether they are off by enough to distinguish them from steps by other hypotheses.
     """
 
     texts: tuple[str, ...] = ()

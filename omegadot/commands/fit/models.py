@@ -1,4 +1,4 @@
-"""The nested fits of a trace: every model of shape, bias and damping that is asked for."""
+"""The nested fits of a trace: every model of shape, bias and damping that is requested."""
 
 from __future__ import annotations
 

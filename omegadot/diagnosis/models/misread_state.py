@@ -77,7 +77,7 @@ def _way(one: _Round, statement: str) -> Misreading:
 def _where(text: str, every: Sequence[_Round], fits: Sequence[bool]) -> str:
     """Where it undoes what is read back: everywhere, or where the others read back as they should.
 
-    "" where it is contradicted, or nothing tells these scenarios apart.
+    "" where it is contradicted, or nothing separates these scenarios.
     """
     against = [one for one, fit in zip(every, fits, strict=True) if not fit]
     if any(one.fails(one.back) for one in against):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
 import numpy as np
@@ -39,23 +40,49 @@ def law_of(pairs: Sequence[tuple[Array, Array]], what: str, unit: str) -> str:
     if np.count_nonzero(changed.any(axis=-1)) < 2:
         return ""
     if np.ptp(np.abs(requested[changed])) > SAME * np.max(np.abs(requested[changed])):
-        text = _limit(requested, acting, changed, size, what, unit)
+        text = _limit(_Pairs(requested, acting, changed, size, what, unit))
         if text:
             return text
-    return _other_law(requested, acting, changed, size, what, unit)
+    return _other_law(_Pairs(requested, acting, changed, size, what, unit))
 
 
-def _limit(
-    requested: Array,
-    acting: Array,
-    changed: NDArray[np.bool_],
-    size: Array,
-    what: str,
-    unit: str,
-) -> str:
+@dataclass(frozen=True)
+class _Pairs:
+    """Numbers (n, k) that were requested and that act; changed: which are others.
+
+    size: (n, 1), of each.
+    """
+
+    requested: Array
+    acting: Array
+    changed: NDArray[np.bool_]
+    size: Array
+    what: str
+    unit: str
+
+    @property
+    def few(self) -> bool:
+        """Whether each is one number."""
+        return bool(self.requested.shape[-1] == 1)
+
+    @property
+    def each(self) -> str:
+        """What one of the numbers is."""
+        return self.what if self.few else f"each component of {self.what}"
+
+    @property
+    def lengths(self) -> tuple[Array, Array]:
+        """(n, 1) each: of what acts, and of what was requested."""
+        acting, due = (
+            np.linalg.norm(v, axis=-1, keepdims=True) for v in (self.acting, self.requested)
+        )
+        return acting, due
+
+
+def _limit(pairs: _Pairs) -> str:
     """Of each number or of the size: several that were requested come to one."""
-    few = requested.shape[-1] == 1
-    each = what if few else f"each component of {what}"
+    requested, acting, changed, size = pairs.requested, pairs.acting, pairs.changed, pairs.size
+    what, unit, few, each = pairs.what, pairs.unit, pairs.few, pairs.each
     held = acting[changed]
     high, low = float(np.max(held)), float(np.min(held))
     if _close(np.minimum(requested, high), acting, size):
@@ -64,7 +91,7 @@ def _limit(
         return f"{each} is held above {number(low)} {unit}"
     if not few and _close(np.clip(requested, -high, high), acting, size):
         return f"{each} is limited to {number(high)} {unit} either way"
-    lengths, due = (np.linalg.norm(v, axis=-1, keepdims=True) for v in (acting, requested))
+    lengths, due = pairs.lengths
     longest = float(np.max(lengths[changed.any(axis=-1)]))
     with np.errstate(divide="ignore", invalid="ignore"):
         scaled = np.where(due > 0.0, requested * np.minimum(1.0, longest / due), 0.0)
@@ -73,19 +100,12 @@ def _limit(
     return ""
 
 
-def _other_law(
-    requested: Array,
-    acting: Array,
-    changed: NDArray[np.bool_],
-    size: Array,
-    what: str,
-    unit: str,
-) -> str:
+def _other_law(pairs: _Pairs) -> str:
     """Rounding, a least size, an addition, a factor, other axes or one number."""
-    few = requested.shape[-1] == 1
-    each = what if few else f"each component of {what}"
+    requested, acting, changed, size = pairs.requested, pairs.acting, pairs.changed, pairs.size
+    what, unit, few, each = pairs.what, pairs.unit, pairs.few, pairs.each
     held = acting[changed]
-    lengths, due = (np.linalg.norm(v, axis=-1, keepdims=True) for v in (acting, requested))
+    lengths, due = pairs.lengths
     for digits in range(MOST_DECIMALS):
         rounded = np.round(requested, digits)
         if _close(rounded, acting, size) and np.max(np.abs(held)) >= 0.5 * 10.0**-digits:

@@ -128,7 +128,7 @@ def order_of(sweep: Sequence[Errors]) -> ObservedOrder | None:
 
 
 def _distinct(sweep: Sequence[Errors]) -> list[Errors]:
-    """Without the runs that rounding alone tells from the next finer one."""
+    """Without the runs that differ by rounding alone from the next finer one."""
     kept = list[Errors]()
     for one in sorted(sweep, key=lambda one: one.timestep):
         if not kept or not _is_one_trajectory(kept[-1], one):

@@ -193,7 +193,7 @@ def roundings_of(
     The rounding of a velocity that is stepped is ``eps / h`` in its rate; that of places, over h,
     is ``eps / h^2``. By steps 16 times shorter the one is off 16 times as far, the other 256 times;
     and a wrong equation as far as before. Single precision has no such steps: there a velocity that
-    is the change of place over h tells it, of omega as well where that is the turn over h.
+    is the change of place over h shows it, of omega as well where that is the turn over h.
     """
     if len(ladder_of(eps).ranges) < 2:
         given = State(*(f.astype(np.float32).astype(float) for f in vars(probe.states).values()))

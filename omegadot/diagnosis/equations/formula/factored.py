@@ -61,6 +61,6 @@ def with_angular(evidence: Evidence, angular: Array) -> Acceleration:
 
 
 def legend_of(texts: Sequence[str]) -> list[str]:
-    """What the symbols in formulas are, of those that need to be told."""
+    """What the symbols in formulas are, of those that need a definition."""
     used, known = symbols_of(texts), {**VECTORS, **MATRICES, **SIZES}
     return [f"{k} {known[k][1]}" for k in known if k in used and known[k][1]]
