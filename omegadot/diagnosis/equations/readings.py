@@ -10,6 +10,7 @@ import numpy as np
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.operators.operands import pushed
 from omegadot.diagnosis.equations.operators.operands import turned as turned_by
+from omegadot.diagnosis.equations.turned_inertia import turned_inertias
 from omegadot.diagnosis.models.misreadings import OF_ANY_STATE, Misreading
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
@@ -140,4 +141,8 @@ def _misread(one: Misreading) -> Iterator[Reading]:
     yield Reading(f"on the way in, {one.statement}, and omega-dot comes out in world axes", turned)
 
 
-READINGS = (*_reported(), *(reading for one in OF_ANY_STATE for reading in _misread(one)))
+READINGS = (
+    *_reported(),
+    *(Reading(text, made) for text, made in turned_inertias()),
+    *(reading for one in OF_ANY_STATE for reading in _misread(one)),
+)

@@ -67,7 +67,8 @@ def _of_torque(name: str, of: Callable[[System, State], Array], constant: bool =
     return Operand(name, "N m", values, lambda e, v: pushed(e, v - values(e)), came, constant)
 
 
-def _loads(system: System, states: State) -> Array:
+def loads(system: System, states: State) -> Array:
+    """The torque of all loads, (n, 3) N m in body axes."""
     parts = (applied_torque, damping_torque, gravity_torque)
     return sum((part(system, states) for part in parts), 0.0 * states.angular_velocity)
 
@@ -111,13 +112,13 @@ OPERANDS = (
     _of_torque("the torque in world axes, taken to body axes,", _world),
     _of_torque("the damping torque", damping_torque),
     _of_torque("the torque of gravity", gravity_torque),
-    _of_torque("the torque of all loads", _loads),
-    _of_torque("the whole torque", lambda s, x: _loads(s, x) + gyroscopic(s, x)),
+    _of_torque("the torque of all loads", loads),
+    _of_torque("the whole torque", lambda s, x: loads(s, x) + gyroscopic(s, x)),
     _omega("the gyroscopic term", (gyroscopic,)),
     _omega("the damping", (damping_torque,)),
     _attitude("the torque of gravity", gravity_torque),
     _attitude("the torque in world axes", _world),
-    _attitude("all loads", _loads),
+    _attitude("all loads", loads),
     Operand("the attitude on its way in", "", lambda e: e.states.orientation, _whole_attitude),
     Operand("omega on its way in", "rad/s", lambda e: e.states.angular_velocity, _whole_omega),
     Operand(
