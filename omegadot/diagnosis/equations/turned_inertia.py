@@ -1,8 +1,8 @@
 """The inertia turned wrongly between body and world, by an engine that solves in world axes.
 
 There the inertia about what stays is ``R I R^T``. An engine with ``J`` in its place solves
-``omega-dot = R^T J^-1 (R tau - R omega x J R omega)``. Vectors are turned, not the tensor: of a thin
-body a tensor that is turned and inverted is known less well than what it is applied to.
+``omega-dot = R^T J^-1 (R tau - R omega x J R omega)``. Vectors are turned, not the tensor: of a
+thin body a tensor that is turned and inverted is known less well than what it is applied to.
 """
 
 from __future__ import annotations
