@@ -7,11 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from omegadot.diagnosis.equations.evidence import INVERSE
+from omegadot.diagnosis.equations.evidence import ALONG, FORWARD, INVERSE, INVERTED
 from omegadot.diagnosis.equations.siblings import AFTER_ANOTHER
 from omegadot.diagnosis.equations.wrong_equation import (
-    ALONG,
-    FORWARD,
     RELOADED,
     equation_causes,
     inverse_causes,
@@ -139,7 +137,9 @@ class CaseCauses:
             eps = eps_of(answers.precision)
             known = (self._case.system, states.random, states.acceleration)
             formula = across.of_inverse_dynamics(self._case.name)
-            return inverse_causes(*known, torque, eps) or ([formula] if formula else [])
+            found = inverse_causes(*known, torque, eps) or ([formula] if formula else [])
+            term = "" if found else across.plain(self._case.name, INVERTED)
+            return [f"in inverse dynamics, {term}"] if term else found
         return lever_causes(across, *model)
 
     def _of_steps_as_well(self) -> str:

@@ -217,6 +217,7 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
         return RunCauses((seen,))
     found = [*misread(reported), *late(reported)]
     found += filter(None, (cause(reported) for cause in CAUSES_REPORTED))
+    found = [text for text in found if ADDED not in text] or found
     if all(ADDED in text for text in found):  # which on other motions is no constant
         found = [*field_causes(reported), *found]
     found += stepping_causes(reported, equations) if clear else ()

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.candidate import Candidate
-from omegadot.diagnosis.equations.evidence import FAR_FROM_ROUNDING, SLACK, Evidence
+from omegadot.diagnosis.equations.evidence import ALONG, FAR_FROM_ROUNDING, FORWARD, SLACK, Evidence
 from omegadot.diagnosis.equations.held import Scene, Scenes
 from omegadot.diagnosis.equations.searched import PLAIN, Searched
 from omegadot.diagnosis.equations.worded import worded
-from omegadot.diagnosis.wording.conditions import only_where
-from omegadot.reference_impl.system import State, System
+from omegadot.diagnosis.wording.conditions import Part, only_where
+
+OF_STATES = (FORWARD, ALONG)  # answers at states, of one equation
 
 
 class AtSomeStates:
@@ -58,6 +59,9 @@ class AtSomeStates:
     def _where(self, one: Candidate, source: str) -> str:
         if (one.key, source) not in self._conditions:
             found = where_of(one, self._scenes.evidence(source))
+            if not found and source in OF_STATES:  # few of one kind may show it
+                every = [e for kind in OF_STATES for e in self._scenes.evidence(kind)]
+                found = where_of(one, every)
             self._conditions[one.key, source] = found
         return self._conditions[one.key, source]
 
@@ -73,26 +77,28 @@ def _add_wrong(searched: Searched, scene: Scene, source: str) -> None:
 
 def where_of(one: Candidate, every: Sequence[Evidence]) -> str:
     """At which of the states that would show it a cause acts; "" where nothing sorts them."""
-    parts = list[tuple[System, State, NDArray[np.bool_]]]()
+    parts, places = list[Part](), list[NDArray[np.intp]]()
     for evidence in every:
         made = one.predicted(evidence)
         if made is None:
             continue
         shows = np.flatnonzero(evidence.shares_between(made, evidence.true) > SLACK)
         parts.append((evidence.system, evidence.states[shows], evidence.sound[shows]))
-    return only_where(parts)
+        places.append(shows)
+    return only_where(parts, places)
 
 
 def where_wrong(evidence: Evidence, every: Sequence[Evidence]) -> str:
     """At which states the engine is wrong, whatever it is; of one scenario where few show it."""
     parts = [(e.system, e.states, e.sound) for e in every]
+    places = [np.arange(len(e.sound)) for e in every]
     # where nothing of the kind acts, every state is right, and shows nothing
     shown = [part for part in parts if not np.all(part[2])]
     mixed = sum(bool(np.any(right)) for _, _, right in shown)
     if np.all(evidence.sound) or not mixed or any(map(_fades, every)):
         return ""
     alone = [(evidence.system, evidence.states, evidence.sound)]
-    where = only_where(parts) or (only_where(shown) if mixed > 1 else "")
+    where = only_where(parts, places) or (only_where(shown) if mixed > 1 else "")
     return where or (only_where(alone) if len(shown) < 2 else "")
 
 

@@ -35,7 +35,10 @@ DIGITS = 3  # of fitted numbers that are printed
 FAR_FROM_ROUNDING = SLACK * 10.0**DIGITS  # of which what a fit leaves is less than the last digit
 SCREENED = 10  # states at which every hypothesis is tried; only what fits there is tried at all
 LANES = 512
-INVERSE = "inverse"  # evidence of inverse dynamics
+# Where evidence comes from: forward dynamics at drawn states and along the trajectory, inverse
+# dynamics, and these as the forward dynamics with the same torques wrong.
+FORWARD, ALONG = "forward", "along the trajectory"
+INVERSE, INVERTED = "inverse", "inverse, as forward"
 
 
 @dataclass(frozen=True)
@@ -166,7 +169,7 @@ def of_forward_dynamics(
     linear = [linear_size(system, states, one, eps) for one in (true, _finite(found, true))]
     bound = ROUNDINGS_PER_EVALUATION * eps
     bounds = (bound * np.maximum(*sizes) / smallest, bound * np.maximum(*linear))
-    return Evidence("forward", system, states, found, *bounds, eps)
+    return Evidence(FORWARD, system, states, found, *bounds, eps)
 
 
 def of_inverse_dynamics(
@@ -186,6 +189,25 @@ def of_inverse_dynamics(
     made = Evidence(INVERSE, system, states, Acceleration(angular, linear), *bounds, eps)
     vars(made)["true"] = requested
     return made
+
+
+def inverted(
+    system: System, states: State, requested: Acceleration, torque: Array, eps: float = EPS
+) -> Evidence:
+    """Inverse dynamics as forward dynamics in which the same term of the torque is wrong.
+
+    ``I omega_dot = tau + d`` there is ``tau = I omega_dot - d`` here.
+    """
+    known = of_inverse_dynamics(system, states, requested, torque, eps)
+    true = forward_dynamics(system, states)
+    angular = true.angular - (known.found.angular - requested.angular)
+    linear = true.linear
+    if system.load.pivot is not None:
+        linear = center_of_mass_acceleration(system, states, angular)
+    bound = ROUNDINGS_PER_EVALUATION * eps * torque_size(system, states, true)
+    bound = known.angular_bound + bound / body_scale(system).smallest
+    found = Acceleration(angular, linear)
+    return Evidence(INVERTED, system, states, found, bound, known.linear_bound, eps)
 
 
 def _finite(found: Acceleration, true: Acceleration) -> Acceleration:

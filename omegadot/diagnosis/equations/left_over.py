@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.diagnosis.equations.equation_form import accelerations
-from omegadot.diagnosis.equations.evidence import INVERSE, Evidence
+from omegadot.diagnosis.equations.evidence import INVERSE, INVERTED, Evidence
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.kept_parts import KEPT, Kept
 from omegadot.harness.loaded_before import LoadedBefore
@@ -67,7 +67,7 @@ class LeftOver:
         """One more scenario; what was found before may not hold any more."""
         for source, evidence in scene.evidence.items():
             before = scene.loaded_before(source)
-            if source != INVERSE and before is not None and evidence.finite:
+            if source not in (INVERSE, INVERTED) and before is not None and evidence.finite:
                 where = (scene.name, source)
                 self._seen[where] = _Seen(where, evidence, before)
         self._found = None

@@ -45,9 +45,10 @@ def _agree(one: Candidate, other: Candidate, evidence: Evidence) -> bool:
         a, b = (x.predicted(evidence) for x in (one, other))
     if a is None or b is None:
         return False
-    return _close(a.angular, b.angular) and _close(a.linear, b.linear)
+    true = evidence.true
+    return _close(a.angular, b.angular, true.angular) and _close(a.linear, b.linear, true.linear)
 
 
-def _close(one: Array, other: Array) -> bool:
-    size = float(np.max(np.abs(one)))
+def _close(one: Array, other: Array, due: Array) -> bool:
+    size = float(np.max(np.abs(np.stack((one, due)))))  # what is nothing is so to rounding
     return bool(np.all(np.abs(one - other) <= SAME * size))

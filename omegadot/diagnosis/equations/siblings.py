@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
-from omegadot.diagnosis.equations.evidence import of_forward_dynamics
+from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.wording.digits import listed
 from omegadot.diagnosis.wording.features import features_of
@@ -18,7 +18,6 @@ from omegadot.harness.requests import siblings
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Acceleration, Array, System
 
-FORWARD = "forward"
 AFTER_ANOTHER = "something of a system that was loaded before is left over"
 SCALE = "scale"  # the sibling of which every number is changed, slightly
 OTHER = 1e-6  # relative: values that are two

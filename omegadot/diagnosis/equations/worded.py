@@ -37,7 +37,7 @@ def worded(whole: Sequence[Held], source: str, scenes: Scenes) -> str:
 
     scenes: those of the run, or some of them.
     """
-    kept, pivoted = list[Held](), scenes.pivoted
+    kept, pivoted = list[Held](), scenes.pivoted and not _only_omega_dot(whole, source)
     for one in whole:
         if not any(same_cause(one.candidate, other.candidate, pivoted) for other in kept):
             kept.append(one)
@@ -47,6 +47,13 @@ def worded(whole: Sequence[Held], source: str, scenes: Scenes) -> str:
     if not texts or len(texts) > MOST_NAMED:
         return ""
     return texts[0] if len(texts) == 1 else "either " + ", or ".join(texts)
+
+
+def _only_omega_dot(whole: Sequence[Held], source: str) -> bool:
+    """Whether pivots do not decide what moves: of pivoted bodies omega-dot alone is wrong."""
+    shown = {scene.name: scene.evidence[source] for one in whole for scene in one.shown}
+    held = [e for e in shown.values() if e.system.load.pivot is not None]
+    return bool(held) and all(e.linear_is_apart for e in held)
 
 
 def _text_of(held: Held, source: str) -> str:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import (
+    ALONG,
     BEYOND_ROUNDING,
+    FORWARD,
     INVERSE,
+    INVERTED,
     SLACK,
     Evidence,
+    inverted,
     of_forward_dynamics,
     of_inverse_dynamics,
 )
@@ -36,7 +40,6 @@ from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 from omegadot.workers.wire import body_from
 
-FORWARD, ALONG = "forward", "along the trajectory"
 RELOADED = "after another system"
 MOST_NAMED = 3  # causes between which nothing decides
 
@@ -58,6 +61,7 @@ def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult
     if torque.ok and np.isfinite(torque.result["torque"]).all():
         known = (case.system, evaluation_states.random, requested, torque.result["torque"])
         evidence[INVERSE] = of_inverse_dynamics(*known, eps_of(result.precision))
+        evidence[INVERTED] = inverted(*known, eps_of(result.precision))
     held = body_from(result.model.result["bodies"][0]) if result.model.ok else None
     scaled = {
         what: of_forward_dynamics(
@@ -185,6 +189,9 @@ def inverse_causes(
             found.append(_load_worded(what, k))
     bodies = _other_bodies(system, states, requested)
     found += [text for text, made in bodies.items() if not fits(true) and fits(made())]
+    for what, term in _other_gyroscopic(inertia, w, requested.angular) if not found else ():
+        if fits(true - terms["the gyroscopic term"] + term):
+            found.append(f"inverse dynamics have {what} for the gyroscopic term")
     for what, term in terms.items() if not found else ():
         for axis in range(3):
             alone = np.where(np.arange(3) == axis, term, 0.0)
@@ -218,6 +225,12 @@ def _load_worded(what: str, k: float) -> str:
     if abs(k + 2.0) < 1e-9:
         return f"inverse dynamics count {what} twice among what is given"
     return f"inverse dynamics have {factor(k)} times {what} in them"
+
+
+def _other_gyroscopic(inertia: Array, w: Array, rate: Array) -> Iterator[tuple[str, Array]]:
+    """With omega-dot in the place of an omega."""
+    yield "omega-dot x I omega", np.asarray(cross(rate, apply(inertia, w)))
+    yield "omega x I omega-dot", np.asarray(cross(w, apply(inertia, rate)))
 
 
 def _other_bodies(

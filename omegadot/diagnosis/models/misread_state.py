@@ -71,7 +71,9 @@ def _ways(system: System) -> tuple[Misreading, ...]:
 
 
 def _way(one: _Round, statement: str) -> Misreading:
-    return next(way for way in _ways(one.case.system) if way.statement == statement)
+    """The same way there; of a pivot it changes nothing on a free body."""
+    known = (way for way in _ways(one.case.system) if way.statement == statement)
+    return next(known, Misreading(statement, lambda state: state))
 
 
 def _where(text: str, every: Sequence[_Round], fits: Sequence[bool]) -> str:

@@ -100,6 +100,7 @@ def misreadings(system: System) -> tuple[Misreading, ...]:
         Misreading(f"the linear velocity {at}", velocity),
         Misreading(both, meant),
     )
+    by_pivot = _from_the_origin(system) if system.load.pivot is not None else ()
     by_inertia = (
         Misreading(
             "omega is the angular momentum I omega: it matches after the inverse of the inertia",
@@ -116,7 +117,32 @@ def misreadings(system: System) -> tuple[Misreading, ...]:
             ),
         ),
     )
-    return (*OF_ANY_STATE, IN_BODY_AXES, *of_origin, NOT_UNIT, *by_inertia)
+    return (*OF_ANY_STATE, IN_BODY_AXES, *of_origin, *by_pivot, NOT_UNIT, *by_inertia)
+
+
+def _from_the_origin(system: System) -> tuple[Misreading, ...]:
+    """Of a pivoted body: its place from the body's origin, or from the world's."""
+    pivot = np.asarray(system.load.pivot, dtype=float)
+    due = "from the body's origin, not from the pivot"
+
+    def position(state: State) -> State:
+        return replace(state, position=at_point(state, -pivot).position)
+
+    def velocity(state: State) -> State:
+        return replace(state, linear_velocity=at_point(state, -pivot).linear_velocity)
+
+    return (
+        Misreading(f"the position is R c: the centre of mass's {due}", position),
+        Misreading(f"the linear velocity is omega x R c: by the lever {due}", velocity),
+        Misreading(
+            f"position and linear velocity are by the lever {due}",
+            lambda state: at_point(state, -pivot),
+        ),
+        Misreading(
+            "the position is off by the pivot, taken as a place in the world",
+            changed("position", lambda x: x - pivot),
+        ),
+    )
 
 
 def settings(system: System) -> tuple[Misreading, ...]:

@@ -54,17 +54,20 @@ def not_unit(reported: ReportedRun) -> str:
 
 
 def half_step(reported: ReportedRun) -> str:
-    """Attitude or omega, but for the start, are those of half a step before or after."""
+    """Attitude, omega or velocity, but for the start, are those of half a step before or after."""
     h = reported.sweep.timestep
     q, w = reported.own.orientation, reported.own.angular_velocity
-    w_dot = forward_dynamics(reported.case.system, reported.own).angular
+    rates, v = forward_dynamics(reported.case.system, reported.own), reported.own.linear_velocity
     for sign, when in ((-0.5, "before"), (0.5, "after")):
         turned = np.concatenate((q[:1], turn_in_body(q, w, sign * h)[1:]))
         if reported.agrees(reported.state, replace(reported.own, orientation=turned)):
             return f"the attitude reported is that of half a step {when}"
-        moved = np.concatenate((w[:1], (w + sign * h * w_dot)[1:]))
+        moved = np.concatenate((w[:1], (w + sign * h * rates.angular)[1:]))
         if reported.agrees(reported.state, replace(reported.own, angular_velocity=moved)):
             return f"omega is reported as of half a step {when}"
+        moved = np.concatenate((v[:1], (v + sign * h * rates.linear)[1:]))
+        if reported.agrees(reported.state, replace(reported.own, linear_velocity=moved)):
+            return f"the linear velocity is reported as of half a step {when}"
     return ""
 
 

@@ -108,11 +108,7 @@ def omega_still_cause(steps: VanishingSteps) -> str:
     limit = steps.rates["omega"]
     found, bound = better(limit)
     still = bool(np.all(norm(found) <= SLACK * bound)) and not np.all(limit.shares() <= 1.0)
-    text = (
-        "omega does not change at the start of a run, as where it is reported late, or where what "
-        "changes it begins to act later"
-    )
-    return text if still else ""
+    return "the first step of a run does not change omega, however short it is" if still else ""
 
 
 def velocity_share_cause(steps: VanishingSteps) -> str:

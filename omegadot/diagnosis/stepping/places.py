@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
-from omegadot.diagnosis.wording.conditions import features_of_states
 from omegadot.diagnosis.wording.digits import limits
+from omegadot.diagnosis.wording.state_features import features_of_states
 from omegadot.reference_impl.system import Array, State
 
 LEAST_WRONG, LEAST_SOUND = 4, 20  # intervals
@@ -71,12 +71,10 @@ def _where(name: str, term: str, sound: float, wrong: float, unit: str) -> str:
         axis = name.removeprefix(TILT)
         first, last = (float(f"{angle:.3g}") for angle in angles)
         near = limits(first, last, "degrees")
-        return f"the body's {axis} is within a limit of the vertical that lies at {near}".replace(
-            " and ", " to "
-        )
+        return f"the body's {axis} is within a limit of the vertical, between {near}"
     first, last = sorted((float(f"{sound:.4g}"), float(f"{wrong:.4g}")))
     ends = limits(first, last, unit)
-    return f"{name} is {term} a limit that lies at {ends}".replace(" and ", " to ")
+    return f"{name} is {term} a limit between {ends}"
 
 
 def _sorted(by: SchemeOf, runs: Sequence[KeptRun]) -> _Sorted:

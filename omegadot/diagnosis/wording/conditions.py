@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.wording.digits import limits
-from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.energy import rotational_kinetic_energy
-from omegadot.reference_impl.rotations import normalize, rotation_matrix
+from omegadot.diagnosis.wording.state_features import (
+    features_of_states,
+    further_features,
+    kinds_of_states,
+)
 from omegadot.reference_impl.system import Array, State, System
 
 # So many states on either side at least: the odds that chance sorts them are then below 1 in 20.
@@ -20,58 +22,15 @@ ODDS = 20  # as many times as conditions are tried must there be ways to sort th
 CLEAR = 1e-3  # relative: a narrower gap between two sides is chance, where many numbers are tried
 
 
-def features_of_states(system: System, states: State) -> dict[str, tuple[Array, str]]:
-    """Numbers of every state, (n,), with units."""
-    w, v, x = states.angular_velocity, states.linear_velocity, states.position
-    with np.errstate(all="ignore"):
-        q = normalize(states.orientation)
-        turned = 2.0 * np.arccos(np.clip(np.abs(q[:, 0]), 0.0, 1.0))
-        energy = rotational_kinetic_energy(system, states)
-    turn = rotation_matrix(q)
-    found = {
-        "|omega|": (norm(w), "rad/s"),
-        "the angle from the identity": (turned, "rad"),
-        "the quaternion's scalar part": (q[:, 0], ""),
-        "the kinetic energy of rotation": (energy, "J"),
-        "the speed": (norm(v), "m/s"),
-        "the distance from the world's origin": (norm(x), "m"),
-    }
-    for k, axis in enumerate("xyz"):
-        tilt = turn[:, 2, k]
-        found[f"the cosine of the tilt of the body's {axis} axis"] = (tilt, "")
-        found[f"the size of the cosine of the tilt of the body's {axis} axis"] = (np.abs(tilt), "")
-        found[f"omega_{axis}"] = (w[:, k], "rad/s")
-        found[f"|omega_{axis}|"] = (np.abs(w[:, k]), "rad/s")
-        found[f"the velocity along {axis}"] = (v[:, k], "m/s")
-        found[f"the position along {axis}"] = (x[:, k], "m")
-    return found
+Part = tuple[System, State, NDArray[np.bool_]]
+PLACE = "the number of the state among those that are requested together"
 
 
-def kinds_of_states(states: State) -> dict[str, NDArray[np.bool_]]:
-    """What holds of a state exactly, or does not, (n,)."""
-    w, q, v = states.angular_velocity, states.orientation, states.linear_velocity
-    found = {
-        "omega is zero": ~np.any(w, axis=-1),
-        "the body does not move": ~np.any(v, axis=-1),
-        "the attitude is the identity": ~np.any(q[:, 1:], axis=-1),
-    }
-    for k, axis in enumerate("xyz"):
-        others = [j for j in range(3) if j != k]
-        turns = ~np.any(w[:, others], axis=-1)
-        found[f"omega is along {axis} alone"] = turns & (w[:, k] != 0.0)
-        found[f"omega has no {axis} component"] = w[:, k] == 0.0
-        about = ~np.any(q[:, 1:][:, others], axis=-1)
-        found[f"the body is turned about {axis} alone"] = about & (q[:, 1 + k] != 0.0)
-    turning = np.count_nonzero(w, axis=-1)
-    found["omega is along an axis of the body"] = turning == 1
-    found["a component of omega is zero"] = (turning == 1) | (turning == 2)
-    return found
-
-
-def only_where(parts: Sequence[tuple[System, State, NDArray[np.bool_]]]) -> str:
+def only_where(parts: Sequence[Part], places: Sequence[NDArray[np.intp]] = ()) -> str:
     """The condition, over the states of one scenario or of several; "" where none sorts them.
 
-    parts: system, states (n,) and whether the engine is right at each.
+    parts: system, states (n,) and whether the engine is right at each.  places: the number of each
+    state in its request, from 0, where several were requested together.
     """
     sound = np.concatenate([right for _, _, right in parts])
     if np.count_nonzero(sound) < LEAST or np.count_nonzero(~sound) < LEAST:
@@ -81,7 +40,9 @@ def only_where(parts: Sequence[tuple[System, State, NDArray[np.bool_]]]) -> str:
         holds = np.concatenate([one[text] for one in exact])
         if np.array_equal(holds, ~sound):
             return text
-    every = [features_of_states(system, states) for system, states, _ in parts]
+    every = [features_of_states(*part[:2]) | further_features(*part[:2]) for part in parts]
+    for features, numbers in zip(every, places, strict=False):
+        features[PLACE] = (numbers + 1.0, "")
     ways = comb(len(sound), int(np.count_nonzero(sound)))
     if ways < ODDS * (len(exact[0]) + 2 * len(every[0])):
         return ""
@@ -95,11 +56,7 @@ def only_where(parts: Sequence[tuple[System, State, NDArray[np.bool_]]]) -> str:
             if term == "above" and not np.any(low):
                 continue  # what vanishes with it is no limit
             if below < above and above - below > CLEAR * _spacing(values):
-                return (
-                    f"{text} is {term} a limit that lies at {limits(below, above, unit)}".replace(
-                        " and ", " to "
-                    )
-                )
+                return f"{text} is {term} a limit between {limits(below, above, unit)}"
     return ""
 
 

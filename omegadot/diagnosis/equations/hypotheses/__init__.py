@@ -14,6 +14,7 @@ from omegadot.diagnosis.equations.hypotheses.inertia import inertia_hypotheses, 
 from omegadot.diagnosis.equations.hypotheses.levers import lever_hypotheses
 from omegadot.diagnosis.equations.hypotheses.pivot import pivot_hypotheses
 from omegadot.diagnosis.equations.hypotheses.torque import torque_hypotheses
+from omegadot.diagnosis.equations.hypotheses.unsymmetric import unsymmetric_hypotheses
 from omegadot.reference_impl.system import System
 
 __all__ = ["Hypothesis", "hypotheses", "wrong_form"]
@@ -32,4 +33,4 @@ FIXED: tuple[Hypothesis, ...] = (
 
 def hypotheses(system: System) -> list[Hypothesis]:
     """All of them, for one system; most make no difference to it."""
-    return [*FIXED, *inertia_hypotheses(system)]
+    return [*FIXED, *inertia_hypotheses(system), *unsymmetric_hypotheses(system)]

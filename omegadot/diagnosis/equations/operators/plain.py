@@ -8,7 +8,12 @@ import numpy as np
 
 from omegadot.diagnosis.equations.operators.operator import Operator
 from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orders
-from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
+from omegadot.reference_impl.rotations import (
+    conjugate,
+    quaternion_product,
+    rotate,
+    rotate_inverse,
+)
 from omegadot.reference_impl.system import Array, State
 
 DECIMALS = range(9)
@@ -60,7 +65,19 @@ def of_quaternions() -> Iterator[Operator]:
     identity = np.array([1.0, 0.0, 0.0, 0.0])
     yield _plain(lambda q, x: 0.0 * q + identity, "is left out: it is taken for the identity")
     yield _plain(lambda q, x: conjugate(q), "is transposed")
+    yield _plain(_heading, "is its heading alone: roll and pitch are left out")
+    yield _plain(
+        lambda q, x: quaternion_product(conjugate(_heading(q, x)), q),
+        "is without its heading: roll and pitch alone",
+    )
     yield from of_any()
+
+
+def _heading(q: Array, _: State) -> Array:
+    """The turn about the world's z of yaw, pitch and roll, ``atan2(R_yx, R_xx)``."""
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    half = 0.5 * np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return np.stack([np.cos(half), 0.0 * half, 0.0 * half, np.sin(half)], axis=-1)
 
 
 def of_any() -> Iterator[Operator]:
