@@ -13,7 +13,7 @@ from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
 from omegadot.diagnosis.stepping.jumps import jump_cause, slight_jump_cause
-from omegadot.diagnosis.stepping.kinematics import kinematic_causes, still_cause
+from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.wording.kinds import (
     agreed,
@@ -92,6 +92,10 @@ class IntegratorCauses:
             return found or self._known_of_runs()
         if self._over.again:  # what is left over from a run spoils the short ones that follow
             return [self._over.again]
+        if steps.stays_below[0] > 0.0:
+            limit = least_step(self._over.stays_below.values())
+            if limit or steps.still:
+                return [limit or least_step([steps.stays_below])]
         found = self._in_steps.sentences(steps) or self._of_trajectories()
         if self._case.name in self._over.turned and all(map(is_fact, found)):
             begins = self._over.begins
@@ -101,7 +105,7 @@ class IntegratorCauses:
             found = jumped or found
         last = found or jumped or either(kinematic_causes(steps))
         last = last or either([still_cause(steps)])
-        if last or steps.still:
+        if last:
             return last
         slight = either([slight_jump_cause(steps)])
         return slight or self._in_steps.known(steps) or self._known_of_runs()

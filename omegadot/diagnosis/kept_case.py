@@ -94,6 +94,7 @@ def _steps(
     tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
     stepped = State(**answer.result)
     steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
+    over.stays_below[case.name] = steps.stays_below
     angle = None if steps.sound else first_turn(steps)
     if angle is not None:
         alone = beginning is not None and begins_turned(beginning, angle)

@@ -28,7 +28,8 @@ class OverScenarios:
     causes: each alone explains the runs, and whether these are decisive.  fails: whether a run
     does.  again: what shows where two answers to one request differ.  lost: orders.  seen: what is
     off.  beginnings: of the failed runs.  kept: the first samples of every run.  turned: by what
-    angle in rad first steps turn the body, and whether later ones are seen not to.
+    angle in rad first steps turn the body, and whether later ones are seen not to.  stays_below: s,
+    up to which length steps change nothing, and from which on they do.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -39,6 +40,7 @@ class OverScenarios:
     beginnings: dict[str, Beginning] = field(default_factory=dict)
     kept: list[KeptRun] = field(default_factory=list)
     turned: dict[str, tuple[float, bool]] = field(default_factory=dict)
+    stays_below: dict[str, tuple[float, float]] = field(default_factory=dict)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool] = (0, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from omegadot.diagnosis.equations.evidence import SLACK
 from omegadot.diagnosis.stepping.vanishing_steps import STILL, VanishingSteps, better
-from omegadot.diagnosis.wording.digits import factor
+from omegadot.diagnosis.wording.digits import factor, limits
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
@@ -60,10 +62,23 @@ def _wrong_rates(steps: VanishingSteps) -> dict[str, dict[str, Array]]:
     return {"attitude": attitude, "position": position}
 
 
+def least_step(stays_below: Collection[tuple[float, float]]) -> str:
+    """Steps below a limit do not move the body: between which lengths it lies on all scenarios.
+
+    "" where none is still, or a shorter step moves a body than one that leaves another.
+    stays_below: of each scenario, see `VanishingSteps`.
+    """
+    still = max((one for one, _ in stays_below), default=0.0)
+    moving = min((one for _, one in stays_below), default=np.inf)
+    if still == 0.0 or moving <= still:
+        return ""
+    if not np.isfinite(moving):
+        return f"steps of {written(still, 2)} s and shorter do not move the body"
+    return f"steps below a limit between {limits(still, moving, 's')} do not move the body"
+
+
 def still_cause(steps: VanishingSteps) -> str:
     """Attitude or position does not change in the first step of a run."""
-    if steps.still:
-        return f"steps of {written(steps.longest, 2)} s and shorter do not move the body"
     channels = ("attitude",) if steps.system.load.pivot is not None else ("attitude", "position")
     for channel in channels:
         limit = steps.rates[channel]

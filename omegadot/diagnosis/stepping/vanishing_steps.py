@@ -22,6 +22,7 @@ EXACT = Tolerated()
 AMPLIFIED = 8.0  # what the extrapolation from five halved steps makes of a rounding
 STILL = 1e-9  # a factor that is none but for rounding
 RANGE = 5  # steps
+PART = 1e-3  # of what a step is to change: less is nothing
 LEFT = 1e-5  # relative: what is left of a state extrapolated to no step from two short ones
 
 
@@ -31,7 +32,8 @@ class VanishingSteps:
 
     start and moved: from the two shortest steps.  limit: from the shortest five, which knows it to
     rounding where the steps are smooth.  longer: from the five before, in double precision.
-    longest: s, of all these steps.
+    stays_below: s, the longest step up to which none changes anything, and the shortest that does;
+    zero and infinity where there is none.
     """
 
     system: System
@@ -42,7 +44,7 @@ class VanishingSteps:
     limit: State
     eps: float = EPS
     longer: State | None = None
-    longest: float = 0.0
+    stays_below: tuple[float, float] = (0.0, np.inf)
 
     @property
     def evidence(self) -> Evidence:
@@ -104,8 +106,31 @@ def vanishing_steps(
     states = (State(*ends), State(*moved), State(*limit))
     before = [f[:, -RANGE - 1 : -1] for f in vars(stepped).values()]
     longer = State(*map(extrapolated, before)) if before[0].shape[1] == RANGE else None
-    longest = float(np.max(probe.timesteps))
-    return VanishingSteps(system, probe.states, rates, *states, eps, longer, longest)
+    still = _stays_below(probe, stepped, rates)
+    return VanishingSteps(system, probe.states, rates, *states, eps, longer, still)
+
+
+def _stays_below(probe: Probe, stepped: State, rates: dict[str, Limit]) -> tuple[float, float]:
+    """Of states that turn: the longest step that changes nothing, and the shortest that does.
+
+    What an engine makes of a state as it is set and read is not a part of what a step changes.
+    """
+    start = State(*(values[:, None] for values in vars(probe.states).values()))
+    changes = {
+        "attitude": attitude_angle(start.orientation, stepped.orientation),
+        "omega": norm(stepped.angular_velocity - start.angular_velocity),
+        "position": norm(stepped.position - start.position),
+        "linear_momentum": norm(stepped.linear_velocity - start.linear_velocity),
+    }
+    moved = np.zeros(probe.timesteps.shape, dtype=bool)
+    for channel, change in changes.items():
+        due = norm(rates[channel].expected)[:, None] * probe.timesteps
+        moved |= (change > PART * due) & (due > 0.0)
+    turning = np.any(probe.states.angular_velocity, axis=-1)
+    moved, lengths = moved[turning], probe.timesteps[turning]
+    shortest = float(np.min(lengths[moved], initial=np.inf))
+    still = lengths[~moved]
+    return float(np.max(still[still < shortest], initial=0.0)), shortest
 
 
 def better(limit: Limit) -> tuple[Array, Array]:
