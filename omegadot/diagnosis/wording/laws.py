@@ -35,6 +35,7 @@ def law_of(pairs: Sequence[tuple[Array, Array]], what: str, unit: str) -> str:
     requested, acting = (np.stack(values) for values in zip(*pairs, strict=True))
     size = np.max(np.maximum(np.abs(requested), np.abs(acting)), axis=-1, keepdims=True)
     size = np.where(size > 0.0, size, 1.0)
+    acting = np.where(np.abs(acting) <= NOTHING * size, 0.0, acting)  # rounding of nothing
     changed = np.abs(acting - requested) > SAME * np.maximum(np.abs(requested), np.abs(acting))
     changed &= np.abs(acting - requested) > NOTHING * size  # rounding of what is nothing
     if np.count_nonzero(changed.any(axis=-1)) < 2:
@@ -118,8 +119,8 @@ def _other_law(pairs: _Pairs) -> str:
     if not np.any(held) and not np.any((np.abs(requested) <= np.max(zero)) & (acting != 0.0)):
         least = np.abs(requested[acting != 0.0])
         if len(least):
-            between = f"{number(float(np.max(zero)))} and {number(float(np.min(least)))}"
-            return f"{each} is taken for zero below a limit between {between} {unit}"
+            between = limits(float(np.max(zero)), float(np.min(least)), unit)
+            return f"{each} is taken for zero below a limit between {between}"
     gone = (lengths == 0.0) & changed.any(axis=-1, keepdims=True)
     if not few and np.any(lengths) and not np.any(changed & ~gone):
         low, high = float(np.max(due[gone], initial=0.0)), float(np.min(due[lengths > 0.0]))
