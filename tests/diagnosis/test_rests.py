@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -99,6 +100,21 @@ def test_the_limit_is_of_what_holds_over_all(rule: Rule, quantity: str, limit: f
     assert text.startswith(start)
     low, high = (float(part.split()[0]) for part in text.removeprefix(start).split(" and "))
     assert low <= limit <= high
+
+
+def test_limits_of_omega_and_speed_may_hold_at_once() -> None:
+    """As engines have that put a body to sleep by two thresholds."""
+
+    def by_both(system: System, states: State) -> NDArray[np.bool_]:
+        sizes = (states.angular_velocity, states.linear_velocity)
+        w, v = (np.linalg.norm(one, axis=-1) for one in sizes)
+        return np.asarray((w < 0.4) & (v < 0.9))
+
+    text = sleep_law([*of_cases(by_both).values()])
+    found = [float(one) for one in re.findall(r"[0-9.]+(?= and|\b(?= rad/s| m/s))", text)]
+    assert text.startswith("the body is put to sleep where |omega| is below a limit between ")
+    assert found[0] <= 0.4 <= found[1]
+    assert found[2] <= 0.9 <= found[3]
 
 
 def test_no_limit_is_named_where_none_holds_over_all() -> None:

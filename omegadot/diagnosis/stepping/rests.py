@@ -66,13 +66,15 @@ class Rests:
     """Of one integrator on one scenario. seen: whether a body is put to rest that should move.
 
     known: at how many states of which the quantities are known.  at_rest and moving: by quantity,
-    the largest that was put to rest and the least that was not.
+    the largest that was put to rest and the least that was not.  least: (k, 2) |omega| and speed
+    of states that move; of all others one of these is no faster in either.
     """
 
     seen: bool
     known: int
     at_rest: dict[str, float]
     moving: dict[str, float]
+    least: Array
 
 
 @dataclass(frozen=True)
@@ -109,7 +111,17 @@ def rests_of(
         moving.append(probe.states[~after])
     known = sum(len(one.position) for one in resting)
     seen = known > 0 or any(run.rests for run in runs)
-    return Rests(seen, known, _over(system, resting, np.max), _over(system, moving, np.min))
+    ends = _over(system, resting, np.max), _over(system, moving, np.min)
+    return Rests(seen, known, *ends, _least(moving))
+
+
+def _least(parts: Sequence[State]) -> Array:
+    """The (|omega|, speed) of which no other is as small in both."""
+    sizes = [(norm(one.angular_velocity), norm(one.linear_velocity)) for one in parts]
+    points = np.concatenate([np.empty((0, 2)), *(np.stack(one, axis=-1) for one in sizes)])
+    points = points[np.lexsort(points.T[::-1])]
+    before = np.minimum.accumulate(np.append(np.inf, points[:, 1]))[:-1]
+    return np.asarray(points[points[:, 1] < before])
 
 
 def _over(system: System, parts: Sequence[State], end: Callable[..., Array]) -> dict[str, float]:
@@ -128,6 +140,24 @@ def _where_it_falls_asleep(run: ReportedRun) -> Iterator[State]:
         yield run.own[here]
 
 
+def _of_two(every: Sequence[Rests]) -> str:
+    """Limits of omega and of speed, of which both hold at once; "" without any."""
+    if sum(one.known for one in every) < 2 * LEAST:
+        return ""
+    names, moves = ("|omega|", "its speed"), np.concatenate([one.least for one in every])
+    low = [max(one.at_rest[name] for one in every if one.at_rest) for name in names]
+    near = [moves[moves[:, 1 - k] <= low[1 - k], k] for k in range(2)]
+    high = [float(np.min(values, initial=np.inf)) for values in near]
+    if not all(0.0 < a < b < np.inf for a, b in zip(low, high, strict=True)):
+        return ""
+    omega, speed = (_between(low[k], high[k], UNITS[names[k]]) for k in range(2))
+    return f"|omega| is below a limit between {omega} and its speed is below one between {speed}"
+
+
+def _between(low: float, high: float, unit: str) -> str:
+    return limits(_outward(low, np.floor), _outward(high, np.ceil), unit)
+
+
 def _outward(value: float, way: Callable[[float], float]) -> float:
     """In digits that a short step does not change."""
     last = 10.0 ** (np.floor(np.log10(value)) + 1 - DIGITS)
@@ -143,8 +173,8 @@ def sleep_law(every: Sequence[Rests]) -> str:
         low = max((one.at_rest[name] for one in every if one.at_rest), default=0.0)
         high = min((one.moving[name] for one in every if one.moving), default=np.inf)
         if 0.0 < low < high < np.inf:
-            between = limits(_outward(low, np.floor), _outward(high, np.ceil), unit)
-            found.append(f"{name} is below a limit between {between}")
+            found.append(f"{name} is below a limit between {_between(low, high, unit)}")
+    found = found or [text for text in (_of_two(every),) if text]
     if not found or len(found) > MOST_NAMED:
         return ""
     return f"{SLEEPS} where {'either ' * (len(found) > 1)}{', or '.join(found)}"
