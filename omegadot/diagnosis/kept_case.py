@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.reported.run import reported_run
@@ -16,6 +17,7 @@ from omegadot.diagnosis.stepping.rests import RunWithRests, rests_of
 from omegadot.diagnosis.stepping.step_orders import order_lost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
+from omegadot.diagnosis.wording.features import Features, features_of
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import orders_for
@@ -112,6 +114,18 @@ def _steps(
             found = found.over(_observed(runs), due)
             over.lost[case.name] = found.of_first if _has_past(runs) else found
     return steps
+
+
+def opposite_steps(
+    case: Case, result: CaseResult, integrator: str
+) -> Iterator[tuple[Features, Evidence]]:
+    """What steps follow as they vanish, of systems in which one thing is the other way."""
+    tolerated = {one.name: tolerated_by(one) for one in result.integrators}
+    for (name, _), (system, probe, answer) in result.opposite_steps.items():
+        if name == integrator and answer.ok:
+            how = (eps_of(result.precision), tolerated[name])
+            steps = vanishing_steps(system, probe, State(**answer.result), *how)
+            yield features_of(system, case.initial), steps.evidence
 
 
 def _observed(runs: Sequence[JudgedRun]) -> dict[str, float]:

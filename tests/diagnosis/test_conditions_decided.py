@@ -49,7 +49,7 @@ def without_weight(where: Callable[[System], bool]) -> Callable[[System, State],
     return found
 
 
-def cause(equation: Callable[[System, State], Acceleration]) -> str:
+def cause(equation: Callable[[System, State], Acceleration], source: str = FORWARD) -> str:
     across = Across()
     for one in TOPS:
         states = random_states(one, 60, [1])
@@ -60,8 +60,9 @@ def cause(equation: Callable[[System, State], Acceleration]) -> str:
             made = of_forward_dynamics(system, placed, equation(system, placed))
             others.append((features_of(system, one.initial), made))
         features = features_of(one.system, one.initial)
-        across.add(Scene(one.name, one.system, features, {FORWARD: evidence}, opposites=others))
-    return across.cause("driven-0", FORWARD)
+        turned = {source: others}
+        across.add(Scene(one.name, one.system, features, {source: evidence}, opposites=turned))
+    return across.cause("driven-0", source)
 
 
 @pytest.mark.parametrize(
@@ -81,6 +82,12 @@ def test_the_condition_is_the_one_that_decides(
     """Caught: "only where a torque acts or where gravity points elsewhere than along -z"."""
     text = cause(without_weight(where))
     assert text == f"the torque of gravity is missing, but only where {condition}"
+
+
+def test_the_condition_of_steps_is_decided_by_steps() -> None:
+    """Of an engine that offers no forward dynamics."""
+    text = cause(without_weight(driven), "steps of one")
+    assert text == "the torque of gravity is missing, but only where a torque acts"
 
 
 def test_a_condition_that_a_system_contradicts_is_not_named() -> None:

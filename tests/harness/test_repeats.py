@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from omegadot.adapters.protocol import Adapter
+from omegadot.adapters.protocol import Adapter, Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.catalogue import FAULTS
 from omegadot.commands.faults.detect import Judgement, Nameless, judge
@@ -224,15 +224,34 @@ class ForgetsWeight(ReferenceAdapter):
         return forward_dynamics(replace(system, load=less), states)
 
 
-@pytest.mark.parametrize("sound", [True, False])
+class ForgetsWeightInSteps(ForgetsWeight):
+    """The same in its runs alone."""
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        return ReferenceAdapter.forward_dynamics(self, states)
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        system = self.loaded[-1]
+        if np.any(system.load.torque_body):
+            less = replace(system.load, gravity=0.0 * system.load.gravity)
+            super(ForgetsWeight, self).load(replace(system, load=less))
+        return super().run(initial, integrator, timestep, steps, every)
+
+
+@pytest.mark.parametrize(
+    ("kind", "sound"),
+    [(ForgetsWeight, True), (ForgetsWeight, False), (ForgetsWeightInSteps, False)],
+)
 def test_a_wrong_equation_is_requested_with_one_thing_the_other_way(
-    sound: bool, pool: Pool
+    kind: type[ForgetsWeight], sound: bool, pool: Pool
 ) -> None:
     """Caught: a condition between two that are never parted; requests to sound engines."""
     needs = {"pivot", "lever", "gravity", "torque-body"}
     prepared = pool.prepare(pool.having(needs, 1)[0])
-    engine = ForgetsWeight(sound)
-    assert ("residual" in failed(judged(pool, prepared, engine))) is not sound
+    engine, metric = kind(sound), "residual" if kind is ForgetsWeight else "rate_at_no_step"
+    assert (metric in failed(judged(pool, prepared, engine))) is not sound
     body, gravity = prepared.case.system.body, prepared.case.system.load.gravity
     without = [
         one

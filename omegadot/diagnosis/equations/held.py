@@ -37,10 +37,9 @@ class Scene:
     """What is kept of one scenario.
 
     evidence: by where it comes from.  held: the body read back.  scaled: of forward dynamics, by
-    what was doubled.  opposites: of forward dynamics of systems in which one thing is the other
-    way.  before: what the engine had been loaded with, by source where that is another
-    than of all else (""); nothing where it is unknown.  states: one that was set, and what read
-    back of it.
+    what was doubled.  opposites: by source, of systems in which one thing is the other way.
+    before: what the engine had been loaded with, by source where that is another than of all else
+    (""); nothing where it is unknown.  states: one that was set, and what read back of it.
     """
 
     name: str
@@ -51,7 +50,7 @@ class Scene:
     scaled: Mapping[str, Evidence] = field(default_factory=dict)
     before: Mapping[str, LoadedBefore] = field(default_factory=dict)
     states: tuple[State, State] | None = None
-    opposites: Sequence[tuple[Features, Evidence]] = ()
+    opposites: dict[str, list[tuple[Features, Evidence]]] = field(default_factory=dict)
 
     def loaded_before(self, source: str) -> LoadedBefore | None:
         """What had been loaded before the answers of a source; None where it is unknown."""
@@ -103,9 +102,11 @@ class Held:
 
     def _opposites(self) -> Iterator[tuple[Features, bool]]:
         """Systems in which one thing is the other way, and whether it acts in them."""
-        for features, evidence in (o for s in self.shown for o in s.opposites):
-            tried = self.candidate.predicted(evidence)
-            if self.source != evidence.source or not evidence.finite or tried is None:
+        for features, evidence in (
+            one for scene in self.shown for one in scene.opposites.get(self.source, ())
+        ):
+            tried = self.candidate.predicted(evidence) if evidence.finite else None
+            if tried is None:
                 continue
             own = self.numbers and evidence.clear and self.candidate.refitted(evidence) is not None
             if evidence.visible(tried) and (own or self.candidate.fits(evidence, tried)):

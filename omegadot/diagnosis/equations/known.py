@@ -97,6 +97,8 @@ def scenarios_in_common(
 
 def _opposites(scenes: Sequence[Scene], source: str) -> list[tuple[Features, bool]]:
     """Systems in which one thing is the other way than in those that fail, and whether they do."""
-    every = [(features, one) for scene in scenes for features, one in scene.opposites]
-    every = [(f, one) for f, one in every if one.source == source and one.finite]
+    every = [
+        (features, one) for scene in scenes for features, one in scene.opposites.get(source, ())
+    ]
+    every = [(f, one) for f, one in every if one.finite]
     return [(f, one.clear) for f, one in every if one.clear or np.all(one.sound)]

@@ -76,7 +76,15 @@ def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult
     set_state = evaluation_states.random[0]
     states = (set_state, State(**result.model.result["state"])) if result.model.ok else None
     return Scene(
-        case.name, case.system, features, evidence, held, scaled, before, states, opposites
+        case.name,
+        case.system,
+        features,
+        evidence,
+        held,
+        scaled,
+        before,
+        states,
+        {FORWARD: opposites},
     )
 
 

@@ -74,10 +74,15 @@ def request_opposites(
     driver: Driver, case: Case, evaluation_states: EvaluationStates, result: CaseResult
 ) -> None:
     """Forward dynamics of each into `result`; what an engine refuses is kept as such."""
-    few = evaluation_states.random[:STATES]
+    for what, other in opposite_cases(case):
+        placed = place_on_pivot(other.system, evaluation_states.random[:STATES])
+        answer = driver.request(other, "forward", states=placed)
+        result.opposites[what] = (other.system, placed, answer)
+
+
+def opposite_cases(case: Case) -> Iterator[tuple[str, Case]]:
+    """By what is the other way, the case with it."""
     for what, system in opposites(case.system):
         name = f"{case.name}-with-the-other-{what}"
         scenario = case.scenario.model_copy(update={"name": name})
-        placed = place_on_pivot(system, few)
-        other = replace(case, scenario=scenario, system=system)
-        result.opposites[what] = (system, placed, driver.request(other, "forward", states=placed))
+        yield what, replace(case, scenario=scenario, system=system)
