@@ -17,7 +17,7 @@ from omegadot.diagnosis.equations.wrong_equation import (
     scene_of,
 )
 from omegadot.diagnosis.integrator import IntegratorCauses
-from omegadot.diagnosis.kept_case import source_of
+from omegadot.diagnosis.kept_case import opposite_steps, source_of
 from omegadot.diagnosis.models.wrong_model import lever_causes, model_causes
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import batch_cause, kept_causes
@@ -66,6 +66,7 @@ class CaseCauses:
         for name, integrator in self._integrators.items():
             if integrator.steps is not None:
                 scene.evidence[source_of(name)] = integrator.steps.evidence
+                scene.opposites[source_of(name)] = [*opposite_steps(case, result, name)]
         engine.across.add(scene)
         self._siblings = engine.siblings
         engine.siblings.add(scene, case, result)

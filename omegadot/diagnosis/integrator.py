@@ -45,6 +45,7 @@ class IntegratorCauses:
         result: CaseResult,
         runs: Sequence[JudgedRun],
     ) -> None:
+        self._engine = engine
         self._across, self._case, self._truth = engine.across, case, truth
         self._result: CaseResult | None = result
         self._runs = list(runs)
@@ -70,6 +71,9 @@ class IntegratorCauses:
 
     def sentences(self) -> list[str]:
         """What makes the runs of all scenarios together, or else what this one shows."""
+        asleep = self._engine.sleep(self._integrator.name, self._case.name)
+        if asleep and not self._kept.again:
+            return [asleep]
         failing = self._over.fails[self._case.name] and not self._kept.again
         return (self._over.together(self._integrator) if failing else []) or self._of_case()
 

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.reported.requests import again_cause
+from omegadot.diagnosis.reported.run import reported_run
 from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, begins_turned
 from omegadot.diagnosis.stepping.jumps import first_turn
 from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
+from omegadot.diagnosis.stepping.rests import RunWithRests, rests_of
 from omegadot.diagnosis.stepping.step_orders import order_lost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
+from omegadot.diagnosis.wording.features import Features, features_of
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import orders_for
@@ -76,6 +80,11 @@ def kept_case(
     turned_wrong = any(row.channel == "attitude" for row in failed)
     brief = all(len(run.sweep.times) < LEAST_SAMPLES for run in runs)
     steps = _steps(over, case, result, runs, beginning)
+    probe, answer = result.first_steps.get(runs[0].integrator.name, (None, None))
+    stepped = State(**answer.result) if answer is not None and answer.ok else None
+    over.rests[case.name] = rests_of(
+        case.system, probe, stepped, [*_with_rests(case, truth, result, runs)]
+    )
     return KeptCase(case.name, runs[0].integrator, again, beginning, turned_wrong, brief, steps)
 
 
@@ -108,6 +117,18 @@ def _steps(
     return steps
 
 
+def opposite_steps(
+    case: Case, result: CaseResult, integrator: str
+) -> Iterator[tuple[Features, Evidence]]:
+    """What steps follow as they vanish, of systems in which one thing is the other way."""
+    tolerated = {one.name: tolerated_by(one) for one in result.integrators}
+    for (name, _), (system, probe, answer) in result.opposite_steps.items():
+        if name == integrator and answer.ok:
+            how = (eps_of(result.precision), tolerated[name])
+            steps = vanishing_steps(system, probe, State(**answer.result), *how)
+            yield features_of(system, case.initial), steps.evidence
+
+
 def _observed(runs: Sequence[JudgedRun]) -> dict[str, float]:
     """The lowest order that whole runs show of each channel, where it is settled."""
     found = dict[str, float]()
@@ -134,6 +155,18 @@ def _kept_runs(
             state = State(**answer.result["state"])
             one = kept_run(name, truth, run.sweep, state, growth, run.fails)
             yield from () if one is None else (one,)
+
+
+def _with_rests(
+    case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> Iterator[RunWithRests]:
+    """The runs that were answered in full."""
+    for run in runs:
+        answer = result.runs.get((run.integrator.name, run.sweep.knob))
+        if answer is not None and answer.ok and len(answer.result["time"]) == len(run.sweep.times):
+            one = RunWithRests(State(**answer.result["state"]), truth.at(run.sweep), None)
+            how = (case, truth.in_precision(result.precision), result, run)
+            yield replace(one, reported=reported_run(*how)) if one.rests else one
 
 
 def _beginning_of(

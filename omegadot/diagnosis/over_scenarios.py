@@ -18,6 +18,7 @@ from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
+from omegadot.diagnosis.stepping.rests import Rests, sleep_law
 from omegadot.written import written
 
 
@@ -30,6 +31,8 @@ class OverScenarios:
     off.  beginnings: of the failed runs.  kept: the first samples of every run.  turned: by what
     angle in rad first steps turn the body, and whether later ones are seen not to.  stays_below: s,
     up to which length steps change nothing, and from which on they do.
+    angle in rad first steps turn the body, and whether later ones are seen not to.  rests: at what
+    states the body is put to rest.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -41,6 +44,7 @@ class OverScenarios:
     kept: list[KeptRun] = field(default_factory=list)
     turned: dict[str, tuple[float, bool]] = field(default_factory=dict)
     stays_below: dict[str, tuple[float, float]] = field(default_factory=dict)
+    rests: dict[str, Rests] = field(default_factory=dict)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool] = (0, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
@@ -98,3 +102,15 @@ class EngineOverScenarios:
     integrators: dict[str, OverScenarios] = field(
         default_factory=lambda: defaultdict(OverScenarios)
     )
+
+    def sleep(self, integrator: str, name: str) -> str:
+        """Where the body is put to sleep, on a scenario of this name that shows it; else "".
+
+        One rule of all integrators that put it to sleep; where there is none, of this one.
+        """
+        own = self.integrators[integrator].rests
+        if name not in own or not own[name].seen:
+            return ""
+        every = [[*over.rests.values()] for over in self.integrators.values()]
+        asleep = [rests for rests in every if any(one.seen for one in rests)]
+        return sleep_law([one for rests in asleep for one in rests]) or sleep_law([*own.values()])

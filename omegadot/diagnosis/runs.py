@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.models.fitted_misreadings import ADDED
-from omegadot.diagnosis.reported.clock import clock_cause
+from omegadot.diagnosis.reported.clock import clock_of_runs
 from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.guesses import Guesses
 from omegadot.diagnosis.reported.precision import precision_reported
@@ -75,12 +75,9 @@ def run_causes(
     """
     guesses = Guesses(case, truth.in_precision(result.precision), result)
     failed = [run for run in runs if run.fails]
-    for run in failed:
-        answer = result.runs.get((run.integrator.name, run.sweep.knob))
-        if answer is not None and answer.ok:
-            text = clock_cause(answer.result["time"], run.sweep, guesses.truth.yardstick.eps)
-            if text:
-                return RunCauses((text,))
+    clock = _of_clock(result, runs, guesses.truth.yardstick.eps)
+    if clock:
+        return RunCauses(clock)
     several = _of_several_schemes(guesses, runs) if failed else ""
     if several:
         return RunCauses((several,))
@@ -92,6 +89,13 @@ def run_causes(
             kept = _of_others(guesses, found, run, failed, equations)
             return _at_long_steps(kept, runs)
     return NOTHING if tried or not failed else HARDLY_OFF
+
+
+def _of_clock(result: CaseResult, runs: Sequence[JudgedRun], eps: float) -> tuple[str, ...]:
+    answers = [(result.runs.get((run.integrator.name, run.sweep.knob)), run) for run in runs]
+    answered = [(a.result["time"], run) for a, run in answers if a is not None and a.ok]
+    failed = [place for place, (_, run) in enumerate(answered) if run.fails]
+    return clock_of_runs([(time, run.sweep) for time, run in answered], failed, eps)
 
 
 def _of_others(

@@ -43,6 +43,9 @@ class CaseResult:
     siblings: by what was changed in the system, the system that was loaded next, the states, and
     forward dynamics there.
     scaled: the same by what was doubled, where forward dynamics are wrong; judged by no gate.
+    opposites: the same by what is the other way than in the system, where forward dynamics are
+    wrong; judged by no gate.  opposite_steps: by integrator and by that, first steps where these
+    alone are wrong.
     reloaded: forward dynamics after another system was loaded in between.  again: the beginnings
     of runs that were requested again, by integrator, step, and how (see `gates.repeats`).
     via: the format of the file by which the body went in; "" for the engine's API.
@@ -62,6 +65,10 @@ class CaseResult:
     inverse_alone: Answer = LACKING
     siblings: dict[str, tuple[System, State, Answer]] = field(default_factory=dict)
     scaled: dict[str, tuple[System, State, Answer]] = field(default_factory=dict)
+    opposites: dict[str, tuple[System, State, Answer]] = field(default_factory=dict)
+    opposite_steps: dict[tuple[str, str], tuple[System, Probe, Answer]] = field(
+        default_factory=dict
+    )
     reloaded: Answer = LACKING
     again: dict[tuple[str, float, How], Answer] = field(default_factory=dict)
     precision: str = "float64"

@@ -11,7 +11,7 @@ import pytest
 
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
-from omegadot.diagnosis.reported.clock import clock_cause
+from omegadot.diagnosis.reported.clock import clock_cause, clock_of_runs
 from omegadot.diagnosis.reported.of_steps import ways_of_steps
 from omegadot.diagnosis.reported.requests import again_cause, place_cause
 from omegadot.diagnosis.stepping.slips import OF_SCHEME, slipped
@@ -27,7 +27,7 @@ from omegadot.reference_impl.one_body.body_motion import attitude_motion
 from omegadot.reference_impl.rotations import quaternion_product, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.stepping import step_body
-from omegadot.reference_impl.system import Acceleration, State
+from omegadot.reference_impl.system import Acceleration, Array, State
 from omegadot.scenarios import scenario
 from omegadot.written import written
 
@@ -53,6 +53,45 @@ def test_the_fault_of_a_clock_is_named(name: str) -> None:
     change, phrase = CLOCKS[name]
     found = clock_cause(change(SWEEP.times), SWEEP, EPS)
     assert (phrase in found) if phrase else found == ""
+
+
+def summed(sweep: Sweep) -> Array:
+    """The clock is summed step by step in single precision."""
+    steps = np.full(int(sweep.sample_steps[-1]), sweep.timestep, np.float32)
+    sums = np.concatenate(([np.float32(0.0)], np.cumsum(steps, dtype=np.float32)))
+    return np.asarray(sums[sweep.sample_steps].astype(float))
+
+
+def test_a_sum_in_single_precision_is_no_factor() -> None:
+    """Caught: "every time is too small, by 1.94e-8 of it", of sums of a few equal steps."""
+    short = Sweep(SWEEP.timestep, 2, 1)
+    for sweep in (short, SWEEP):
+        assert clock_cause(summed(sweep), sweep, EPS) == "the times are kept in single precision"
+    odd = Sweep(1e-3, 3, 1)  # by a factor that makes singles: they are too far off for rounding
+    found = clock_cause(250.0 * odd.times, odd, EPS)
+    assert found == "every time is scaled by 250"
+
+
+def test_a_factor_of_the_clock_is_one_of_every_run() -> None:
+    """Caught: the factor of the coarsest run alone."""
+    fine = Sweep(SWEEP.timestep / 2.0, 80, 8)
+    fast, right = ((k * SWEEP.times, SWEEP) for k in (1.001, 1.0))
+    both = [fast, (1.001 * fine.times, fine)]
+    factor, seen = clock_of_runs(both, [0, 1], EPS)
+    assert factor == "every time is too large, by 0.001 of it"
+    assert clock_of_runs([fast, (1.002 * fine.times, fine)], [0, 1], EPS) == (seen,)
+    assert clock_of_runs([fast, (fine.times, fine)], [0], EPS) == (seen,)
+    assert seen.startswith("times are off by up to")
+    assert clock_of_runs([right], [0], EPS) == ()
+
+
+def test_a_factor_of_the_clock_is_one_of_every_scenario() -> None:
+    factor, seen = "every time is too large, by 0.001 of it", "times are off by up to 0.01 s"
+    here, other = ((factor, seen), True), ((factor.replace("0.001", "0.002"), seen), True)
+    single = (("the times are kept in single precision",), True)
+    assert agreed(here[0], {"one": here, "two": here}) == [factor]
+    assert agreed(here[0], {"one": here, "two": other}) == [seen]
+    assert agreed(here[0], {"one": here, "two": single}) == [seen]
 
 
 def body() -> Case:

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from omegadot.adapters.protocol import Adapter
+from omegadot.adapters.protocol import Adapter, Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
 from omegadot.commands.faults.catalogue import FAULTS
 from omegadot.commands.faults.detect import Judgement, Nameless, judge
@@ -23,7 +23,8 @@ from omegadot.gates.case import Sweep
 from omegadot.harness.requests.repeats import OTHERS, short_sweep
 from omegadot.harness.requests.siblings import siblings_of
 from omegadot.reference_impl.inertia import lever
-from omegadot.reference_impl.system import Body, System
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.system import Acceleration, Body, State, System
 from omegadot.scenarios.random_traits import BLOCK
 
 FILE = Path(__file__).parents[1] / "wrong_engines" / "wrong.py"
@@ -202,3 +203,61 @@ def test_each_sibling_differs_in_one_thing(pool: Pool) -> None:
                 if not np.array_equal(getattr(part, name), getattr(own, name))
             }
             assert changed == {what} or (what == "scale" and {"mass", "inertia"} <= changed)
+
+
+class ForgetsWeight(ReferenceAdapter):
+    """Where a torque acts, gravity does not turn the body; a sound one with `sound`."""
+
+    def __init__(self, sound: bool = False) -> None:
+        super().__init__()
+        self.loaded, self._sound = list[System](), sound
+
+    def load(self, system: System) -> None:
+        super().load(system)
+        self.loaded.append(system)
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        system = self.loaded[-1]
+        if self._sound or not np.any(system.load.torque_body):
+            return super().forward_dynamics(states)
+        less = replace(system.load, gravity=0.0 * system.load.gravity)
+        return forward_dynamics(replace(system, load=less), states)
+
+
+class ForgetsWeightInSteps(ForgetsWeight):
+    """The same in its runs alone."""
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        return ReferenceAdapter.forward_dynamics(self, states)
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        system = self.loaded[-1]
+        if np.any(system.load.torque_body):
+            less = replace(system.load, gravity=0.0 * system.load.gravity)
+            super(ForgetsWeight, self).load(replace(system, load=less))
+        return super().run(initial, integrator, timestep, steps, every)
+
+
+@pytest.mark.parametrize(
+    ("kind", "sound"),
+    [(ForgetsWeight, True), (ForgetsWeight, False), (ForgetsWeightInSteps, False)],
+)
+def test_a_wrong_equation_is_requested_with_one_thing_the_other_way(
+    kind: type[ForgetsWeight], sound: bool, pool: Pool
+) -> None:
+    """Caught: a condition between two that are never parted; requests to sound engines."""
+    needs = {"pivot", "lever", "gravity", "torque-body"}
+    prepared = pool.prepare(pool.having(needs, 1)[0])
+    engine, metric = kind(sound), "residual" if kind is ForgetsWeight else "rate_at_no_step"
+    assert (metric in failed(judged(pool, prepared, engine))) is not sound
+    body, gravity = prepared.case.system.body, prepared.case.system.load.gravity
+    without = [
+        one
+        for one in engine.loaded
+        if np.array_equal(one.body.inertia, body.inertia)
+        and np.array_equal(one.load.gravity, gravity)
+        and not np.any(one.load.torque_body)
+    ]
+    assert bool(without) is not sound

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -37,9 +37,9 @@ class Scene:
     """What is kept of one scenario.
 
     evidence: by where it comes from.  held: the body read back.  scaled: of forward dynamics, by
-    what was doubled.  before: what the engine had been loaded with, by source where that is another
-    than of all else (""); nothing where it is unknown.  states: one that was set, and what read
-    back of it.
+    what was doubled.  opposites: by source, of systems in which one thing is the other way.
+    before: what the engine had been loaded with, by source where that is another than of all else
+    (""); nothing where it is unknown.  states: one that was set, and what read back of it.
     """
 
     name: str
@@ -50,6 +50,7 @@ class Scene:
     scaled: Mapping[str, Evidence] = field(default_factory=dict)
     before: Mapping[str, LoadedBefore] = field(default_factory=dict)
     states: tuple[State, State] | None = None
+    opposites: dict[str, list[tuple[Features, Evidence]]] = field(default_factory=dict)
 
     def loaded_before(self, source: str) -> LoadedBefore | None:
         """What had been loaded before the answers of a source; None where it is unknown."""
@@ -66,6 +67,7 @@ class Held:
     """
 
     candidate: Candidate
+    source: str
     shown: list[Scene] = field(default_factory=list)
     against: list[Scene] = field(default_factory=list)
     contradicted: bool = False
@@ -90,17 +92,39 @@ class Held:
         """Whether no scenario is against it; numbers may be others, and right, elsewhere."""
         return not self.contradicted and (not self.against or self.candidate.family is not None)
 
+    def condition(self) -> str:
+        """What holds of all scenarios that show it and of none of the others; "" without any."""
+        shown, against = ([one.features for one in group] for group in (self.shown, self.against))
+        common = in_common(shown, against)
+        if common:
+            common = in_common(shown, against, [*self._opposites()])
+        return " or where ".join(common) if len(common) <= 2 else ""
+
+    def _opposites(self) -> Iterator[tuple[Features, bool]]:
+        """Systems in which one thing is the other way, and whether it acts in them."""
+        for features, evidence in (
+            one for scene in self.shown for one in scene.opposites.get(self.source, ())
+        ):
+            tried = self.candidate.predicted(evidence) if evidence.finite else None
+            if tried is None:
+                continue
+            own = self.numbers and evidence.clear and self.candidate.refitted(evidence) is not None
+            if evidence.visible(tried) and (own or self.candidate.fits(evidence, tried)):
+                yield features, True
+            elif evidence.visible(tried) and np.all(evidence.sound):
+                yield features, False
+
     def where(self) -> str:
         """Of numbers that act on some scenarios alone: on which."""
         if not self.against or self.pairs:
             return ""
-        shown, against = ([one.features for one in group] for group in (self.shown, self.against))
-        common = in_common(shown, against)
-        if common and len(common) <= 2:
-            return f", but only where {' or where '.join(common)}"
+        condition = self.condition()
+        if condition:
+            return f", but only where {condition}"
         if self.numbers:
             return ""  # what is seen elsewhere is not by these
-        return f", on {len(shown)} of the {len(shown) + len(against)} scenarios that would show it"
+        count = len(self.shown)
+        return f", on {count} of the {count + len(self.against)} scenarios that would show it"
 
 
 class Scenes:
@@ -129,7 +153,7 @@ class Scenes:
 
     def held(self, one: Candidate, scene: Scene, source: str) -> Held:
         """A candidate against every other scenario with evidence of the same source."""
-        held = Held(one, [scene])
+        held = Held(one, source, [scene])
         besides: frozenset[str] | None = None  # each of which with this explains what is seen
         for other in self.by_name.values():
             evidence = other.evidence.get(source)

@@ -44,7 +44,7 @@ def known_over(
         texts.append(_goes([(s, e) for s, e, _ in parts], off, ATTRIBUTES[kind], it))
     if texts:  # else something else fails
         features = [s.features for s in scenes]
-        texts.append(scenarios_in_common(features, passing, "it is so"))
+        texts.append(scenarios_in_common(features, passing, "it is so", _opposites(scenes, source)))
     return "; ".join(text for text in texts if text)
 
 
@@ -78,12 +78,27 @@ def _goes(parts: Sequence[tuple[Scene, Evidence]], off: Off | None, kind: str, i
 
 
 def scenarios_in_common(
-    failing: Sequence[Features], passing: Sequence[Features], it: str = "it fails"
+    failing: Sequence[Features],
+    passing: Sequence[Features],
+    it: str = "it fails",
+    tried: Sequence[tuple[Features, bool]] = (),
 ) -> str:
-    """What the scenarios that fail have in common and the others lack."""
+    """What the scenarios that fail have in common and the others lack.
+
+    tried: further systems, each with whether it fails.
+    """
     if comb(len(failing) + len(passing), len(failing)) < ways_of(failing):
         return ""  # so few are sorted by chance
-    common = in_common(failing, passing)
+    common = in_common(failing, passing, tried)
     if not common or len(common) > 2:
         return ""
     return f"{it} in scenarios alone where {' or where '.join(common)}"
+
+
+def _opposites(scenes: Sequence[Scene], source: str) -> list[tuple[Features, bool]]:
+    """Systems in which one thing is the other way than in those that fail, and whether they do."""
+    every = [
+        (features, one) for scene in scenes for features, one in scene.opposites.get(source, ())
+    ]
+    every = [(f, one) for f, one in every if one.finite]
+    return [(f, one.clear) for f, one in every if one.clear or np.all(one.sound)]

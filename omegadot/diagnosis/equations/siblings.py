@@ -35,7 +35,7 @@ class Siblings:
         own = scene.evidence.get(FORWARD)
         if own is None or not result.siblings:
             return
-        self._across.add(replace(scene, evidence={FORWARD: own}, scaled={}))
+        self._across.add(replace(scene, evidence={FORWARD: own}, scaled={}, opposites={}))
         if np.all(own.sound):
             self._first[case.name] = case.system
         for what, (system, states, answer) in result.siblings.items():

@@ -9,7 +9,6 @@ from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.equation_form import same_form
 from omegadot.diagnosis.equations.held import Held, Scenes
 from omegadot.diagnosis.equations.same_cause import same_cause
-from omegadot.diagnosis.wording.features import in_common
 
 MOST_NAMED = 3  # causes between which a scenario does not decide
 
@@ -99,12 +98,11 @@ def on_some(held: Sequence[Held], own: bool = False) -> Named:
         numbers = one.candidate.numbers
         if numbers is not None and len(numbers) > 1 and len(one.shown) < 2:
             continue  # many numbers fit one scenario
-        shown, against = ([scene.features for scene in group] for group in (one.shown, one.against))
-        common = in_common(shown, against)
-        if common and len(common) <= 2:
+        condition = one.condition()
+        if condition:
             evidence = next(iter(one.shown[0].evidence.values()))
             text = one.law or one.candidate.text(evidence.system)
-            text = f"{text}, but only where {' or where '.join(common)}"
+            text = f"{text}, but only where {condition}"
             if one.numbers and not one.law:
                 text = f"{text} ({one.shown[0].name}; other numbers on {len(one.numbers)} more)"
             return Named(text, one.candidate, frozenset(one.names))

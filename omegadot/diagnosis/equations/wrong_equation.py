@@ -46,10 +46,9 @@ MOST_NAMED = 3  # causes between which nothing decides
 
 def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult) -> Scene:
     """What is kept of one scenario's forward dynamics."""
+    eps = eps_of(result.precision)
     evidence = {
-        source: of_forward_dynamics(
-            case.system, states, Acceleration(**answer.result), eps_of(result.precision)
-        )
+        source: of_forward_dynamics(case.system, states, Acceleration(**answer.result), eps)
         for source, answer, states in (
             (FORWARD, result.forward, evaluation_states.random),
             (ALONG, result.path, evaluation_states.path),
@@ -60,21 +59,37 @@ def scene_of(case: Case, evaluation_states: EvaluationStates, result: CaseResult
     requested, torque = evaluation_states.acceleration, result.inverse
     if torque.ok and np.isfinite(torque.result["torque"]).all():
         known = (case.system, evaluation_states.random, requested, torque.result["torque"])
-        evidence[INVERSE] = of_inverse_dynamics(*known, eps_of(result.precision))
-        evidence[INVERTED] = inverted(*known, eps_of(result.precision))
+        evidence[INVERSE] = of_inverse_dynamics(*known, eps)
+        evidence[INVERTED] = inverted(*known, eps)
     held = body_from(result.model.result["bodies"][0]) if result.model.ok else None
     scaled = {
-        what: of_forward_dynamics(
-            system, states, Acceleration(**a.result), eps_of(result.precision)
-        )
+        what: of_forward_dynamics(system, states, Acceleration(**a.result), eps)
         for what, (system, states, a) in result.scaled.items()
         if a.ok
     }
+    opposites = [
+        (
+            features_of(s, case.initial),
+            of_forward_dynamics(s, states, Acceleration(**a.result), eps),
+        )
+        for s, states, a in result.opposites.values()
+        if a.ok
+    ]
     features = features_of(case.system, case.initial)
     before = {{drive.RELOADED: RELOADED}.get(k, k): v for k, v in result.before.items()}
     set_state = evaluation_states.random[0]
     states = (set_state, State(**result.model.result["state"])) if result.model.ok else None
-    return Scene(case.name, case.system, features, evidence, held, scaled, before, states)
+    return Scene(
+        case.name,
+        case.system,
+        features,
+        evidence,
+        held,
+        scaled,
+        before,
+        states,
+        {FORWARD: opposites},
+    )
 
 
 def equation_causes(across: Across, name: str, source: str) -> list[str]:

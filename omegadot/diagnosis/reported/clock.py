@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from omegadot.diagnosis.wording.digits import factor, number
@@ -12,6 +14,27 @@ from omegadot.written import written
 UNITS = {1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds"}
 GRIDS = {1e-3: "milliseconds", 1e-6: "microseconds", 1e-9: "nanoseconds"}
 SAME = 1e-9  # relative, of a factor that is looked for
+FACTORS = ("every time is too", "every time is scaled by")
+EPS_SINGLE = float(np.finfo(np.float32).eps)
+
+
+def clock_of_runs(
+    runs: Sequence[tuple[Array, Sweep]], failed: Sequence[int], eps: float
+) -> tuple[str, ...]:
+    """What is wrong with the clock of the runs of one integrator on a scenario; () where nothing.
+
+    runs: times as reported.  failed: the places of those that fail a gate. A factor is one of every
+    run; after it what is seen of the first of these, which holds where another scenario has none.
+    """
+    for place in failed:
+        text = clock_cause(*runs[place], eps)
+        if text.startswith(FACTORS):
+            (time, sweep), ratio = runs[place], _ratio(*runs[place])
+            same = all(_goes_by(ratio, *run, eps) for run in runs)
+            return (*[text] * same, _off(time - sweep.times, sweep))
+        if text:
+            return (text,)
+    return ()
 
 
 def clock_cause(time: Array, sweep: Sweep, eps: float) -> str:
@@ -28,9 +51,9 @@ def clock_cause(time: Array, sweep: Sweep, eps: float) -> str:
     if np.all(np.abs(late - late[0]) <= 2.0 * tolerance):
         steps = late[0] / sweep.timestep
         return f"every time is reported {written(late[0], 4)} s late, {written(steps, 3)} steps"
-    return (
-        _in_proportion(time, expected, tolerance) or _rounded(time, expected) or _off(late, sweep)
-    )
+    # sums in single precision may be in proportion over a few steps
+    found = _in_single(time, sweep) or _in_proportion(time, sweep, eps)
+    return found or _rounded(time, expected) or _off(late, sweep)
 
 
 def _samples(time: Array, expected: Array) -> str:
@@ -42,9 +65,22 @@ def _samples(time: Array, expected: Array) -> str:
     return f"{len(time)} samples came back, {len(expected)} were requested"
 
 
-def _in_proportion(time: Array, expected: Array, tolerance: float) -> str:
-    ratio = float(time[-1] / expected[-1])
-    if not np.all(np.abs(time - ratio * expected) <= 2.0 * max(ratio, 1.0) * tolerance):
+def _ratio(time: Array, sweep: Sweep) -> float:
+    return float(time[-1] / sweep.times[-1])
+
+
+def _goes_by(ratio: float, time: Array, sweep: Sweep, eps: float) -> bool:
+    """Whether all times are by this factor off, to the gate's own bound."""
+    expected = sweep.times
+    if len(time) != len(expected):
+        return False
+    tolerance = 4.0 * max(ratio, 1.0) * eps * float(expected[-1])
+    return bool(np.all(np.abs(time - ratio * expected) <= tolerance))
+
+
+def _in_proportion(time: Array, sweep: Sweep, eps: float) -> str:
+    ratio = _ratio(time, sweep)
+    if not _goes_by(ratio, time, sweep, eps):
         return ""
     for k, unit in UNITS.items():
         if abs(ratio / k - 1.0) < SAME:
@@ -55,13 +91,20 @@ def _in_proportion(time: Array, expected: Array, tolerance: float) -> str:
     return f"every time is too {wrong}, by {written(abs(ratio - 1.0), 3)} of it"
 
 
+def _in_single(time: Array, sweep: Sweep) -> str:
+    """Every time is a single, and as near as the sum of so many rounded steps is."""
+    expected = sweep.times
+    with np.errstate(over="ignore"):
+        rounded = [values.astype(np.float32).astype(float) for values in (time, expected)]
+    near = np.abs(time - expected) <= EPS_SINGLE * np.maximum(1, sweep.sample_steps) * expected
+    if np.array_equal(time, rounded[0]) and np.any(expected != rounded[1]) and np.all(near):
+        return "the times are kept in single precision"
+    return ""
+
+
 def _rounded(time: Array, expected: Array) -> str:
     if np.max(np.abs(time)) > np.finfo(np.float32).max:
         return ""  # no single holds it, and no rounding leads there
-    if np.array_equal(time, time.astype(np.float32).astype(float)) and np.any(
-        expected != expected.astype(np.float32).astype(float)
-    ):
-        return "the times are kept in single precision"
     for grid, unit in GRIDS.items():
         whole = time / grid
         near = np.abs(whole - np.round(whole)) <= 1e-6 * np.maximum(1.0, np.abs(whole) * 1e-9)

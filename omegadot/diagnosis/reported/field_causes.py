@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.diagnosis.reported.of_steps import SLACK, Way, ways_of_steps
+from omegadot.diagnosis.reported.recursions import both_summed, sums_of_steps
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
@@ -36,7 +37,7 @@ QUANTITIES = {
 
 
 def field_causes(reported: ReportedRun) -> list[str]:
-    """What makes the one quantity that is wrong; none where several are, or nothing fits."""
+    """What makes the one quantity that is wrong, or places that are summed up; else none."""
     own, came = reported.own, reported.state
     if len(came.position) != len(own.position) or len(came.position) < LEAST:
         return []
@@ -51,7 +52,7 @@ def field_causes(reported: ReportedRun) -> list[str]:
     name = "orientation"
     right = replace(came, orientation=own.orientation)
     if not reported.agrees(right[later], own[later], later):
-        return []
+        return both_summed(reported)
     made = _attitude_ways(reported)
     return list(dict.fromkeys(t for t, v, slack in made if _is(reported, name, v, slack)))
 
@@ -72,6 +73,7 @@ def _ways(reported: ReportedRun, name: str, what: str, unit: str) -> Iterator[Wa
     every = reported.stepped(every_step=True)
     yield from _quotients(reported, every, name, what)
     yield from _shares(due, came, what)
+    yield from sums_of_steps(reported, every, name)
     yield from ways_of_steps(reported, every, name, what)
 
 

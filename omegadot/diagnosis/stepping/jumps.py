@@ -11,9 +11,10 @@ from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
 from omegadot.diagnosis.models.misreadings import Misreading, misreadings
 from omegadot.diagnosis.stepping.follows import Beginning
+from omegadot.diagnosis.stepping.rests import SLEEPS
 from omegadot.diagnosis.stepping.vanishing_steps import AMPLIFIED, LEFT, VanishingSteps, stays
 from omegadot.diagnosis.wording.conditions import only_where
-from omegadot.diagnosis.wording.digits import factor, limits
+from omegadot.diagnosis.wording.digits import factor
 from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION, norm
 from omegadot.reference_impl.rotations import attitude_angle, quaternion_product
 from omegadot.reference_impl.system import Array
@@ -167,14 +168,13 @@ def _limit(
 ) -> str:
     size, held = norm(was), norm(now)
     if np.all(held[jumped] <= allowed[jumped]):
-        least, more = float(np.max(size[jumped])), size[~jumped]
-        sleeps = "the body is put to sleep: " if what == "omega" else ""
+        least, more = float(np.max(size[jumped])), size[~jumped & (size > 0.0)]
+        sleeps = f"{SLEEPS}: " if what == "omega" else ""
         if not len(more):
             # a damping that is taken wrongly stops it as well
             return f"{what} is set to zero" if damped else f"{sleeps}{what} is set to zero"
-        if np.min(more) < least:
-            return ""
-        return f"{sleeps}{what} is set to zero below {limits(least, float(np.min(more)), unit)}"
+        # a limit that holds here, of whatever quantity, may be another elsewhere
+        return "" if np.min(more) < least else f"{sleeps}{what} is set to zero at some states"
     wrong = np.any(np.abs(now - was) > allowed[:, None], axis=0)
     if np.count_nonzero(wrong) == 1:
         k = int(np.argmax(wrong))

@@ -8,6 +8,7 @@ import numpy as np
 
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.fitted import search
+from omegadot.diagnosis.stepping.rests import SLEEPS
 from omegadot.diagnosis.stepping.step_ends import (
     End,
     clipped_at,
@@ -40,7 +41,7 @@ def asleep(reported: ReportedRun) -> str:
     # a damping that is taken wrongly may stop the body as well, in its first step
     damped = bool(np.any(reported.case.system.load.damping))
     sleeps = sound or not damped or rate < SLOW
-    return f"the body is put to sleep: {text}" if sleeps else text
+    return f"{SLEEPS}: {text}" if sleeps else text
 
 
 def still(reported: ReportedRun) -> str:

@@ -8,6 +8,7 @@ from math import comb
 
 import numpy as np
 
+from omegadot.diagnosis.wording.decided import decided
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.inertia import lever, moving_inertia
@@ -95,24 +96,32 @@ def ways_of(scenarios: Sequence[Features]) -> int:
     return ODDS * sum(2 * len(one.kinds) + 2 * len(one.sizes) for one in scenarios[:1])
 
 
-def in_common(shown: Sequence[Features], others: Sequence[Features]) -> list[str]:
+def in_common(
+    shown: Sequence[Features],
+    others: Sequence[Features],
+    tried: Sequence[tuple[Features, bool]] = (),
+) -> list[str]:
     """Conditions that hold for all that show a fault and for none of the others, kinds first.
 
+    tried: further systems, each with whether it shows the fault; none may contradict a condition.
     None where so few scenarios are sorted by chance.
     """
     if not shown or not others:
         return []
     ways = comb(len(shown) + len(others), len(shown))
-    found = list[str]()
+    kinds = list[tuple[str, bool]]()
     if ways >= SORTED_BY_KIND:
         for text in shown[0].kinds:
             here, there = ({one.kinds[text] for one in group} for group in (shown, others))
-            if here == {True} and there == {False}:
-                found.append(text)
-            elif here == {False} and there == {True}:
-                found.append(_negated(text))
-    if found or ways < ODDS * 2 * len(shown[0].sizes):
+            if here != there and len(here) == len(there) == 1:
+                kinds.append((text, True in here))
+    every = [(one.kinds, wrong) for one, wrong in tried]
+    texts = [[_worded(*one) for one in each] for each in decided(kinds, every)]
+    found = [" and ".join(_plainest(each)) for each in texts]
+    if kinds or ways < ODDS * 2 * len(shown[0].sizes):
         return _plainest(found)
+    shown = [*shown, *(one for one, wrong in tried if wrong)]
+    others = [*others, *(one for one, wrong in tried if not wrong)]
     for name, (_, unit) in shown[0].sizes.items():
         low, high = ([one.sizes[name][0] for one in group] for group in (others, shown))
         if max(low) < min(high):
@@ -128,6 +137,10 @@ def _plainest(found: list[str]) -> list[str]:
         if text in found:
             found = [one for one in found if one not in follow]
     return found
+
+
+def _worded(text: str, holds: bool) -> str:
+    return text if holds else _negated(text)
 
 
 def _negated(text: str) -> str:

@@ -29,7 +29,8 @@ FACTS = (
 )
 SEEN = ("none is known", "the error of one step goes as")
 # One number in every run, or it is another cause.
-CONSTANTS = ("low-pass", "it is filtered")
+CONSTANTS = ("low-pass", "it is filtered", "every time is too", "every time is scaled by")
+SAME = 0.01  # relative, of such a number; it has three digits
 MOST_NAMED = 3  # between which nothing decides
 SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
 
@@ -70,7 +71,25 @@ def agreed(here: Sequence[str], over_cases: Mapping[str, tuple[Sequence[str], bo
     """
     facts = [text for text in here if is_fact(text)]
     causes = [text for text in here if not is_fact(text)]
+    every = [texts for texts, _ in over_cases.values()]
+    same = [text for text in facts if _is_constant(text) and _is_of_all(text, every)]
+    facts = same or [text for text in facts if not _is_constant(text)]
     return (_most_agreed(causes, over_cases) if causes else []) or facts
+
+
+def _is_constant(text: str) -> bool:
+    return any(one in text for one in CONSTANTS)
+
+
+def _is_of_all(text: str, every: Sequence[Sequence[str]]) -> bool:
+    """Whether a constant is the same on every scenario that fails: clocks are looked at first."""
+    own = float(NUMBER.findall(text)[-1])
+    start = text.partition(",")[0]
+    others = [
+        [float(NUMBER.findall(one)[-1]) for one in texts if one.startswith(start)]
+        for texts in every
+    ]
+    return all(any(abs(n - own) <= SAME * abs(own) for n in numbers) for numbers in others)
 
 
 def _most_agreed(

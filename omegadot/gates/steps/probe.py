@@ -62,6 +62,11 @@ def probe_of(system: System, evaluation_states: EvaluationStates, eps: float = E
     random, path = vars(evaluation_states.random), vars(evaluation_states.path)
     pairs = zip(random.values(), path.values(), strict=True)
     states = State(*(np.concatenate([one[:PROBES], two[along]]) for one, two in pairs))
+    return probe_at(system, states, eps)
+
+
+def probe_at(system: System, states: State, eps: float = EPS) -> Probe:
+    """These states (m,), and steps (m, k) s."""
     turning = (states.orientation, states.angular_velocity)
     w_dot, jacobian = acceleration_and_jacobian(attitude_motion(system), *turning)
     slopes = np.max(np.abs(jacobian), axis=(-1, -2))

@@ -15,6 +15,8 @@ from omegadot.gates.states.equation import EvaluationStates
 from omegadot.gates.truth import Truth
 from omegadot.harness.arguments import case_of
 from omegadot.harness.drive import RELOADED, CaseResult, Driver
+from omegadot.harness.requests.opposite import request_opposites
+from omegadot.harness.requests.opposite_steps import request_opposite_steps
 from omegadot.harness.requests.scaled import request_scaled
 from omegadot.harness.requests.siblings import request_siblings
 from omegadot.reference_impl.schemes import SCHEMES
@@ -91,6 +93,10 @@ def request_again(
             replay(integrator, "negated", negated)
     request_siblings(driver, case, evaluation_states, result)
     request_scaled(driver, case, evaluation_states, result)
+    if result.scaled:  # forward dynamics are wrong
+        request_opposites(driver, case, evaluation_states, result)
+    else:
+        request_opposite_steps(driver, case, result)
     if not _load_another(driver, case, steppers[0]):
         return
     if "forward_dynamics" in driver.engine.description.features:
