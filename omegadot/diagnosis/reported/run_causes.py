@@ -46,6 +46,22 @@ def not_finite(reported: ReportedRun) -> str:
     )
 
 
+def last_repeated(reported: ReportedRun) -> str:
+    """The last sample is the one before it in every number, and the body moves between them."""
+    if len(reported.time) < 3:
+        return ""
+    end, before = slice(-1, None), slice(-2, -1)
+    state, own = reported.state, reported.own
+    same = [np.array_equal(values[-1], values[-2]) for values in vars(state).values()]
+    asleep = all(np.array_equal(values[-2], values[-3]) for values in vars(state).values())
+    if not all(same) or asleep or reported.agrees(own[before], own[end], end):
+        return ""
+    numbers = reported.sweep.sample_steps
+    short = numbers[-1] - numbers[-2] != reported.sweep.every
+    where = ", after an interval shorter than the others," if short else ""
+    return f"the last sample{where} is the one before, reported twice"
+
+
 def misread(reported: ReportedRun) -> list[str]:
     """Conventions in which all samples are the declared run's: every one that fits."""
     if reported.agrees(reported.state, reported.own):
@@ -179,5 +195,5 @@ def _rescaled(reported: ReportedRun) -> str:
 
 
 # What is seen of the numbers, whatever made them.
-SEEN = (not_finite, digits_reported, decimals_reported)
+SEEN = (not_finite, last_repeated, digits_reported, decimals_reported)
 CAUSES_REPORTED = (half_step, _rescaled)
