@@ -15,13 +15,16 @@ from numpy.typing import NDArray
 
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 from omegadot.diagnosis.wording.digits import limits
-from omegadot.diagnosis.wording.state_features import features_of_states
+from omegadot.diagnosis.wording.state_features import Numbers, features_of_states
+from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State
 
 LEAST_WRONG, LEAST_SOUND = 4, 20  # intervals
 ODDS = 1000  # as many times as numbers are tried must there be ways to sort the intervals
 MISSED = 0.02  # of the wrong ones, whose stages may lie a little farther than is known
 LEAST_CHANGES = 4  # from sound to wrong, or back, within runs
+MOST_NAMED = 2  # between which no interval decides
 MOST_EVERY = 2  # steps in an interval: of more the places in it are unknown
 SIZE_OF = "the size of "
 TILT = f"{SIZE_OF}the cosine of the tilt of the body's "
@@ -62,7 +65,10 @@ def place_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
                 sign = 1.0 if term == "above" else -1.0
                 texts[name] = _where(name, term, sign * low, sign * high, unit)
     plain = [text for name, text in texts.items() if SIZE_OF + name not in texts]
-    return [f"steps are wrong only where {plain[0]}"] if len(plain) == 1 else []
+    if not 0 < len(plain) <= MOST_NAMED:
+        return []
+    either = "either " * (len(plain) > 1) + ", or ".join(plain)
+    return [f"steps are wrong only where {either}"]
 
 
 def _where(name: str, term: str, sound: float, wrong: float, unit: str) -> str:
@@ -79,7 +85,7 @@ def _where(name: str, term: str, sound: float, wrong: float, unit: str) -> str:
 
 def _sorted(by: SchemeOf, runs: Sequence[KeptRun]) -> _Sorted:
     sound = [run.sound(by) for run in runs]
-    each = [[features_of_states(run.system, states) for states in _places(run)] for run in runs]
+    each = [[_features(run, states) for states in _places(run)] for run in runs]
     names = {name: unit for name, (_, unit) in each[0][0].items()}
 
     def over(pick: np.ufunc, name: str) -> Array:
@@ -92,6 +98,17 @@ def _sorted(by: SchemeOf, runs: Sequence[KeptRun]) -> _Sorted:
         {name: over(np.maximum, name) for name in names},
         names,
     )
+
+
+def _features(run: KeptRun, states: State) -> Numbers:
+    """Those of the states, and of what a step changes there."""
+    h, w = run.sweep.timestep, norm(states.angular_velocity)
+    rate = norm(forward_dynamics(run.system, states).angular)
+    return features_of_states(run.system, states) | {
+        "the turn of a step": (h * w, "rad"),
+        "the change of omega in a step": (h * rate, "rad/s"),
+        "the change of omega in a step over |omega|": (h * rate / np.where(w > 0.0, w, 1.0), ""),
+    }
 
 
 def _places(run: KeptRun) -> list[State]:

@@ -1,0 +1,89 @@
+"""Steps that are too short to act, samples that come twice, and what is zero but for rounding."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from in_process import builtin, declared, truth_of
+
+from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.reported.run_causes import last_repeated
+from omegadot.diagnosis.stepping.kinematics import least_step
+from omegadot.diagnosis.stepping.vanishing_steps import vanishing_steps
+from omegadot.diagnosis.wording.laws import law_of
+from omegadot.gates.case import Case
+from omegadot.gates.states.equation import random_states
+from omegadot.gates.steps.probe import DOUBLE, Probe
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product
+from omegadot.reference_impl.system import State
+
+SCHEME = "semi-implicit-euler"
+
+
+def one_step(case: Case, probe: Probe) -> State:
+    """By the explicit Euler method, (m, k, ...); a pivoted body's place is left out."""
+    start = State(*(values[:, None] for values in vars(probe.states).values()))
+    rates, h = forward_dynamics(case.system, probe.states), probe.timesteps[..., None]
+    w, v = start.angular_velocity, start.linear_velocity
+    turned = quaternion_product(start.orientation, exp_quaternion(h * w))
+    return State(
+        turned,
+        w + h * rates.angular[:, None],
+        start.position + h * v,
+        v + h * rates.linear[:, None],
+    )
+
+
+def test_steps_below_a_limit_are_one_cause_of_all_scenarios() -> None:
+    """Caught: another length on each scenario, and one of a step that moves the body."""
+    bounds, limit = list[tuple[float, float]](), 1e-3
+    for name in ("t-handle", "heavy-top", "free-bar"):
+        case = builtin(name)
+        states = random_states(case, 6, [1])
+        w = np.linalg.norm(states.angular_velocity, axis=-1)
+        steps = (2.0**-7 / w)[:, None] / 2.0 ** np.arange(DOUBLE.count)
+        probe = Probe(states, steps)
+        ends = one_step(case, probe)
+        moves = steps[..., None] >= limit
+        pairs = zip(vars(states).values(), vars(ends).values(), strict=True)
+        # what setting and reading a state rounds is nothing that a step does
+        kept = State(*(np.where(moves, end, start[:, None] * (1 + 1e-16)) for start, end in pairs))
+        bounds.append(vanishing_steps(case.system, probe, kept).stays_below)
+        assert bounds[-1][0] < limit <= bounds[-1][1]
+    text = least_step(bounds)
+    low, high = max(one for one, _ in bounds), min(one for _, one in bounds)
+    assert text.startswith("steps below a limit between ")
+    assert low < limit <= high
+    assert least_step([*bounds, (2.0 * high, np.inf)]) == ""
+    assert least_step([(0.0, high)]) == ""
+
+
+def test_a_last_sample_that_comes_twice_is_named() -> None:
+    """Caught: "the run is wrong once". A body that sleeps repeats more than the last."""
+    case = builtin("heavy-top")
+    truth, integrator = truth_of(case, (SCHEME,)), declared(SCHEME, SCHEME)
+    sweep = case.sweeps_of(integrator)[0]
+    own = truth.companion(integrator, sweep)
+    assert own is not None
+    run = ReportedRun(case, truth, integrator, sweep, sweep.times, own.state, own.state, own.growth)
+    assert last_repeated(run) == ""
+    for repeated, text in (
+        ([-2], "the last sample is the one before, reported twice"),
+        ([-3, -3], ""),
+    ):
+        count = len(sweep.times) - len(repeated)
+        order = np.concatenate((np.arange(count), len(sweep.times) + np.array(repeated)))
+        assert last_repeated(replace(run, state=own.state[order])) == text
+
+
+def test_components_that_are_zero_but_for_rounding_have_a_limit() -> None:
+    """Caught: levers read back from places, where what is zero comes as 1e-18."""
+    pairs = [
+        (np.array([0.02, 0.004, 0.0007]), np.array([0.02, 8e-19, -2e-18])),
+        (np.array([0.3, 0.001, 0.2]), np.array([0.3, 0.0, 0.2])),
+        (np.array([0.006, 0.04, 0.03]), np.array([0.006, 0.04, 0.03])),
+    ]
+    text = "each component of the lever is taken for zero below a limit between 0.004 and 0.006 m"
+    assert law_of(pairs, "the lever", "m") == text
