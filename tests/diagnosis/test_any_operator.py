@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from test_causes import causes_over
-from wrong_equations import CASES, gyroscopic, with_torque
+from wrong_equations import CASES, GRAVITY, PIVOT, WORLD_TORQUE, case, gyroscopic, with_torque
 
 from omegadot.diagnosis.equations.dependence import dependence
 from omegadot.diagnosis.equations.evidence import Evidence, of_forward_dynamics
@@ -19,7 +19,7 @@ from omegadot.gates.states.equation import random_states
 from omegadot.gates.steps.probe import DOUBLE, Probe
 from omegadot.harness.requests.scaled import STATES, doubled
 from omegadot.reference_impl.loads import damping_torque
-from omegadot.reference_impl.rotations import rotate
+from omegadot.reference_impl.rotations import rotate, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.schemes.scheme import every_channel
 from omegadot.reference_impl.stepping import step_body
@@ -66,6 +66,38 @@ def test_what_is_done_to_a_term_is_named(name: str) -> None:
     causes = causes_over(spoiled(of, change), DAMPED)
     assert causes
     assert all(phrase in text for text in causes.values()), causes
+
+
+def heading(turn: Array) -> Array:
+    """The turn about the world's z that takes x as far round as the body's x axis, (n, 3, 3)."""
+    yaw = np.arctan2(turn[:, 1, 0], turn[:, 0, 0])
+    c, s, o = np.cos(yaw), np.sin(yaw), 0.0 * yaw
+    rows = [np.stack(row, -1) for row in ((c, -s, o), (s, c, o), (o, o, o + 1.0))]
+    return np.stack(rows, -2)
+
+
+ATTITUDES: dict[str, tuple[Callable[[Array], Array], str]] = {
+    "heading": (heading, "is its heading alone: roll and pitch are left out"),
+    "tilt": (
+        lambda turn: np.swapaxes(heading(turn), -1, -2) @ turn,
+        "is without its heading: roll and pitch alone",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ATTITUDES)
+def test_a_part_of_the_attitude_in_a_torque_is_named(name: str) -> None:
+    """Built from matrices; with gravity on a top, all loads are not the torque in world axes."""
+    change, text = ATTITUDES[name]
+
+    def found(system: System, states: State) -> Acceleration:
+        turn, world = rotation_matrix(states.orientation), np.asarray(system.load.torque_world)
+        return with_torque(system, states, world @ change(turn) - world @ turn)
+
+    top = case("top", {"gravity": GRAVITY, "pivot": PIVOT, "torque": WORLD_TORQUE})
+    causes = causes_over(found, (CASES[0], CASES[6], top))
+    due = f"the attitude in the torque in world axes {text}"
+    assert causes == {"driven-in-world": due, "top": due}
 
 
 def test_a_factor_goes_with_the_mass_where_several_masses_show_it_alone() -> None:

@@ -35,18 +35,24 @@ def _general(pivoted: bool) -> Evidence:
     return Evidence("", system, states, forward_dynamics(system, states), ones, ones)
 
 
-def same_cause(one: Candidate, other: Candidate, pivoted: bool) -> bool:
-    """Whether both give the same on a free body and, where the run has any, on a pivoted one."""
-    return all(_agree(one, other, _general(held)) for held in (False, True)[: 1 + pivoted])
+def same_cause(one: Candidate, other: Candidate, pivoted: bool, apart: bool = False) -> bool:
+    """Whether both give the same on a free body and, where the run has any, on a pivoted one.
+
+    apart: of a pivoted body omega-dot alone is held against the engine's, see `linear_is_apart`.
+    """
+    if not _agree(one, other, _general(False)):
+        return False
+    return not pivoted or _agree(one, other, _general(True), apart)
 
 
-def _agree(one: Candidate, other: Candidate, evidence: Evidence) -> bool:
+def _agree(one: Candidate, other: Candidate, evidence: Evidence, apart: bool = False) -> bool:
     with np.errstate(all="ignore"):
         a, b = (x.predicted(evidence) for x in (one, other))
     if a is None or b is None:
         return False
     true = evidence.true
-    return _close(a.angular, b.angular, true.angular) and _close(a.linear, b.linear, true.linear)
+    linear = apart or _close(a.linear, b.linear, true.linear)
+    return linear and _close(a.angular, b.angular, true.angular)
 
 
 def _close(one: Array, other: Array, due: Array) -> bool:

@@ -36,9 +36,9 @@ def worded(whole: Sequence[Held], source: str, scenes: Scenes) -> str:
 
     scenes: those of the run, or some of them.
     """
-    kept, pivoted = list[Held](), scenes.pivoted and not _only_omega_dot(whole, source)
+    kept, held = list[Held](), (scenes.pivoted, _only_omega_dot(whole, source))
     for one in whole:
-        if not any(same_cause(one.candidate, other.candidate, pivoted) for other in kept):
+        if not any(same_cause(one.candidate, other.candidate, *held) for other in kept):
             kept.append(one)
     if len(kept) > MOST_NAMED:  # the plainest of those that are one equation in this run
         kept = [one for k, one in enumerate(kept) if not _like_any(one, kept[:k])]
@@ -49,7 +49,7 @@ def worded(whole: Sequence[Held], source: str, scenes: Scenes) -> str:
 
 
 def _only_omega_dot(whole: Sequence[Held], source: str) -> bool:
-    """Whether pivots do not decide what moves: of pivoted bodies omega-dot alone is wrong."""
+    """Whether of all pivoted bodies omega-dot alone is wrong: what moves them decides nothing."""
     shown = {scene.name: scene.evidence[source] for one in whole for scene in one.shown}
     held = [e for e in shown.values() if e.system.load.pivot is not None]
     return bool(held) and all(e.linear_is_apart for e in held)

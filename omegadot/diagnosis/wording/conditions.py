@@ -43,12 +43,15 @@ def only_where(parts: Sequence[Part], places: Sequence[NDArray[np.intp]] = ()) -
     every = [features_of_states(*part[:2]) | further_features(*part[:2]) for part in parts]
     for features, numbers in zip(every, places, strict=False):
         features[PLACE] = (numbers + 1.0, "")
-    ways = comb(len(sound), int(np.count_nonzero(sound)))
-    if ways < ODDS * (len(exact[0]) + 2 * len(every[0])):
-        return ""
+    tried = len(exact[0]) + 2 * len(every[0])
     for text, (_, unit) in every[0].items():
         values = np.concatenate([one[text][0] for one in every])
-        low, high = values[sound], values[~sound]
+        said = ~np.isnan(values)  # where it is undefined, a state is on either side
+        low, high = values[said & sound], values[said & ~sound]
+        sides = sorted((len(low), len(high)))
+        if sides[0] < LEAST or comb(sum(sides), sides[0]) < ODDS * tried:
+            continue
+        values = values[said]
         if not np.all(np.isfinite(values)):
             continue
         for term, a, b in (("above", low, high), ("below", high, low)):

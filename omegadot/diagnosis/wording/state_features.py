@@ -45,12 +45,12 @@ def features_of_states(system: System, states: State) -> Numbers:
 
 
 def further_features(system: System, states: State) -> Numbers:
-    """More of them, which go with the plain ones on a single motion."""
+    """More of them, which go with the plain ones on a single motion; nan where one is undefined."""
     return _directions(states.angular_velocity) | _dynamic(system, states)
 
 
 def _directions(w: Array) -> Numbers:
-    """How near omega is to an axis of the body; where it is zero it is near to all."""
+    """How near omega is to an axis of the body; nan where there is none, as of an omega of zero."""
     found: Numbers = {}
     size = np.abs(w)
     with np.errstate(all="ignore"):
@@ -58,7 +58,7 @@ def _directions(w: Array) -> Numbers:
             others = [j for j in range(3) if j != k]
             largest = _over(np.max(size[:, others], axis=-1), size[:, k])
             found[f"the larger of omega's other components over |omega_{axis}|"] = (largest, "")
-            angle = np.arctan2(norm(w[:, others]), size[:, k])
+            angle = np.where(np.any(w, axis=-1), np.arctan2(norm(w[:, others]), size[:, k]), np.nan)
             found[f"the angle of omega from the body's {axis} axis"] = (angle, "rad")
         for j, k in permutations(range(3), 2):
             if j < k:
@@ -68,7 +68,8 @@ def _directions(w: Array) -> Numbers:
 
 
 def _over(one: Array, other: Array) -> Array:
-    return np.minimum(np.where(one == 0.0, 0.0, one / other), np.finfo(float).max)
+    """Finite over a zero as well; nan where both are zero, of which either side is right."""
+    return np.minimum(one / other, np.finfo(float).max)
 
 
 def _dynamic(system: System, states: State) -> Numbers:

@@ -1,0 +1,112 @@
+"""Torques of inverse dynamics by an equation that is wrong, as forward dynamics may have it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from wrong_equations import CASES, gyroscopic
+
+from omegadot.diagnosis.case_causes import CaseCauses
+from omegadot.diagnosis.over_scenarios import EngineOverScenarios
+from omegadot.gates.case import Case
+from omegadot.gates.rows import Row
+from omegadot.gates.states.equation import EvaluationStates, random_acceleration, random_states
+from omegadot.harness.drive import CaseResult
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import gravity_torque
+from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
+from omegadot.reference_impl.rotations import rotate
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.workers.harness_end.process import Answer
+
+More = Callable[[System, State, Acceleration], Array]  # N m, than the right torque
+FEW = (CASES[0], CASES[4], CASES[-1])
+TOPS = tuple(one for one in CASES if one.system.load.pivot is not None)
+FAILS = [Row("equation", "torque", "residual", 1.0, "1", 1e-9, "fail")]
+
+
+def named(more: More, cases: tuple[Case, ...]) -> dict[str, list[str]]:
+    """What is named on every scenario of an engine that is right but for these torques."""
+    engine, every, none = EngineOverScenarios(), dict[str, CaseCauses](), None
+    truth: Any = none  # of a trajectory, where there is one
+    for one in cases:
+        x = random_states(one, 60, [1])
+        requested = random_acceleration(one.system, x, [2])
+        torque = inverse_dynamics(one.system, x, requested) + more(one.system, x, requested)
+        result = CaseResult(
+            forward=Answer("ok", result=vars(forward_dynamics(one.system, x))),
+            inverse=Answer("ok", result={"torque": torque}),
+        )
+        states = EvaluationStates(x, x, requested)
+        every[one.name] = CaseCauses(engine, one, truth, states, result, FAILS, ())
+    return {name: causes.sentences(None) for name, causes in every.items()}
+
+
+def with_rate_first(s: System, x: State, a: Acceleration) -> Array:
+    momentum = x.angular_velocity @ np.asarray(moving_inertia(s)).T
+    return cross(a.angular, momentum) - gyroscopic(s, x)
+
+
+def with_rate_last(s: System, x: State, a: Acceleration) -> Array:
+    change = a.angular @ np.asarray(moving_inertia(s)).T
+    return cross(x.angular_velocity, change) - gyroscopic(s, x)
+
+
+@pytest.mark.parametrize(
+    ("more", "term"),
+    [(with_rate_first, "omega-dot x I omega"), (with_rate_last, "omega x I omega-dot")],
+)
+def test_omega_dot_in_the_place_of_an_omega_is_named(more: More, term: str) -> None:
+    """Caught: the two taken for one another, or omega x I omega in their place left in."""
+    due = [f"inverse dynamics have {term} for the gyroscopic term"]
+    assert named(more, FEW) == {one.name: due for one in FEW}
+
+
+def gravity_turned(s: System, x: State, _: Acceleration) -> Array:
+    torque = gravity_torque(s, x)  # inverse dynamics take it from what the joint gives
+    return torque - rotate(x.orientation, torque)
+
+
+def gyroscopic_turned(s: System, x: State, _: Acceleration) -> Array:
+    return rotate(x.orientation, gyroscopic(s, x)) - gyroscopic(s, x)
+
+
+def gyroscopic_swapped(s: System, x: State, _: Acceleration) -> Array:
+    term = gyroscopic(s, x)
+    return term[:, [1, 0, 2]] - term
+
+
+TERMS: dict[str, tuple[More, str]] = {
+    "gravity": (gravity_turned, "the torque of gravity is turned by R"),
+    "gyroscopic": (gyroscopic_turned, "the gyroscopic term is turned by R"),
+    "swapped": (
+        gyroscopic_swapped,
+        "the components of the gyroscopic term are others: x, y, z hold y, x, z",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TERMS)
+def test_a_term_that_is_wrong_as_in_forward_dynamics_is_named(name: str) -> None:
+    """Caught: the difference with the other sign, which no wrong term makes."""
+    more, text = TERMS[name]
+    falling = {one.name for one in TOPS if np.any(one.system.load.gravity)}
+    cases = TOPS if name == "gravity" else FEW
+    shown = falling if name == "gravity" else {one.name for one in FEW}
+    due = [f"in inverse dynamics, {text}"]
+    assert len(shown) > 1
+    assert named(more, cases) == {c.name: due if c.name in shown else [] for c in cases}
+
+
+def test_what_is_wrong_on_one_scenario_alone_names_no_term() -> None:
+    """Each of two tops has its own: what fits the one is contradicted by the other."""
+
+    def own(s: System, x: State, a: Acceleration) -> Array:
+        heavy = float(s.body.mass) > 1.8
+        return gravity_turned(s, x, a) if heavy else 0.7 * gyroscopic_turned(s, x, a)
+
+    assert set(map(tuple, named(own, (TOPS[0], TOPS[1])).values())) == {()}
