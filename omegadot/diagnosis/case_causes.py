@@ -139,7 +139,7 @@ class CaseCauses:
             known = (self._case.system, states.random, states.acceleration)
             formula = across.of_inverse_dynamics(self._case.name)
             found = inverse_causes(*known, torque, eps) or ([formula] if formula else [])
-            term = "" if found else across.plain(self._case.name, INVERTED)
+            term = "" if found else across.cause(self._case.name, INVERTED)
             return [f"in inverse dynamics, {term}"] if term else found
         return lever_causes(across, *model)
 
