@@ -12,10 +12,10 @@ from omegadot.diagnosis.equations.siblings import AFTER_ANOTHER
 from omegadot.diagnosis.equations.wrong_equation import (
     RELOADED,
     equation_causes,
-    inverse_causes,
     is_of_a_load,
     scene_of,
 )
+from omegadot.diagnosis.equations.wrong_torque import torque_causes
 from omegadot.diagnosis.integrator import IntegratorCauses
 from omegadot.diagnosis.kept_case import opposite_steps, source_of
 from omegadot.diagnosis.models.wrong_model import lever_causes, model_causes
@@ -94,54 +94,73 @@ class CaseCauses:
 
     def _shared(self) -> list[str]:
         """Of the model, then of forward dynamics, then of inverse dynamics."""
-        answers, states, across = self._answers, self._states, self._across
         failed = {(row.gate, row.metric) for row in self._shared_rows}
-        model = (self._case, states, answers)
         if any(gate == "model" for gate, _ in failed):
-            found = model_causes(across, *model) or kept_causes(states, answers)
-            # Of a place that is off by a few digits, the equation states by how much, and of what.
-            equation = {("equation", metric) for _, metric in OF_RATES}
-            found = found or lever_causes(across, *model, numbers=not equation & failed)
+            found = self._of_model(failed)
             if found:
                 return found
         alone = batch_cause(failed)
         if alone:
             return [alone]
-        torques = any(row.channel == "torque" for row in self._shared_rows)
         for source, metric in OF_RATES:
             rates = [r for r in self._shared_rows if r.metric == metric and r.channel != "torque"]
             if rates:
-                found = equation_causes(across, self._case.name, source)
-                if not found or found[0].startswith("none is known"):
-                    return lever_causes(across, *model) or found
-                steps = [one.steps for one in self._integrators.values()]
-                right = bool(steps) and all(one is not None and one.sound for one in steps)
-                failing = (one.fails.values() for one in self._over.values())
-                right = right and not any(map(any, failing))  # on any scenario of the run
-                return [f"{one}{ALONE * right}" for one in found]
+                return self._of_rates(source)
         if ("equation", "residual_reloaded") in failed:
-            kept = across.left_over(self._case.name, RELOADED)
-            if kept:
-                return [kept]
-            found = equation_causes(across, self._case.name, RELOADED)
-            return [f"{AFTER_ANOTHER}: {one}" for one in found] or [AFTER_ANOTHER]
+            return self._of_reloaded()
         if ("equation", siblings.METRIC) in failed:
             # Where a first system is wrong elsewhere, the sibling may be so by itself.
-            first = (scene.evidence.get(FORWARD) for scene in across.scenes.values())
+            first = (scene.evidence.get(FORWARD) for scene in self._across.scenes.values())
             wrong = any(one is not None and one.clear for one in first)
             return [] if wrong else self._siblings.causes(self._case)
-        if torques and answers.inverse.ok:
-            same = self._of_steps_as_well()
-            if same:
-                return [same]
-            torque = answers.inverse.result["torque"]
-            eps = eps_of(answers.precision)
-            known = (self._case.system, states.random, states.acceleration)
-            formula = across.of_inverse_dynamics(self._case.name)
-            found = inverse_causes(*known, torque, eps) or ([formula] if formula else [])
-            term = "" if found else across.cause(self._case.name, INVERTED)
-            return [f"in inverse dynamics, {term}"] if term else found
-        return lever_causes(across, *model)
+        if self._answers.inverse.ok and any(row.channel == "torque" for row in self._shared_rows):
+            return self._of_torques()
+        return self._of_lever()
+
+    def _of_model(self, failed: set[tuple[str, str]]) -> list[str]:
+        """Of what reads back. failed: gates and metrics."""
+        found = model_causes(self._across, self._case, self._states, self._answers)
+        found = found or kept_causes(self._states, self._answers)
+        # Of a place that is off by a few digits, the equation states by how much, and of what.
+        equation = {("equation", metric) for _, metric in OF_RATES}
+        return found or self._of_lever(numbers=not equation & failed)
+
+    def _of_lever(self, numbers: bool = True) -> list[str]:
+        how = (self._across, self._case, self._states, self._answers)
+        return lever_causes(*how, numbers=numbers)
+
+    def _of_rates(self, source: str) -> list[str]:
+        """Of forward dynamics; said to be of these alone where the steps of every scenario hold."""
+        found = equation_causes(self._across, self._case.name, source)
+        if not found or found[0].startswith("none is known"):
+            return self._of_lever() or found
+        steps = [one.steps for one in self._integrators.values()]
+        right = bool(steps) and all(one is not None and one.sound for one in steps)
+        failing = (one.fails.values() for one in self._over.values())
+        right = right and not any(map(any, failing))
+        return [f"{one}{ALONE * right}" for one in found]
+
+    def _of_reloaded(self) -> list[str]:
+        """Of a system that was loaded after another."""
+        kept = self._across.left_over(self._case.name, RELOADED)
+        if kept:
+            return [kept]
+        found = equation_causes(self._across, self._case.name, RELOADED)
+        return [f"{AFTER_ANOTHER}: {one}" for one in found] or [AFTER_ANOTHER]
+
+    def _of_torques(self) -> list[str]:
+        """Of inverse dynamics: by themselves, as in the steps, or as a wrong term would make it."""
+        same = self._of_steps_as_well()
+        if same:
+            return [same]
+        states, answers, name = self._states, self._answers, self._case.name
+        known = (self._case.system, states.random, states.acceleration)
+        found = torque_causes(*known, answers.inverse.result["torque"], eps_of(answers.precision))
+        formula = "" if found else self._across.of_inverse_dynamics(name)
+        term = "" if found or formula else self._across.cause(name, INVERTED)
+        return found or [f"in inverse dynamics, {term}" if term else formula] * bool(
+            term or formula
+        )
 
     def _of_steps_as_well(self) -> str:
         """A load that is wrong in the steps, and by as much in inverse dynamics; "" without any."""

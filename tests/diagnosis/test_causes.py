@@ -10,8 +10,9 @@ import pytest
 from wrong_equations import CASES, EQUATIONS, PIVOT, case, gyroscopic, mirrored_center, with_torque
 
 from omegadot.diagnosis.equations.across import Across, Scene
-from omegadot.diagnosis.equations.evidence import of_forward_dynamics
-from omegadot.diagnosis.equations.wrong_equation import FORWARD, equation_causes, inverse_causes
+from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics
+from omegadot.diagnosis.equations.wrong_equation import equation_causes
+from omegadot.diagnosis.equations.wrong_torque import torque_causes
 from omegadot.diagnosis.stepping.jumps import jump_cause
 from omegadot.diagnosis.stepping.trace import Trace, trace_causes
 from omegadot.diagnosis.stepping.vanishing_steps import vanishing_steps
@@ -99,7 +100,7 @@ def test_damping_in_inverse_dynamics() -> None:
     requested = random_acceleration(system, states, [2])
     true = inverse_dynamics(system, states, requested)
     less = true - damping_torque(system, states)
-    (text,) = inverse_causes(system, states, requested, less)
+    (text,) = torque_causes(system, states, requested, less)
     assert "leave out what damping takes up" in text
 
 
@@ -148,7 +149,7 @@ def test_a_torque_of_inverse_dynamics_in_other_axes_or_units_is_named(
     states = random_states(CASES[-1], 60, [1])
     requested = random_acceleration(system, states, [1])
     wrong = change(inverse_dynamics(system, states, requested))
-    (text,) = inverse_causes(system, states, requested, wrong)
+    (text,) = torque_causes(system, states, requested, wrong)
     assert phrase in text
 
 
@@ -157,7 +158,7 @@ def test_one_component_of_the_gyroscopic_term_is_named_in_inverse_dynamics() -> 
     states = random_states(CASES[-1], 60, [1])
     requested = random_acceleration(system, states, [1])
     wrong = inverse_dynamics(system, states, requested) - gyroscopic(system, states) * [1, 0, 0]
-    (text,) = inverse_causes(system, states, requested, wrong)
+    (text,) = torque_causes(system, states, requested, wrong)
     assert text == "inverse dynamics leave out the x component of the gyroscopic term"
 
 

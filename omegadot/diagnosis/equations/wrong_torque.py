@@ -1,0 +1,143 @@
+"""What the torque of inverse dynamics leaves out, counts twice or is made of in error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING, SLACK
+from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orders
+from omegadot.diagnosis.wording.digits import factor
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm, torque_size
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
+from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
+from omegadot.reference_impl.rotations import rotate, rotate_inverse
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Acceleration, Array, State, System
+
+MOST_NAMED = 3  # causes between which nothing decides
+
+
+def torque_causes(
+    system: System, states: State, requested: Acceleration, torque: Array, eps: float = EPS
+) -> list[str]:
+    """What the torque of inverse dynamics leaves out or counts, forward dynamics being sound."""
+    true, w = inverse_dynamics(system, states, requested), states.angular_velocity
+    bound = ROUNDINGS_PER_EVALUATION * eps * torque_size(system, states, requested)
+    if np.all(norm(torque - true) <= BEYOND_ROUNDING * bound):
+        return []
+    inertia = moving_inertia(system)
+    terms: dict[str, Array] = {
+        "the gyroscopic term": cross(w, apply(inertia, w)),
+        "gravity": -gravity_torque(system, states),
+        "the inertia times omega-dot": apply(inertia, requested.angular),
+    }
+    loads: dict[str, Array] = {
+        "damping": damping_torque(system, states),
+        "the applied torque": applied_torque(system, states),
+    }
+
+    def fits(candidate: Array, times: float = 1.0) -> bool:
+        return bool(np.all(norm(torque - candidate) <= SLACK * max(1.0, abs(times)) * bound))
+
+    found = []
+    if fits(rotate(states.orientation, true)):
+        found.append("inverse dynamics report the torque in world axes")
+    if fits(rotate_inverse(states.orientation, true)):
+        found.append("inverse dynamics report the torque turned by R^T once more")
+    if fits(-true):
+        found.append("inverse dynamics have the wrong sign")
+    for order, signs in signed_orders():
+        if not np.all(signs < 0.0) and fits(signs * true[:, order]):
+            axes = order_text(order, signs)
+            found.append(f"inverse dynamics report the torque in other axes: {axes}")
+    k = _share(torque, true, bound)
+    if k is not None and abs(k - 1.0) > 1e-9 and abs(k + 1.0) > 1e-9 and fits(k * true, k):
+        found.append(f"inverse dynamics report the torque scaled by {factor(k)}")
+    if all(np.any(one) for one in loads.values()) and fits(true - sum(loads.values())):
+        found.append("inverse dynamics leave out the loads that act: damping and torque")
+    for what, term in terms.items():
+        k = _share(torque - true, term, bound)
+        if k is not None and fits(true + k * term):
+            found.append(_worded(what, 1.0 + k))
+    for what, term in loads.items():
+        k = _share(torque - true, term, bound)
+        if k is not None and fits(true + k * term):
+            found.append(_load_worded(what, k))
+    bodies = _other_bodies(system, states, requested)
+    found += [text for text, made in bodies.items() if not fits(true) and fits(made())]
+    for what, term in _other_gyroscopic(inertia, w, requested.angular) if not found else ():
+        if fits(true - terms["the gyroscopic term"] + term):
+            found.append(f"inverse dynamics have {what} for the gyroscopic term")
+    for what, term in terms.items() if not found else ():
+        for axis in range(3):
+            alone = np.where(np.arange(3) == axis, term, 0.0)
+            k = _share(torque - true, alone, bound)
+            if k is not None and fits(true + k * alone):
+                found.append(_worded(f"the {'xyz'[axis]} component of {what}", 1.0 + k))
+    if len(found) > MOST_NAMED:
+        return []
+    return ["either " + ", or ".join(found)] if len(found) > 1 else found
+
+
+def _share(rest: Array, term: Array, bound: Array) -> float | None:
+    line, off = np.ravel(term / bound[:, None]), np.ravel(rest / bound[:, None])
+    size = float(line @ line)
+    return float(off @ line) / size if size > 0.0 and np.isfinite(size) else None
+
+
+def _worded(what: str, k: float) -> str:
+    known = {0: f"leave out {what}", -1: f"have {what}'s sign wrong", 2: f"count {what} twice"}
+    if abs(k - round(k)) < 1e-9 and round(k) in known:
+        return f"inverse dynamics {known[round(k)]}"
+    return f"inverse dynamics have {what} scaled by {factor(k)}"
+
+
+def _load_worded(what: str, k: float) -> str:
+    """Of a load that belongs to what is found, k times the torque that it exerts added to it."""
+    if abs(k + 1.0) < 1e-9:
+        return f"inverse dynamics leave out what {what} takes up: it is counted among what is given"
+    if abs(k - 1.0) < 1e-9:
+        return f"inverse dynamics count {what} on top of the torque that is found"
+    if abs(k + 2.0) < 1e-9:
+        return f"inverse dynamics count {what} twice among what is given"
+    return f"inverse dynamics have {factor(k)} times {what} in them"
+
+
+def _other_gyroscopic(inertia: Array, w: Array, rate: Array) -> Iterator[tuple[str, Array]]:
+    """With omega-dot in the place of an omega."""
+    yield "omega-dot x I omega", np.asarray(cross(rate, apply(inertia, w)))
+    yield "omega x I omega-dot", np.asarray(cross(w, apply(inertia, rate)))
+
+
+def _other_bodies(
+    system: System, states: State, requested: Acceleration
+) -> dict[str, Callable[[], Array]]:
+    """The torque by another inertia."""
+    inertia, w = np.asarray(moving_inertia(system), dtype=float), states.angular_velocity
+    gravity, body = gravity_torque(system, states), system.body.inertia
+    diagonal = np.diag(np.diag(inertia))
+
+    def by(mass: Array, spin: Array) -> Callable[[], Array]:
+        return lambda: apply(mass, requested.angular) + cross(w, apply(spin, w)) - gravity
+
+    return {
+        "inverse dynamics use the inertia's diagonal alone": by(diagonal, diagonal),
+        "inverse dynamics use the inertia's diagonal alone for omega-dot": by(diagonal, inertia),
+        "inverse dynamics use the inertia's diagonal alone in the gyroscopic term": by(
+            inertia, diagonal
+        ),
+        "inverse dynamics use the inertia about the centre of mass, not about the pivot": by(
+            np.asarray(body), np.asarray(body)
+        ),
+        "inverse dynamics have the products of inertia with the wrong sign": by(
+            2.0 * diagonal - inertia, 2.0 * diagonal - inertia
+        ),
+        "inverse dynamics invert the inertia": by(np.asarray(inverse(inertia)), inertia),
+        "inverse dynamics give the torque of the acceleration that the loads cause": lambda: (
+            inverse_dynamics(system, states, forward_dynamics(system, states))
+        ),
+    }
