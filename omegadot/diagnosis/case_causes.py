@@ -18,7 +18,8 @@ from omegadot.diagnosis.equations.wrong_equation import (
 from omegadot.diagnosis.equations.wrong_torque import torque_causes
 from omegadot.diagnosis.integrator import IntegratorCauses
 from omegadot.diagnosis.kept_case import opposite_steps, source_of
-from omegadot.diagnosis.models.wrong_model import lever_causes, model_causes
+from omegadot.diagnosis.models.wrong_lever import lever_causes
+from omegadot.diagnosis.models.wrong_model import model_causes
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import batch_cause, kept_causes
 from omegadot.gates.bounds.scales import eps_of

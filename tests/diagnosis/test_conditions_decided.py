@@ -9,9 +9,8 @@ import pytest
 from wrong_equations import BODY_TORQUE, PIVOT, WORLD_TORQUE, case, with_torque
 
 from omegadot.diagnosis.equations.across import Across
-from omegadot.diagnosis.equations.evidence import of_forward_dynamics
+from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics
 from omegadot.diagnosis.equations.held import Scene
-from omegadot.diagnosis.equations.wrong_equation import FORWARD
 from omegadot.diagnosis.wording.decided import decided
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.states.equation import random_states

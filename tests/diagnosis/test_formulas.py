@@ -12,13 +12,13 @@ from wrong_equations import CASES, GRAVITY, PIVOT, WORLD_TORQUE, case, with_torq
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.by_formula import ByFormula, by_formula
 from omegadot.diagnosis.equations.evidence import (
+    FORWARD,
     INVERSE,
     of_forward_dynamics,
     of_inverse_dynamics,
 )
 from omegadot.diagnosis.equations.held import Scene, Scenes
 from omegadot.diagnosis.equations.known import known_over
-from omegadot.diagnosis.equations.wrong_equation import FORWARD
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case

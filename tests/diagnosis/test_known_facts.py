@@ -10,10 +10,9 @@ from wrong_equations import CASES, GRAVITY, PIVOT, case, with_torque
 
 from omegadot.diagnosis.equations.dependence import dependence_text, powers_over
 from omegadot.diagnosis.equations.describe import off_of, off_over, off_text
-from omegadot.diagnosis.equations.evidence import of_forward_dynamics
+from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.known import kinds_off, known_over
-from omegadot.diagnosis.equations.wrong_equation import FORWARD
 from omegadot.diagnosis.wording.features import features_of, in_common
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states
