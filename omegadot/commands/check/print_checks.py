@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.commands.check.check import CheckResult
+from omegadot.commands.check.failing_state import state_text
 from omegadot.commands.check.judge import CAUSE
 from omegadot.commands.check.result import Check, Result, Verdict, coverage
 from omegadot.commands.check.shrink import Failing
@@ -98,6 +99,7 @@ def print_json(found: CheckResult) -> None:
                 "message": one.message,
                 "cause": one.cause,
                 "has": one.has,
+                "at": one.at,
                 "scenario": one.toml,
                 "command": one.command,
                 "trials": one.trials,
@@ -143,6 +145,10 @@ def _print_failing(console: Console, found: Failing) -> None:
     searched = "" if found.finished else f" (the search ended after {found.trials} systems)"
     console.print(Text(f"Smallest failing system of {found.check.id}{searched}:", "bold"))
     console.print(Text(f"    It has {left}. {found.message}"))
+    if found.at:
+        what = "the equation is wrong" if found.check.gate == "equation" else "a single step fails"
+        line = f"Its own motion does not show it: {what} at {state_text(found.at)}."
+        console.print(Text(f"    {line}"))
     if found.cause:
         console.print(Text(f"    Likely cause, found on {found.check.scenario}: {found.cause}"))
     console.print(Text(f"    Save as {found.scenario.name}.toml, then: {found.command}"))
