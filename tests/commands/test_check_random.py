@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from command_line import WRONG, omegadot
+from command_line import WRONG, omegadot, quick_scenario
 
 import omegadot as package
 from omegadot.commands.check.exceptions import DeclaredException, with_exceptions
@@ -122,6 +122,49 @@ def test_a_shrunk_system_is_printed_with_its_command(
     assert f"Likely cause, found on random-5-1: {found['cause']}" in printed
     assert re.search(r"It has [^.]*a damping of .* and a torque in", printed)
     assert re.search(r"^2 random systems +pass +fail", printed, re.MULTILINE)
+
+
+def test_the_smallest_system_fails_by_its_own_motion(tmp_path: Path) -> None:
+    """Caught: a body that spins from the identity, of which nothing is wrong to be seen."""
+    file = quick_scenario(tmp_path)
+    (found,) = package.check(f"{WRONG}:OmegaDotInWorld", scenarios=file).failing
+    assert found.at == {}
+    assert "a start of several components of omega" in found.has
+    rows = package.run(found.scenario, f"{WRONG}:OmegaDotInWorld").record.metrics
+    on_path = rows.filter(engine="omegadotinworld", metric="residual_on_path", verdict="fail")
+    assert len(on_path) == 1
+
+
+def test_a_turned_start_is_tried_in_few_digits() -> None:
+    tables = tables_of(random_case(0, 1), "one")
+    turns = [t for s in SIMPLER if sum(map(bool, t := s(tables)["initial"]["orientation"])) == 2]
+    assert turns == [[0.6, 0.8, 0.0, 0.0], [0.6, 0.0, 0.8, 0.0], [0.6, 0.0, 0.0, 0.8]]
+    simple = {**tables, "initial": {**tables["initial"], "orientation": turns[1]}}
+    assert all(s(simple)["initial"]["orientation"] in ([1.0, 0, 0, 0], turns[1]) for s in SIMPLER)
+
+
+@pytest.mark.parametrize(
+    ("name", "gate", "what"),
+    [
+        ("FastSpinsDamped", "equation", "the equation is wrong"),
+        ("FastStepsDamped", "scheme", "a single step fails"),
+    ],
+)
+def test_a_state_off_the_motion_is_printed(
+    name: str, gate: str, what: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Caught: a scenario to type in that shows nothing, as the gate failed at another state."""
+    checked = package.check(f"{WRONG}:{name}", scenarios=quick_scenario(tmp_path))
+    (found,) = checked.failing
+    assert found.check.gate == gate
+    assert np.linalg.norm(found.scenario.initial.angular_velocity) < 5.0
+    assert np.linalg.norm(found.at["angular_velocity"]) > 5.0
+    assert set(found.at) == {"orientation", "angular_velocity", "position", "linear_velocity"}
+    print_checks(checked)
+    printed = capsys.readouterr().out
+    assert f"Its own motion does not show it: {what} at orientation = [" in printed
+    print_json(checked)
+    assert json.loads(capsys.readouterr().out)["failing"][0]["at"] == found.at
 
 
 def _toml(text: str) -> dict[str, Any]:

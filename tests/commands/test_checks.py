@@ -6,10 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from command_line import FAULTY, WRONG, omegadot, quick_scenario
+from command_line import FAULTY, QUICK, WRONG, omegadot, quick_scenario
 
-from omegadot.commands.check.check import arguments_of
-from omegadot.commands.check.judge import failure
+from omegadot.commands.check.check import CheckResult, arguments_of
+from omegadot.commands.check.judge import CAUSE, failure
+from omegadot.commands.check.print_checks import print_checks
 from omegadot.commands.check.result import (
     REGISTRY,
     Check,
@@ -232,3 +233,47 @@ def test_json_gives_every_check_its_parts(tmp_path: Path) -> None:
     first = json.loads(result.out)["checks"][0]
     check, verdict = Check("exact", "quick", "model"), Result("pass")
     assert first == {"id": check.id, **vars(check), **vars(verdict)}
+
+
+def test_a_fault_in_every_check_is_a_screen_long(capsys: pytest.CaptureFixture[str]) -> None:
+    """Caught: 1300 lines of one cause, with what explains them below."""
+    many = {
+        Check("toy", f"s-{n}", gate): Result("fail", f"{gate} is off by {n}. {CAUSE}no spin.")
+        for n in range(40)
+        for gate in ("equation", "scheme")
+    }
+    alike = {
+        Check("toy", "s-0", "trajectory", "a", 0.1 * n): Result("fail", "off.") for n in range(1, 9)
+    }
+    found = CheckResult({**many, **alike}, ())
+    print_checks(found)
+    printed = capsys.readouterr().out
+    lines = printed.splitlines()
+    assert printed.index("What explains the 88 failures") < printed.index("FAIL  ")
+    assert "FAIL  toy-s-0-equation" in lines
+    assert f"    equation is off by 0. {CAUSE}no spin." in lines
+    assert "    scheme is off by 0." in lines  # of the next gate, its cause not again
+    assert "    and 77 more failures of this cause: --verbose lists them." in lines
+    assert "    and 5 more failures: --verbose lists them." in lines
+    assert printed.count("FAIL  ") == 3 + 3
+    assert lines[-1] == "88 checks: 88 fail."
+    print_checks(found, verbose=True)
+    printed = capsys.readouterr().out
+    assert printed.count("FAIL  ") == 88
+    assert printed.count(f"{CAUSE}no spin.") == 80
+    few = CheckResult(dict(list(many.items())[:20]), ())
+    print_checks(few)
+    assert capsys.readouterr().out.count("FAIL  ") == 20
+
+
+def test_verbose_lists_every_failure(tmp_path: Path) -> None:
+    text = QUICK.replace(
+        "[0.02, 0.01, 0.005]", "[0.04, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625]"
+    )
+    arguments = (f"{WRONG}:NoGyroscopic", "--no-shrink", "--scenario")
+    result = omegadot("check", *arguments, quick_scenario(tmp_path, text), folder=tmp_path)
+    whole = omegadot("check", *arguments, "quick.toml", "--verbose", folder=tmp_path)
+    assert result.code == whole.code == 1
+    failures = int(re.search(r"(\d+) fail", whole.out.splitlines()[-1])[1])  # type: ignore[index]
+    assert failures > 20
+    assert whole.out.count("FAIL  ") == failures > result.out.count("FAIL  ")

@@ -126,7 +126,8 @@ def test_where_nothing_fits_the_dependence_on_each_size_is_measured() -> None:
     found = dependence(evidence(system, states), scaled)
     assert "twice |omega| makes it 8 times as large" in found
     assert "twice the damping makes it 2 times as large" in found
-    assert found.endswith("it is the same with twice the speed, the place and the mass")
+    same = "it is the same with twice the linear velocity, the position and the mass"
+    assert found.endswith(f"{same}, and it is the same at another attitude")
 
 
 @pytest.mark.parametrize(

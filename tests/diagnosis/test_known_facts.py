@@ -13,11 +13,13 @@ from omegadot.diagnosis.equations.describe import off_of, off_over, off_text
 from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.known import kinds_off, known_over
-from omegadot.diagnosis.wording.features import features_of, in_common
+from omegadot.diagnosis.wording.features import Features, features_of, in_common
+from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states
 from omegadot.harness.requests.scaled import STATES, doubled
 from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Acceleration, State, System
 
 Equation = Callable[[System, State], Acceleration]
@@ -138,3 +140,41 @@ def test_what_is_off_at_other_shares_of_the_states_has_both() -> None:
     assert f"at {100 * over.share[0]:.0f} to {100 * over.share[1]:.0f} % of the states" in off_text(
         "omega-dot", over
     )
+
+
+def test_an_inertia_of_another_attitude_is_said_to_change_with_it() -> None:
+    """Caught: "does not depend on the speed", of what is zero at the identity and goes as omega^2:
+    the linear velocity was meant, and the attitude not looked at.
+    """
+
+    def odd(system: System, states: State) -> Acceleration:
+        w = states.angular_velocity
+        lean = rotation_matrix(states.orientation)[:, :, 0] * norm(w)[:, None] * w[:, [1, 2, 0]]
+        return with_torque(system, states, lean)
+
+    text = known(scenes(odd, MIXED[:3]), "fast-0")
+    assert "it changes with the attitude" in text
+    assert "does not depend on the linear velocity, the position, the mass" in text
+    assert "speed" not in text
+
+    def steady(system: System, states: State) -> Acceleration:
+        w = states.angular_velocity
+        return with_torque(system, states, norm(w)[:, None] * np.sin(w[:, [1, 2, 0]]))
+
+    text = known(scenes(steady, MIXED[:3]), "fast-0")
+    assert "does not depend on the linear velocity, the position, the attitude" in text
+    assert "changes with" not in text
+
+
+def test_unequal_moments_are_named_so() -> None:
+    """Caught: "above a limit between 1 and 1.000001", of bodies that are all but one no sphere."""
+
+    def body(spread: float) -> Features:
+        system = case("one", {}, 1.0).system
+        tensor = np.diag([1.0, 1.0, 1.0 + spread])
+        own = replace(system, bodies=(replace(system.body, inertia=tensor),))
+        return features_of(own, case("one", {}, 1.0).initial)
+
+    unequal, equal = [body(s) for s in (1e-6, 1e-3, 0.1, 0.5)], [body(0.0), body(1e-16)]
+    assert in_common(unequal, equal) == ["the moments of inertia are unequal"]
+    assert in_common(equal, unequal) == ["the moments of inertia are equal"]

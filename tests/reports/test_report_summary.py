@@ -175,7 +175,7 @@ def test_an_engine_without_integrators_is_named(record):
 def test_the_headline_of_a_failing_run(record):
     failed = change(record, first_of(record, "dart"), gates={"equation": "fail"})
     message = headline(summarise(failed))
-    assert message == "1 of 2 engines fails a gate: dart, on sphere."
+    assert message == "1 of 2 engines fails: dart, on sphere."
 
 
 def test_the_headline_names_which_engine_fails_on_which_scenario(record):
@@ -188,7 +188,7 @@ def test_the_headline_names_which_engine_fails_on_which_scenario(record):
     )
     message = headline(summarise(change(failed, mujoco, gates={"equation": "fail"})))
     where = f"mujoco (on {other['scenario']}) and dart (on sphere)"
-    assert message == f"2 of 2 engines fail a gate: {where}."
+    assert message == f"2 of 2 engines fail: {where}."
 
 
 def test_a_headline_pairs_each_failing_engine_with_its_own_scenarios():
@@ -201,7 +201,7 @@ def test_a_headline_pairs_each_failing_engine_with_its_own_scenarios():
         for place, entry in enumerate(record.run["tasks"]):
             if (entry["engine"], entry["scenario"]) in pairs:
                 failed = change(failed, place, gates={"equation": "fail"})
-        return headline(summarise(failed)).partition(" a gate: ")[2]
+        return headline(summarise(failed)).partition(": ")[2]
 
     apart = failing(("dart", names[1]), ("mujoco", names[0]))
     assert "dart (on scenario-1)" in apart

@@ -120,6 +120,22 @@ def test_a_scheme_that_the_reference_lacks_has_no_name():
     assert "identical trajectories (no scheme of the reference)" in sentence(found)
 
 
+def test_a_scheme_that_depends_on_the_scenario_is_named_with_it():
+    """Caught: "no scheme of the reference", beside a table that names one for every run."""
+    damped = [cluster(n, "x:a y:b", "implicit") for n in ("one", "two")]
+    top = cluster("top", "x:a y:b")
+    (found,) = clusters_over_scenarios(of(top, damped[0]))
+    assert "(both step euler on top and implicit on one)" in sentence(found)
+    # Caught: the scheme of the most scenarios, stated of all of them.
+    (found,) = clusters_over_scenarios(of(*damped, top))
+    assert "(both step implicit on one and two and euler on top)" in sentence(found)
+    (found,) = clusters_over_scenarios(of(*damped, cluster("top", "x:a y:b", None)))
+    assert "implicit on one and two and no scheme of the reference on top" in sentence(found)
+    # At every step, or it is not that of the scenario's runs.
+    (found,) = clusters_over_scenarios(of(top, cluster("top", "x:a y:b", None, timestep=0.02)))
+    assert "(no scheme of the reference)" in sentence(found)
+
+
 def test_a_record_without_clusters_has_no_sentence():
     assert clusters_over_scenarios({}) == []
     assert on_scenario({}, "sphere") == ""

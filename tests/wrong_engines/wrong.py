@@ -291,6 +291,27 @@ class GravityAlwaysDown(Wrong):
         return acceleration_of(replace(system, load=replace(system.load, gravity=down)))
 
 
+class FastSpinsDamped(Wrong):
+    """What spins faster than 5 rad/s is damped, slower spins are sound."""
+
+    def acceleration_of(self, system: System) -> Callable[[State], Acceleration]:
+        right = acceleration_of(system)
+
+        def acceleration(state: State) -> Acceleration:
+            found, w = right(state), state.angular_velocity
+            fast = np.linalg.norm(w, axis=-1, keepdims=True) > 5.0
+            return Acceleration(found.angular - np.where(fast, 0.1 * w, 0.0), found.linear)
+
+        return acceleration
+
+
+class FastStepsDamped(FastSpinsDamped):
+    """The same in its steps alone."""
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        return acceleration_of(self.system)(states)
+
+
 class RefusesLongSteps(ReferenceAdapter):
     """Sound, but for steps that it does not take."""
 

@@ -50,6 +50,10 @@ def check(
             help="Look for the simplest system on which a gate fails, where one does.",
         ),
     ] = True,
+    verbose: Annotated[
+        bool,
+        typer.Option("--verbose", help="List every check that fails, not the first of each cause."),
+    ] = False,
     output: options.Output = options.Format.text,
 ) -> None:
     """Check one engine, built in or your own, at every gate.
@@ -57,7 +61,7 @@ def check(
     Exit codes: 0 every check holds, 1 one fails or all but those of the model were skipped, 2 wrong
     usage or input, 3 the engine crashed, timed out or could not be started.
     """
-    arguments = options.given(locals())
+    arguments = options.given({k: v for k, v in locals().items() if k != "verbose"})
     from omegadot.commands.check.check import check as check_engine
     from omegadot.commands.check.print_checks import print_checks, print_json
 
@@ -65,5 +69,5 @@ def check(
     if output is options.Format.json:
         print_json(found)
     else:
-        print_checks(found)
+        print_checks(found, verbose)
     raise typer.Exit(options.exit_code(found.passed, found.answered))

@@ -10,8 +10,9 @@ import time
 import warnings
 from collections import Counter
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
+from omegadot.commands.check.failing_state import Shown, failing_state, is_of_motion
 from omegadot.commands.check.judge import CAUSE, failure
 from omegadot.commands.check.result import GATES_OF_A_RUN, GATES_OF_A_SCENARIO, Check, Result
 from omegadot.commands.check.simpler import SIMPLER, brief
@@ -20,7 +21,7 @@ from omegadot.gates.case import Case
 from omegadot.gates.errors.verdicts import UNDECIDED
 from omegadot.gates.rows import Row
 from omegadot.harness.arguments import case_of
-from omegadot.harness.outcome import RunRequest
+from omegadot.harness.outcome import EngineCase, RunRequest
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.runner import Runner
 from omegadot.scenarios import Scenario, ScenarioError, scenario_of
@@ -38,8 +39,9 @@ class Failing:
 
     check: the one that was shrunk.  message: what fails of the simplest.  has: what is left in it.
     trials: systems tried.  finished: nothing simpler was left to try within the budget.
-    command: runs it alone, once `toml` is in the file that it names.  cause: the likely one of the
-    check before it was shrunk, which decides between more causes; "" without any.
+    command: runs it alone, once `toml` is in the file that it names.  at: the state at which it
+    fails, where its own motion does not show that; else empty.  cause: the likely one of the check
+    before it was shrunk, which decides between more causes; "" without any.
     """
 
     check: Check
@@ -49,6 +51,7 @@ class Failing:
     trials: int
     finished: bool
     command: str
+    at: Shown = field(default_factory=dict)
     cause: str = ""
 
     @property
@@ -113,15 +116,28 @@ def shrink(
             runner.engines.finish()
 
 
-def _failed_rows(runner: Runner, gate: str, case: Case) -> list[Row]:
+@dataclass(frozen=True)
+class _Failed:
+    """What fails of one system: the rows of the gate, and whether its own motion shows it.
+
+    integrator: of the run that fails, if it is one's.
+    """
+
+    rows: list[Row]
+    of_motion: bool = False
+    integrator: str | None = None
+
+
+def _failed(found: EngineCase, gate: str) -> _Failed:
     """The rows of a gate that fail on a case: of the engine, or of the first run that fails."""
-    for found in runner.run_case(case).engines:
-        shared = [found.shared] if gate in GATES_OF_A_SCENARIO else []
-        for rows in shared or [run.rows for run in found.runs]:
-            failed = [row for row in rows if row.verdict == "fail" and row.gate == gate]
-            if failed:
-                return failed
-    return []
+    shared = gate in GATES_OF_A_SCENARIO
+    every = [(found.shared, None)] if shared else [(r.rows, r.integrator.name) for r in found.runs]
+    for rows, integrator in every:
+        failed = [row for row in rows if row.verdict == "fail"]
+        own = [row for row in failed if row.gate == gate]
+        if own:
+            return _Failed(own, is_of_motion(failed), integrator)
+    return _Failed([])
 
 
 def _metrics(rows: Sequence[Row]) -> set[str]:
@@ -152,18 +168,19 @@ def _search(
     whole, of_engine = tables_of(case, name), check.gate in GATES_OF_A_SCENARIO
     began = time.monotonic()
 
-    def failed(tables: Tables) -> list[Row]:
+    def failed(tables: Tables) -> _Failed:
         try:
-            return _failed_rows(runner, check.gate, case_of(scenario_of(tables, name), ()))
+            judged = runner.run_case(case_of(scenario_of(tables, name), ()))
         except ScenarioError:  # no body has this inertia
-            return []
+            return _Failed([])
+        return next((f for e in judged.engines if (f := _failed(e, check.gate)).rows), _Failed([]))
 
     wanted, trials, finished = set[str](), 0, True
     # most gates of the engine fail on one step as well, and the whole run takes long
     for simplest in (brief(whole), whole) if of_engine else (whole,):
         trials, started = trials + 1, time.monotonic()
         last = failed(simplest)
-        wanted, took = _metrics(last), time.monotonic() - started
+        wanted, took = _metrics(last.rows), time.monotonic() - started
         if wanted:
             break
     if not wanted:
@@ -176,10 +193,11 @@ def _search(
         if not finished:
             break
         trials += 1
-        rows = failed(tables)
-        kept = bool(wanted & _metrics(rows))
+        now = failed(tables)
+        # What its own motion shows, that of the simplest shows as well.
+        kept = bool(wanted & _metrics(now.rows)) and now.of_motion >= last.of_motion
         if kept:
-            simplest, last, took = tables, rows, time.monotonic() - started
+            simplest, last, took = tables, now, time.monotonic() - started
         try:
             tables = candidates.send(kept)
         except StopIteration:
@@ -187,4 +205,16 @@ def _search(
     found = scenario_of(simplest, name)
     alone = f"{command} --scenario {name}.toml"
     left = ingredients(found, stepped=check.gate in GATES_OF_A_RUN)
-    return Failing(check, found, failure(last), left, trials, finished, alone)
+    at = {} if last.of_motion else _state_of(runner, found, check.gate, last.integrator)
+    return Failing(check, found, failure(last.rows), left, trials, finished, alone, at)
+
+
+def _state_of(runner: Runner, found: Scenario, gate: str, integrator: str | None) -> Shown:
+    """The state at which the simplest system fails, from its answers to the same requests."""
+    judged = runner.run_case(case_of(found, ()))
+    states = (
+        failing_state(judged, engine, gate, integrator, runner.request.seed)
+        for engine in judged.engines
+        if _failed(engine, gate).rows
+    )
+    return next(states, {})

@@ -141,6 +141,13 @@ def _rounded_value_of(table: Tables, digits: int) -> Tables:
     return {key: _rounded_value(value, digits) for key, value in table.items()}
 
 
+def _turned_about(tables: Tables, axis: int) -> Tables:
+    """A turn about one axis, of a quaternion of few digits, in the place of any other."""
+    if np.count_nonzero(tables["initial"]["orientation"]) <= 2:
+        return tables
+    return _with(tables, "initial", orientation=[0.6, *(0.8 * np.eye(3)[axis]).tolist()])
+
+
 SIMPLER: tuple[Simpler, ...] = (
     brief,
     _bare,
@@ -152,6 +159,7 @@ SIMPLER: tuple[Simpler, ...] = (
     *(partial(_in_its_own_units, units=unit) for unit in ("mass", "size", "time")),
     _in_place,
     _unturned,
+    *(partial(_turned_about, axis=axis) for axis in range(3)),
     _one_two_three,
     _principal,
     *(partial(_along_one_axis, table=table, key=key) for table, key in VECTORS),

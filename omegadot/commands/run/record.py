@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from omegadot import __version__
+from omegadot.adapters.registry import PROGRAM, registered
 from omegadot.diagnosis.clusters import clusters_of_run
 from omegadot.diagnosis.diagnose import causes_over
 from omegadot.gates.case import Case
 from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase, Outcome, RunRequest
+from omegadot.harness.plan import EngineChoice
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import SCHEMA
 from omegadot.workers.machine import describe_machine, package_versions
@@ -60,11 +62,18 @@ def _engines(outcome: Outcome) -> list[dict[str, Any]]:
         integrators = [vars(integrator) for integrator in own.integrators]
         parts = {"integrators": integrators, "features": sorted(own.features)}
         named = {"name": engine.name, "installed": True, "reason": ""}  # as the tasks name it
-        via = {"via": engine.choice.via or "api"}
-        found.append({**vars(own), **named, **parts, **via})
+        ways = {"via": engine.choice.via or "api", "argument": _argument(engine.choice)}
+        found.append({**vars(own), **named, **parts, **ways})
     for choice, answer in outcome.missing:
         found.append({"name": choice.name, "installed": False, "reason": answer.reason})
     return found
+
+
+def _argument(choice: EngineChoice) -> str:
+    """What `check` takes for an engine: its name, or the class or program of one's own."""
+    if registered().get(choice.engine) == choice.target:
+        return choice.engine
+    return choice.target.removeprefix(PROGRAM)
 
 
 def _scenario(case: Case) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.wording.digits import listed, number
 from omegadot.gates.bounds.scales import norm
-from omegadot.harness.requests.scaled import STATES, TWICE
+from omegadot.harness.requests.scaled import ATTITUDE, STATES, TWICE
 from omegadot.reference_impl.system import Array
 
 CLEAN = 1e-4  # of an exponent
@@ -60,10 +60,12 @@ def dependence_text(powers: Powers, it: str = "it") -> str:
     ]
     same = [w for w, (p, count) in powers.items() if not p and count >= LEAST_SCENARIOS]
     still = [w for w, (p, count) in powers.items() if not p and count < LEAST_SCENARIOS]
+    unturned, still = ATTITUDE in still, [what for what in still if what != ATTITUDE]
     parts = [f"{it} goes {listed(grows)}"] if grows else []
     parts += [f"{it} does not depend on {listed(same)}"] if same else []
     parts += seen
     parts += [f"{it} is the same with twice {listed(still)}"] if still else []
+    parts += [f"{it} is the same at another attitude"] if unturned else []
     return ", and ".join(parts)
 
 
@@ -77,14 +79,34 @@ def powers_of(
     """The exponents by what is doubled; None where there is none, and not what cannot be seen.
 
     scaled: by what is doubled, the evidence at the first states of this one.  kind: "angular" or
-    "linear".
+    "linear".  Of the attitude, which is turned, it is zero where nothing changes in body axes.
     """
     base, found = _first(evidence), dict[str, float | None]()
     for what, other in scaled.items():
-        seen, power = _exponent(base, other, kind)
+        seen, power = (_unturned if what == ATTITUDE else _exponent)(base, other, kind)
         if seen:
             found[what] = power
     return found
+
+
+def changes_with_attitude(evidence: Evidence, scaled: Mapping[str, Evidence], kind: str) -> bool:
+    """Whether the same states at another attitude are off by another vector, in body axes."""
+    other = scaled.get(ATTITUDE)
+    if other is None or kind != "angular":  # the linear one is in the world
+        return False
+    return _unturned(_first(evidence), other, kind) == (True, None)
+
+
+def _unturned(base: Evidence, other: Evidence, kind: str) -> tuple[bool, float | None]:
+    """Whether enough states show it, and zero where they are off by the same vector."""
+    used = _clear(base, kind)
+    if kind != "angular" or np.count_nonzero(used) < LEAST:
+        return False, None
+    before, after = (one.found.angular - one.true.angular for one in (base, other))
+    apart, size = norm(after - before)[used], norm(before)[used]
+    if not np.all(np.isfinite(apart)):
+        return False, None
+    return True, 0.0 if np.all(apart <= CLEAN * size) else None
 
 
 def _first(evidence: Evidence) -> Evidence:

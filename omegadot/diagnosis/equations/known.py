@@ -7,16 +7,22 @@ from math import comb
 
 import numpy as np
 
-from omegadot.diagnosis.equations.dependence import dependence_text, powers_of, powers_over
+from omegadot.diagnosis.equations.dependence import (
+    changes_with_attitude,
+    dependence_text,
+    powers_of,
+    powers_over,
+)
 from omegadot.diagnosis.equations.describe import Off, off_of, off_over, off_text
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.wording.features import Features, in_common, ways_of
 from omegadot.gates.bounds.scales import norm
+from omegadot.harness.requests.scaled import ATTITUDE
 
 ANGULAR, LINEAR = KINDS = ("omega-dot", "the linear acceleration")
 ATTRIBUTES = {ANGULAR: "angular", LINEAR: "linear"}
-OF_THE_STATE = ("|omega|", "the speed", "the place")
+OF_THE_STATE = ("|omega|", "the linear velocity", "the position")
 
 
 def known_over(
@@ -71,9 +77,11 @@ def _goes(parts: Sequence[tuple[Scene, Evidence]], off: Off | None, kind: str, i
     free = any(e.system.load.pivot is None for _, e in parts)
     moves = OF_THE_STATE if free else OF_THE_STATE[:1]  # a pivoted body's place is its attitude's
     still = all(powers.get(what, (1.0, 0))[0] == 0.0 for what in moves)
-    alone = off is not None and off.turns and still
+    turned = any(changes_with_attitude(e, s.scaled, kind) for s, e in parts)
+    alone = off is not None and off.turns and still and ATTITUDE not in powers
     rest = {k: v for k, v in powers.items() if not (alone and k in OF_THE_STATE)}
     texts = [f"nothing else of the state than the attitude is seen to change {it}"] * alone
+    texts += [f"{it} changes with the attitude"] * (turned and not alone)
     return "; ".join(text for text in (*texts, dependence_text(rest, it)) if text)
 
 

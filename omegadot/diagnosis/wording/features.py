@@ -17,6 +17,7 @@ from omegadot.reference_impl.system import State, System
 # How unlikely chance must be to sort the scenarios so: one in so many ways to sort them. A kind is
 # likely by itself; of a size the limit may lie anywhere, and every size is tried from both sides.
 SORTED_BY_KIND, ODDS = 6, 20
+EQUAL = 1e-12  # of the largest moment, by how much others differ from it by rounding
 FOLLOWS = {
     "the body is pivoted": ("the pivot lies off the origin", "the body does not move at the start"),
     "the body is free": ("the pivot lies at the origin", "the body moves at the start"),
@@ -40,6 +41,7 @@ def features_of(system: System, initial: State) -> Features:
     pivoted, pulled = load.pivot is not None, bool(np.any(gravity))
     driven = bool(np.any(load.torque_body)), bool(np.any(load.torque_world))
     products = bool(np.any(np.abs(tensor - np.diag(np.diag(tensor))) > 1e-12 * np.max(tensor)))
+    moments = np.linalg.eigvalsh(tensor)
     kinds = {
         "the body is pivoted": pivoted,
         "the body is damped": bool(np.any(load.damping)),
@@ -51,13 +53,14 @@ def features_of(system: System, initial: State) -> Features:
         and not (gravity[2] < 0.0 and np.all(gravity[:2] == 0.0)),
         "the centre of mass lies off the origin": bool(np.any(body.center_of_mass)),
         "the inertia has products": products,
+        "the moments of inertia are unequal": bool(np.ptp(moments) > EQUAL * moments[-1]),
         "the pivot lies off the origin": pivoted and bool(np.any(load.pivot)),
         "the first attitude is not the identity": bool(abs(initial.orientation[0]) < 1.0 - 1e-12),
         "the scalar part of the first quaternion is negative": bool(initial.orientation[0] < 0.0),
         "the body moves at the start": bool(np.any(initial.linear_velocity)),
     }
     arm = float(norm(lever(system))) if pivoted else 0.0
-    mass, moments = float(body.mass), np.linalg.eigvalsh(tensor)
+    mass = float(body.mass)
     sizes = {
         "the mass": (mass, "kg"),
         "the body's radius of gyration": (float(np.sqrt(np.trace(tensor) / mass)), "m"),
@@ -74,7 +77,7 @@ def features_of(system: System, initial: State) -> Features:
             "",
         ),
         "|omega| at the start": (float(norm(initial.angular_velocity)), "rad/s"),
-        "the speed at the start": (float(norm(initial.linear_velocity)), "m/s"),
+        "the linear speed at the start": (float(norm(initial.linear_velocity)), "m/s"),
         "the distance from the pivot to the centre of mass": (arm, "m"),
         "the weight": (mass * float(norm(gravity)), "N"),
         "the largest torque of the weight": (mass * float(norm(gravity)) * arm, "N m"),
@@ -149,6 +152,7 @@ def _negated(text: str) -> str:
         "the body is damped": "nothing damps the body",
         "gravity points elsewhere than along -z": "gravity is zero or points along -z",
         "the inertia has products": "the inertia has no products",
+        "the moments of inertia are unequal": "the moments of inertia are equal",
         "the centre of mass lies off the origin": "the centre of mass lies at the origin",
         "the pivot lies off the origin": "the pivot lies at the origin",
         "the body moves at the start": "the body does not move at the start",

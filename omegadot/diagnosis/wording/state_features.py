@@ -30,7 +30,7 @@ def features_of_states(system: System, states: State) -> Numbers:
         "the angle from the identity": (turned, "rad"),
         "the quaternion's scalar part": (q[:, 0], ""),
         "the kinetic energy of rotation": (energy, "J"),
-        "the speed": (norm(v), "m/s"),
+        "the linear speed": (norm(v), "m/s"),
         "the distance from the world's origin": (norm(x), "m"),
     }
     for k, axis in enumerate("xyz"):

@@ -1,4 +1,4 @@
-"""The same system with one size doubled: how what is wrong in its equation depends on that size.
+"""The same system with one size doubled, or turned: how what is wrong depends on that alone.
 
 It is requested where forward dynamics are wrong, and judged by no gate.
 """
@@ -16,20 +16,29 @@ from omegadot.gates.states import equation
 from omegadot.gates.states.equation import EvaluationStates
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.rotations import turn_in_world
 from omegadot.reference_impl.system import Acceleration, Load, State, System
 
 TWICE = 2.0
 STATES = 12
+ATTITUDE = "the attitude"
+TURN = np.array([0.3, 0.5, 0.8])  # rad, about no axis of symmetry
 
 
 def doubled(system: System, states: State) -> Iterator[tuple[str, System, State]]:
-    """What is doubled, the system with it, and the states; all else is the same."""
+    """What is doubled, the system with it, and the states; all else is the same.
+
+    The attitude is turned instead, in the world.
+    """
     body, load = system.body, system.load
     yield "|omega|", system, replace(states, angular_velocity=TWICE * states.angular_velocity)
     if load.pivot is None and np.any(states.linear_velocity):
-        yield "the speed", system, replace(states, linear_velocity=TWICE * states.linear_velocity)
+        faster = replace(states, linear_velocity=TWICE * states.linear_velocity)
+        yield "the linear velocity", system, faster
     if load.pivot is None and np.any(states.position):
-        yield "the place", system, replace(states, position=TWICE * states.position)
+        yield "the position", system, replace(states, position=TWICE * states.position)
+    turned = turn_in_world(states.orientation, TURN, 1.0)
+    yield ATTITUDE, system, replace(states, orientation=turned)
     yield "the mass", replace(system, bodies=(replace(body, mass=TWICE * body.mass),)), states
     longer = replace(
         body, inertia=TWICE**2 * body.inertia, center_of_mass=TWICE * body.center_of_mass
@@ -66,7 +75,8 @@ def request_scaled(
         return
     few = evaluation_states.random[:STATES]
     for what, system, states in doubled(case.system, few):
-        name = f"{case.name}-with-twice-{what.replace(' ', '-').replace('|', '')}"
+        how = "other" if what == ATTITUDE else "twice"
+        name = f"{case.name}-with-{how}-{what.replace(' ', '-').replace('|', '')}"
         scenario = case.scenario.model_copy(update={"name": name})
         other = replace(case, scenario=scenario, system=system)
         placed = place_on_pivot(system, states)

@@ -13,8 +13,8 @@ from omegadot.reports.record.schema import GATES, YARDSTICKS
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.matrix import MARKS, origin_of
 from omegadot.reports.summary.provenance import Sources
-from omegadot.reports.summary.summary import Cell, Column, Summary, worst
-from omegadot.reports.text.numbers import grouped, knob, short, times
+from omegadot.reports.summary.summary import Cell, Column, Summary, text_of, worst
+from omegadot.reports.text.numbers import grouped, knob, short, times, times_its_bound
 
 # A cell: the value, its details, which may be folded away, and what stands beside it in any case.
 Detailed = tuple[str, str] | tuple[str, str, str]
@@ -44,7 +44,7 @@ def _glance(
         "engine": column.name,
         "status": status.replace("-", " "),
         "mark": MARKS.get(status, "–"),
-        "runs": _runs(cells),
+        "runs": _runs(cells, status),
         "residual": _residual(cells),
         "best": _spread([found.best for found in ranges], status == "fail"),
         "worst": _spread([found.worst for found in ranges], status == "fail"),
@@ -54,15 +54,27 @@ def _glance(
     }
 
 
-def _runs(cells: Iterable[Cell]) -> str:
+def _excess(figure: Figure) -> float:
+    return times_its_bound(figure.value, figure.bound) if figure.bound else 0.0
+
+
+def _runs(cells: Iterable[Cell], status: str) -> str:
+    """How many runs have the verdict, or pass where none is given, and how many have neither."""
     runs = sum((cell.runs for cell in cells), Counter[str]())
-    return f"{runs.get('pass', 0)} of {times(sum(runs.values()), 'run')} pass"
+    own = status if status in ("fail", "pass") else "pass"
+    text = f"{runs[own]} of {times(sum(runs.values()), 'run')}" + (" pass" if own != status else "")
+    others = [f"{n} {text_of(s)}" for s, n in runs.items() if n and s not in ("pass", "fail", own)]
+    return "; ".join([text, *others])
 
 
 def _residual(cells: Iterable[Cell]) -> Detailed:
-    largest = max((cell.residual for cell in cells if cell.residual), key=size, default=None)
+    """The largest; where one is above its bound, the one that is so by the most."""
+    found = [cell.residual for cell in cells if cell.residual]
+    largest = max(found, key=size, default=None)
     if largest is None:
         return "–", ""
+    over = max(found, key=_excess)
+    largest = over if _excess(over) > 1.0 else largest
     bound = "" if largest.bound is None else f"; bound {short(largest.bound)}"
     return short(largest.value), f"on {largest.scenario}{bound}"
 
@@ -87,14 +99,15 @@ def _spread(figures: list[Figure], failing: bool) -> Detailed:
 def _error_source(own: pl.DataFrame) -> Detailed:
     """In how many runs the engine's trajectory is that of its declared scheme, to rounding."""
     judged = own.filter((pl.col("metric") == "match") & pl.col("verdict").is_in(["pass", "fail"]))
+    failed = set(own.filter(pl.col("verdict") == "fail").get_column("gate"))
+    gates = [gate for gate in GATES if gate in failed]
+    source = f"failed gate{'s' * (len(gates) > 1)}: {', '.join(gates)}"
     if judged.is_empty():
-        return "–", "no scheme declared"
+        return source if gates else "no scheme declared", "no scheme declared" if gates else ""
     equal, total = int((judged.get_column("verdict") == "pass").sum()), len(judged)
     runs = f"{equal} of {times(total, 'run')}" if equal < total else f"all {total} runs"
     runs = "1 run" if equal == total == 1 else runs
-    failed = set(own.filter(pl.col("verdict") == "fail").get_column("gate"))
-    gates = [gate for gate in GATES if gate in failed]
-    source = f"failed gate: {', '.join(gates)}" if gates else "truncation error of the scheme"
+    source = source if gates else "truncation error of the scheme"
     return source, f"equals the declared scheme in {runs}"
 
 

@@ -48,6 +48,7 @@ class _Engine(_Table):
     installed: bool | None = None
     reason: Text = None
     via: Text = None
+    argument: Text = None
 
 
 class _System(_Table):

@@ -17,15 +17,19 @@ _SCENARIOS_NAMED = 3
 class Cluster:
     """Members whose trajectories are identical, to rounding, on most scenarios.
 
-    members: as ``engine:integrator``.  schemes: those of the reference that they equal on each
-    scenario that shows it; more than one where no motion tells these apart.
-    together and apart: the scenarios on which all of them agree, and on which some do not.
+    members: as ``engine:integrator``.  together and apart: the scenarios on which all of them
+    agree, and on which some do not.
+    schemes: those of the reference that they equal on every scenario of `together` that shows it;
+    more than one where no motion tells these apart, none where no scheme is that of all of them.
+    by_scheme: with none, the scheme of each scenario, ``(scheme, scenarios)``, that of the most
+    first; "" for those on which they equal none of the reference at every step.
     """
 
     members: tuple[str, ...]
     schemes: tuple[str, ...]
     together: tuple[str, ...]
     apart: tuple[str, ...]
+    by_scheme: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     @property
     def engines(self) -> int:
@@ -101,31 +105,54 @@ def _cluster(
     scenarios = list(dict.fromkeys(scenario for pair in pairs for scenario in pair))
     apart = tuple(s for s in scenarios if not all(pair.get(s, True) for pair in pairs))
     together = tuple(s for s in scenarios if s not in apart)
-    equal = [
-        [name for name in (cluster["scheme"], *cluster.get("also", ())) if name is not None]
-        for cluster in clusters
-        if cluster["scenario"] in together
-        and not cluster.get("exact")
-        and set(group) <= set(cluster["members"])
-    ]
-    count = Counter(name for names in equal for name in names)
-    schemes = tuple(n for n, seen in count.most_common() if seen > 0.5 * len(equal))
-    return Cluster(tuple(group), schemes, together, apart)
+    equal: dict[str, list[str]] = {}
+    for cluster in clusters:
+        name = cluster["scenario"]
+        if name in together and not cluster.get("exact") and set(group) <= set(cluster["members"]):
+            named = [n for n in (cluster["scheme"], *cluster.get("also", ())) if n is not None]
+            equal[name] = [n for n in equal.get(name, named) if n in named]
+    every = [n for n in next(iter(equal.values()), []) if all(n in own for own in equal.values())]
+    split = () if every else _by_scheme(equal)
+    return Cluster(tuple(group), tuple(every), together, apart, split)
+
+
+def _by_scheme(equal: Mapping[str, Sequence[str]]) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """The scenarios by a scheme that holds at all their steps, as few schemes as that takes."""
+    left, found = dict(equal), list[tuple[str, tuple[str, ...]]]()
+    while count := Counter(name for own in left.values() for name in own):
+        scheme = count.most_common(1)[0][0]
+        found.append((scheme, tuple(s for s, own in left.items() if scheme in own)))
+        left = {s: own for s, own in left.items() if scheme not in own}
+    return (*found, ("", tuple(left))) if left else tuple(found)
 
 
 def sentence(cluster: Cluster) -> str:
     """Which members are identical, and what follows."""
     members = listed([label(member) for member in cluster.members])
     count = "both" if len(cluster.members) == 2 else "all"
-    scheme = (
-        f"{count} step {cluster.schemes[0]}" if cluster.schemes else "no scheme of the reference"
-    )
+    scheme = f"{count} step {cluster.schemes[0]}" if cluster.schemes else _split(cluster, count)
     if len(cluster.schemes) > 1:
         scheme += f" or {' or '.join(cluster.schemes[1:])}, which no scenario here distinguishes"
     return (
         f"{members} produce identical trajectories ({scheme}), so their agreement is not "
         "independent evidence."
     )
+
+
+def _split(cluster: Cluster, count: str) -> str:
+    """Which scheme they step where, as no scheme is that of all scenarios."""
+    none = "no scheme of the reference"
+    if not any(scheme for scheme, _ in cluster.by_scheme):
+        return none
+    places = [
+        f"{scheme or none} on {_places(scenarios)}" for scheme, scenarios in cluster.by_scheme
+    ]
+    return f"{count} step {listed(places)}"
+
+
+def _places(scenarios: Sequence[str]) -> str:
+    several = len(scenarios) > _SCENARIOS_NAMED
+    return times(len(scenarios), "scenario") if several else listed(scenarios)
 
 
 def extent(cluster: Cluster) -> str:

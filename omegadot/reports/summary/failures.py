@@ -11,10 +11,11 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.record.schema import YARDSTICKS
+from omegadot.reports.record.schema import GATES, YARDSTICKS
 from omegadot.reports.summary.failed_gate import measure, worst_row
+from omegadot.reports.summary.next_command import next_command
 from omegadot.reports.summary.reasons import cause_of, failing_gates
-from omegadot.reports.text.numbers import engine_name, knob, quantity, short, times
+from omegadot.reports.text.numbers import engine_name, knob, listed, plain, quantity, short, times
 
 UNKNOWN = "none is known"
 # What each gate looks at, for readers who do not know their names.
@@ -34,9 +35,11 @@ Row = Mapping[str, Any]
 class EngineFailure:
     """An engine that fails: the first gate that does, and its worst measure there.
 
-    run: the integrator that gave it, "" where all share it.  extent: how many of its runs fail.
-    cause: the likeliest, "" where none is known.  cost: what the failure means for the attitude,
-    next to engines that pass; "" where it is not known.
+    run: the integrator and step that gave it, or whose runs fail where all share it.  extent: in
+    how many of its runs this gate fails.  later: the gates after it that fail as well.
+    cause: the likeliest, "" where none is known, and then seen: what is known in its place.
+    cost: what the failure means for the attitude, next to integrators that pass; "" where it is not
+    known.  command: shrinks the failure and looks for its cause, or repeats it; "" without any.
     """
 
     engine: str
@@ -47,6 +50,9 @@ class EngineFailure:
     extent: str
     cause: str
     cost: str
+    later: tuple[str, ...] = ()
+    seen: str = ""
+    command: str = ""
 
     @property
     def looks_at(self) -> str:
@@ -59,9 +65,19 @@ class EngineFailure:
         by = f", {self.run}" if self.run else ""
         head = f"{self.engine} fails the {self.gate} gate ({self.looks_at}) in {self.extent}"
         parts = [f"{head}, worst on {self.scenario}{by}: {self.measured}"]
+        parts += [f"{self.later_gates} as well"] if self.later else []
         parts += [f"Likely cause: {self.cause}"] if self.cause else []
+        parts += [f"No cause was found: {self.seen}"] if self.seen else []
         parts += [f"Cost: {self.cost}"] if self.cost else []
-        return ". ".join(parts) + "."
+        text = ". ".join(parts) + "."
+        return f"{text} Next: {self.command}" if self.command else text
+
+    @property
+    def later_gates(self) -> str:
+        """The gates after the first that fail, as a clause."""
+        one = len(self.later) == 1
+        named = f"{listed(self.later)} {'gate fails' if one else 'gates fail'}"
+        return f"Its {named}" if self.later else ""
 
 
 def failures_of(record: Record) -> tuple[EngineFailure, ...]:
@@ -72,29 +88,52 @@ def failures_of(record: Record) -> tuple[EngineFailure, ...]:
     for row in rows:
         found.setdefault(tuple(row[key] for key in WHO), []).append(row)
     failures = []
-    for (engine, version, setup), own in found.items():
+    for who, own in found.items():
+        engine, version, setup = who
         tasks = [task for task in record.run["tasks"] if task["engine"] == engine]
         failing, worst = list(filter(failing_gates, tasks)), worst_row(own)
+        at_gate = [task for task in failing if worst["gate"] in failing_gates(task)]
+        others = {row["gate"] for row in own} | {g for t in failing for g in failing_gates(t)}
         failures.append(
             EngineFailure(
                 engine_name(engine, version if several[engine] > 1 else "", setup),
                 worst["gate"],
                 worst["scenario"],
-                worst["integrator"] or "",
+                _run(worst, tasks, at_gate),
                 measure(worst),
-                f"{len(failing)} of {times(len(tasks), 'run')}",
+                f"{len(at_gate)} of {times(len(tasks), 'run')}",
                 _likeliest(failing),
-                _cost(record.metrics, (engine, version, setup), own),
+                _cost(record, who, own),
+                tuple(g for g in GATES if g in others and GATES.index(g) > _place(worst)),
+                _seen(failing),
+                next_command(record.run, worst, {task["integrator"] for task in failing}),
             )
         )
     return tuple(failures)
 
 
-def _cost(metrics: pl.DataFrame, who: tuple[str, ...], rows: Sequence[Row]) -> str:
-    """The attitude's error at the finest step, next to that of engines that pass.
+def _place(row: Row) -> int:
+    return GATES.index(row["gate"])
 
-    On the scenario of the worst measure where a run fails there, else of the worst run.
+
+def _run(worst: Row, tasks: Sequence[Row], failing: Sequence[Row]) -> str:
+    """The run of the worst measure; where integrators share it, those whose runs fail."""
+    if worst["integrator"]:
+        return ", ".join(filter(None, (worst["integrator"], knob(worst["timestep"], None))))
+    here = [task for task in tasks if task["scenario"] == worst["scenario"] and task["integrator"]]
+    names = dict.fromkeys(task["integrator"] for task in failing if task in here)
+    if len(names) > 1 and len(names) == len({task["integrator"] for task in here}):
+        return "every integrator"
+    return listed(list(names)) if names else ""
+
+
+def _cost(record: Record, who: tuple[str, ...], rows: Sequence[Row]) -> str:
+    """The attitude's error at the finest step, next to that of integrators that pass.
+
+    On the scenario of the worst measure where a run fails there, else of the worst run. Those of
+    its own order stand beside it, or the others where there are none.
     """
+    metrics = record.metrics
     stepped = [row for row in rows if row["integrator"] is not None]
     if not stepped:
         judged = metrics.filter(pl.col("gate") == "trajectory").filter(
@@ -111,12 +150,29 @@ def _cost(metrics: pl.DataFrame, who: tuple[str, ...], rows: Sequence[Row]) -> s
         return ""
     worst = max(own, key=lambda row: row["value"])
     at = f"on {scenario} ({worst['integrator']}, {knob(worst['timestep'], None)})"
-    others = [
-        r["value"] for r in errors if tuple(map(r.get, WHO)) != who and r["verdict"] == "pass"
-    ]
     text = f"its attitude is off by {quantity(worst['value'], 'rad')} {at}"
-    ends = [short(end) for end in dict.fromkeys((min(others), max(others)))] if others else []
-    return f"{text}; that of engines that pass by {' to '.join(ends)} rad" if ends else text
+    others = [r for r in errors if tuple(map(r.get, WHO)) != who and r["verdict"] == "pass"]
+    if not others:
+        return text
+    order = _order(record, worst)
+    same = [row for row in others if order is not None and _order(record, row) == order]
+    values = [row["value"] for row in same or others]
+    ends = [short(end) for end in dict.fromkeys((min(values), max(values)))]
+    whose = "integrators that pass"
+    if same:
+        whose = f"integrators of its order, {plain(order)}, that pass"
+    elif order is not None:
+        whose = "integrators of other orders that pass"
+    return f"{text}; that of {whose} by {' to '.join(ends)} rad"
+
+
+def _order(record: Record, row: Row) -> float | None:
+    """The order in attitude that a row's integrator declares; None without any."""
+    for engine in record.run["engines"]:
+        for integrator in engine.get("integrators") or ():
+            if (engine["name"], integrator["name"]) == (row["engine"], row["integrator"]):
+                return (integrator.get("orders") or {}).get("attitude")
+    return None
 
 
 def _finest_errors(metrics: pl.DataFrame, scenario: str) -> list[dict[str, Any]]:
@@ -137,3 +193,12 @@ def _likeliest(failing: Sequence[Row]) -> str:
         return ""
     more = f"; {times(len(known) - 1, 'other cause')} elsewhere" if len(known) > 1 else ""
     return f"{known[0][0].rstrip('.')}{more}"
+
+
+def _seen(failing: Sequence[Row]) -> str:
+    """Where no cause is found of any run, what is known of the most runs in its place."""
+    texts = Counter(filter(None, map(cause_of, failing)))
+    if not texts or any(not text.startswith(UNKNOWN) for text in texts):
+        return ""
+    text = texts.most_common(1)[0][0].removeprefix(UNKNOWN)
+    return text.lstrip("; ").rstrip(".")

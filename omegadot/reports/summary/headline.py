@@ -59,7 +59,7 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     if failing:
         verb = "fails" if len(failing) == 1 else "fail"
         count = f"{len(failing)} of {times(len(engines), 'engine')}"
-        return f"{count} {verb} a gate: {_failing(summary, failing)}.{_open(engines, failing)}"
+        return f"{count} {verb}: {_failing(summary, failing)}.{_open(engines, failing)}"
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
     # A declared exception is a known failure: such an engine is not reported as agreeing.

@@ -59,8 +59,7 @@ def provenance_payload(
     scenarios' own.
     """
     texts, options = _arguments([str(text) for text in run.get("command") or ()])
-    names = [entry["name"] for entry in run["scenarios"]]
-    requested = dict(zip(names, texts, strict=True)) if len(texts) == len(names) else {}
+    requested = requested_scenarios(run)
     return {
         "sources": [list(vars(source).values()) for source in sources.numbers],
         "scenarios": {
@@ -73,6 +72,13 @@ def provenance_payload(
         "command": command_of(run),
         "traces": [engine["name"] for engine in run.get("engines", []) if "trace" in engine],
     }
+
+
+def requested_scenarios(run: Mapping[str, Any]) -> dict[str, str]:
+    """The arguments that requested the scenarios, by name; none where they were not all named."""
+    texts, _ = _arguments([str(text) for text in run.get("command") or ()])
+    names = [entry["name"] for entry in run["scenarios"]]
+    return dict(zip(names, texts, strict=True)) if len(texts) == len(names) else {}
 
 
 def _arguments(command: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:

@@ -19,6 +19,7 @@ from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.failed_gate import FailedGate, failed_gates
 from omegadot.reports.summary.failures import EngineFailure, failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
+from omegadot.reports.summary.not_tried import not_tried
 from omegadot.reports.summary.reasons import MODEL_ALONE, failing_gates, tests_motion
 from omegadot.reports.text.numbers import times
 
@@ -99,6 +100,7 @@ class Summary:
     failures: what fails of each engine that does.
     truths: by kind of exact solution, the number of scenarios.  notes: a sentence on each body
     whose inertia is impossible, each process that ended by itself, each engine without integrators.
+    untried: where no gate fails, what the scenarios do not have in them and random systems do.
     """
 
     complete: bool
@@ -111,6 +113,7 @@ class Summary:
     failures: tuple[EngineFailure, ...]
     truths: Counter[str]
     notes: tuple[str, ...]
+    untried: str = ""
 
 
 def worst(statuses: Iterable[str]) -> str:
@@ -155,6 +158,7 @@ def summarise(record: Record) -> Summary:
         key = (scenario, column.engine, column.version, column.setup)
         first = failed.get(key) or unmeasured.get(key)
         cells[scenario, column] = _cell(first, statuses.get(key, []), figures.get(key, {}))
+    held = [n for n in scenarios if any(cells[n, c].runs["pass"] for c in columns)]
     return Summary(
         bool(record.run.get("complete", True)),
         scenarios,
@@ -165,6 +169,7 @@ def summarise(record: Record) -> Summary:
         failures_of(record),
         _truths(record.trajectories),
         (*impossible_bodies(record.run["scenarios"]), *_ended(record.run), *_unstepped(record.run)),
+        not_tried(record.run, held) if not failing else "",
     )
 
 

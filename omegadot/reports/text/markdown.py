@@ -21,8 +21,9 @@ def markdown_of(record: Record) -> str:
     message = record.run.get("headline") or headline(summary)
     lines = [f"### omegadot: {escape(message, 1000)}", ""]
     lines += [escape(notes, 1000), ""] if notes else []
-    lines += [f"- {escape(one.sentence, 600)}" for one in summary.failures]
+    lines += [f"- {escape(one.sentence, 1000)}" for one in summary.failures]
     lines += [""] * bool(summary.failures)
+    lines += [escape(summary.untried, 1000), ""] if summary.untried else []
     lines += [_counts(summary), ""]
     lines += _matrix(summary, COMMENT // 4)
     lines += _failures(record, COMMENT // 4)

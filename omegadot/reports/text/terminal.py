@@ -58,6 +58,8 @@ def print_summary(record: Record, console: Console | None = None) -> None:
     for failure in summary.failures:
         console.print(Text(failure.sentence, _STYLES["fail"]))
     console.print(Text(" ".join(remarks(summary) + truth(summary))))
+    if summary.untried:
+        console.print(Text(summary.untried))
 
 
 def _fitting_table(summary: Summary, console: Console) -> tuple[int, Table]:

@@ -1,0 +1,89 @@
+"""What the scenarios of a run do not have in them, and random systems do."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from omegadot.reports.record.schema import YARDSTICKS
+from omegadot.reports.text.numbers import listed, times
+
+MOST_NAMED = 4
+LEAST_TURN = 1e-12  # of a quaternion's scalar part, below one
+# One is the other's own kind, or rules it out: no scenario is to be looked for with both.
+NO_PAIRS = (
+    ("a pivot at the origin", "a pivot off the origin"),
+    ("a pivot at the origin", "a moving start"),
+    ("a pivot off the origin", "a moving start"),
+    ("a torque in body axes", "a torque in world axes"),
+    ("gravity", "gravity off the -z axis"),
+    ("a turned start", "a first quaternion of negative scalar part"),
+)
+
+
+def parts_of(system: Mapping[str, Any], initial: Mapping[str, Any]) -> dict[str, bool]:
+    """What a scenario has in it besides a free body, by name.
+
+    system: its numbers as in ``run.json``.  initial: the table of its file.
+    """
+    tensor, pivot = np.array(system["inertia"]), system["pivot"]
+    products = np.abs(tensor - np.diag(np.diag(tensor)))
+    gravity, scalar = system["gravity"], (initial.get("orientation") or [1.0])[0]
+    return {
+        "a pivot at the origin": pivot is not None and not any(pivot),
+        "a pivot off the origin": pivot is not None and any(pivot),
+        "a centre of mass off the origin": any(system["center_of_mass"]),
+        "gravity": any(gravity),
+        "gravity off the -z axis": any(gravity[:2]) or gravity[2] > 0.0,
+        "damping": bool(system["damping"]),
+        "a torque in body axes": any(system["torque_body"]),
+        "a torque in world axes": any(system["torque_world"]),
+        "products of inertia": bool(np.any(products > 1e-12 * np.max(tensor))),
+        "a turned start": abs(scalar) < 1.0 - LEAST_TURN,
+        "a first quaternion of negative scalar part": scalar < 0.0,
+        "a moving start": any(initial.get("linear_velocity") or ()),
+    }
+
+
+def pairs_of(parts: Iterable[str]) -> list[tuple[str, str]]:
+    """Every two parts that one system may have together without one implying the other."""
+    return [pair for pair in combinations(parts, 2) if pair not in NO_PAIRS]
+
+
+def not_tried(run: Mapping[str, Any], passed: Sequence[str]) -> str:
+    """What none of the scenarios that an engine passed has in it, and what to do about it.
+
+    "" where they have everything, or no engine can be checked.  passed: scenarios, by name.
+    """
+    ours = [e for e in run["engines"] if e["name"] not in YARDSTICKS and e.get("argument")]
+    found = [
+        parts_of(entry["system"], (entry.get("definition") or {}).get("initial") or {})
+        for entry in run["scenarios"]
+        if entry["name"] in passed and entry.get("system")
+    ]
+    if not found or not ours:
+        return ""
+    absent = [name for name in found[0] if not any(parts[name] for parts in found)]
+    pairs = pairs_of(name for name in found[0] if name not in absent)
+    apart = [
+        f"{one} with {other}"
+        for one, other in pairs
+        if not any(parts[one] and parts[other] for parts in found)
+    ]
+    texts = [*absent[:MOST_NAMED]]
+    if len(absent) > MOST_NAMED:
+        texts.append(f"{len(absent) - MOST_NAMED} more")
+    if apart:
+        count = f"{len(apart)} of {times(len(pairs), 'pair')}"
+        texts.append(f"{count} of the others together, such as {apart[0]}")
+    if not texts:
+        return ""
+    engine = ours[0]["argument"] if len(ours) == 1 else "ENGINE"
+    return (
+        f"In none of these scenarios: {listed(texts)}. omegadot check {shlex.quote(engine)} draws "
+        "random systems with all of them."
+    )
