@@ -38,7 +38,10 @@ def OmegaOneStepLate(run: Run, initial: State, h: float, steps: int, every: int)
     return Trajectory(found.time, replace(found.state, angular_velocity=late))
 
 
-@other_run("logging", "scheme", "gravity free order-4", named="difference quotient of the position")
+@other_run(  # under constant gravity it is that of half a step before, to rounding
+    *("logging", "scheme", "gravity free order-4"),
+    named=("difference quotient of the position", "velocity is reported as of half a step before"),
+)
 def VelocityOfTwoPlaces(run: Run, initial: State, h: float, steps: int, every: int) -> Trajectory:
     """The velocity is the change of place over the last step, but for the start."""
     found = run(initial, h, steps, every)
