@@ -21,7 +21,7 @@ SLIGHT_DAMPING = 1e-3  # N m s/rad
 DROPPED = 0.01  # rad/s
 SLIGHT = 0.01  # of a tensor's trace
 SMALL_INERTIA = 1e-3  # kg m^2
-LONG_STEP = 0.015  # s
+LONG_STEP, SHORT_STEP = 0.015, 1e-4  # s
 DROWSY = 5e-5  # J/kg, PhysX's default, below which a body may be put to sleep
 RATES, SPEEDS = (7, 25, 47, 100), (100, 300)  # rad/s, m/s
 TURNS = (0.05, 0.1, 0.12, 0.79, 1.57)  # rad, of one step
@@ -44,8 +44,8 @@ def features_of(case: Case) -> frozenset[str]:
     ``low-energy``; ``omega-above-R`` in rad/s at the start, ``speed-above-V`` in m/s at either end;
     ``beyond-D-km``: a coordinate of the place at either end;
     ``steady``: omega is constant, ``tumbling``: it is not, though nothing acts;
-    ``step-above-15-ms``, ``turn-above-A`` in rad a step, ``creeping``: by less than 1e-6 in the
-    finest; ``beyond-1000-steps``; ``fine-steps``,
+    ``step-above-15-ms``, ``step-below-100-us``: the finest, ``turn-above-A`` in rad a step,
+    ``creeping``: by less than 1e-6 in the finest; ``beyond-1000-steps``; ``fine-steps``,
     ``fine-times``: steps, and times of samples, that microseconds do not hold; ``finer-times``: nor
     do nanoseconds.
     """
@@ -123,6 +123,7 @@ def _of_steps(case: Case) -> dict[str, bool]:
     coarsest = max(sweep.timestep for sweep in case.sweeps)
     return {
         "step-above-15-ms": coarsest > LONG_STEP,
+        "step-below-100-us": min(sweep.timestep for sweep in case.sweeps) < SHORT_STEP,
         **{f"turn-above-{most:.2f}": rate * coarsest > most for most in TURNS},
         "creeping": 0.0 < rate * min(sweep.timestep for sweep in case.sweeps) < LEAST_TURN,
         "beyond-1000-steps": max(sweep.steps for sweep in case.sweeps) > 1000,

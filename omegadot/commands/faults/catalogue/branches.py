@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from omegadot.commands.faults.catalogue.load import other_load, pushed
+from omegadot.commands.faults.catalogue.load import extra_torque, other_load, pushed
 from omegadot.commands.faults.fault import fault_by
 from omegadot.commands.faults.restepped import Accelerated
 from omegadot.gates.bounds.scales import norm
@@ -16,7 +16,7 @@ from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
 from omegadot.reference_impl.loads import applied_torque, damping_torque
 from omegadot.reference_impl.rotations import rotate
 from omegadot.reference_impl.symmetric import apply, inverse
-from omegadot.reference_impl.system import Acceleration, Array, Load, State
+from omegadot.reference_impl.system import Acceleration, Array, Load, State, System
 
 accelerated = partial(fault_by, Accelerated, "changed", "equation", "equation")
 
@@ -114,6 +114,12 @@ def DampingAsRate(self: Accelerated, state: State, sound: Acceleration) -> Accel
     tensor = moving_inertia(system)
     as_torque = -system.load.damping * apply(tensor, w) - damping_torque(system, state)
     return pushed(system, state, sound, as_torque)
+
+
+@extra_torque("damping", named=("torque is multiplied by the mass", "the damping that acts is"))
+def DampingTimesMass(system: System, state: State) -> Array:
+    """The damping torque is multiplied by the mass."""
+    return (system.body.mass - 1.0) * damping_torque(system, state)
 
 
 @accelerated("free damping", named=("linear damping", "linear"))

@@ -145,6 +145,18 @@ def VelocityInBodyAxes(self: Spoiled, state: State) -> State:
     return replace(state, linear_velocity=velocity)
 
 
+def body_velocity(self: Spoiled, state: State) -> State:
+    """A velocity given in body axes, in the world's."""
+    return replace(state, linear_velocity=rotate(state.orientation, state.linear_velocity))
+
+
+@fault("convention", "model", "free", named="is taken as one in body axes when it is set")
+class VelocitySetInBodyAxes(Throughout):
+    """The velocity that is set is taken as one in body axes, and reported in the world's."""
+
+    ways = body_velocity, lambda self, state: state
+
+
 @misread(named="degrees per second")
 def OmegaInDegrees(self: Spoiled, state: State) -> State:
     """omega is reported in degrees per second."""
