@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -64,9 +65,9 @@ def test_what_is_recommended_holds_and_a_tenth_more_does_not(chosen: tuple[Path,
     qualified = rows(result, "qualifies")
     assert "RK4" in [row["integrator"] for row in qualified]
     for row in qualified:
-        steps = row["found"]["steps"]
-        shown = float(step_text(row["found"]["timestep"], scenario.run.duration))
-        assert int(scenario.run.duration / shown) == steps
+        steps, step = row["found"]["steps"], row["found"]["timestep"]
+        assert scenario.run.duration / steps == pytest.approx(step, rel=1e-12)
+        assert 0.99 * step < float(step_text(step)) <= step * (1.0 + 1e-12)
         angle, drift = measured_again(scenario, row["integrator"], steps)
         assert angle <= ATTITUDE
         assert drift <= MOMENTUM
@@ -123,6 +124,21 @@ def test_axe_finds_nothing_on_the_page(
 ) -> None:
     with Chromium(tmp_path) as browser:
         assert violations(browser, chosen[0] / "out" / "choice.html", **look) == []
+
+
+def test_the_page_fits_a_phone(chosen: tuple[Path, Result], tmp_path: Path) -> None:
+    """Caught: error and factor off the right edge, between tall empty cells, and half a chart."""
+    with Chromium(tmp_path) as browser:
+        browser.open(chosen[0] / "out" / "choice.html", width=390, height=6000)
+        every = "[...document.querySelectorAll('.scroll, .drawn')]"
+        assert browser.evaluate(f"{every}.length") >= 2
+        assert browser.evaluate(f"{every}.filter(e => e.scrollWidth > e.clientWidth).length") == 0
+        high = "Math.max(...[...document.querySelectorAll('.chosen td')].map(e => e.clientHeight))"
+        assert browser.evaluate(high) < 120
+        heads = browser.evaluate(
+            "[...document.querySelectorAll('.chosen td')].map(e => e.dataset.head)"
+        )
+        assert {"rank", "attitude error", "real-time factor", "misses"} <= set(heads)
 
 
 def test_a_choice_in_the_folder_of_a_run_is_a_section_of_its_report(tmp_path: Path) -> None:
@@ -189,6 +205,32 @@ def test_what_is_just_missed_differs_in_its_digits() -> None:
     missed = {"requirement": "energy-drift", "found": 1.04e-6, "limit": 1e-6, "factor": 1.04}
     text = missed_text({**missed, "unit": "1"})
     assert text == "energy drift 1.04e-6, required at most 1e-6 (off by 1.04x)"
+
+
+def test_a_step_is_shown_in_the_digits_that_are_known() -> None:
+    """Caught: 0.08080808 of a step that is known to 5 %."""
+    assert [step_text(x) for x in (8 / 99, 0.002, 8 / 356769, 0.1, 1.0, 12.0)] == [
+        *("0.0808", "0.002", "0.0000224", "0.1", "1", "12"),
+    ]
+
+
+def test_errors_are_in_the_unit_of_the_requirement(tmp_path: Path) -> None:
+    """Caught: 0.5deg required, and 0.0078 rad of error beside it."""
+    arguments = ["--attitude", "0.5 °", "--momentum-drift", "1%", "--engine", "mujoco:RK4"]
+    arguments += ["--engine", "mujoco:Euler", "--budget", "0.02", "--out", "o"]
+    result = omegadot("choose", quick_scenario(tmp_path), *arguments, folder=tmp_path)
+    assert result.code == 0, result.err
+    assert re.search(r"0\.\d+ deg \(margin", result.out)
+    assert re.search(r"0\.\d+ % \(margin", result.out)
+    assert "attitude error halved (0.25 deg): " in result.out
+    assert re.search(r"fails: [\d.]+ times the limit", result.out)  # of what, it did not say
+    assert " rad" not in result.out
+    wanted = json.loads((tmp_path / "o/choice.json").read_text())["requirements"]["accuracy"]
+    assert wanted[0]["unit"] == "rad"  # as the numbers of the file are
+    assert wanted[0]["limit"] == pytest.approx(math.radians(0.5))
+    missed = {"requirement": "attitude", "found": math.radians(1.0), "limit": math.radians(0.5)}
+    text = missed_text({**missed, "factor": 2.0, "unit": "rad", "shown": wanted[0]["shown"]})
+    assert text == "attitude error 1 deg, required at most 0.5 deg (off by 2x)"
 
 
 def test_nothing_qualifies(tmp_path: Path) -> None:

@@ -83,6 +83,7 @@ class CaseDocument:
         factor = seconds.under(self._duration) if seconds and not broken else None
         nearest = found or candidate.nearest(limits)
         missed = nearest.missed_rows(limits) if nearest and not found else []
+        missed = [{**one, "shown": self._wanted.shown(one["requirement"])} for one in missed]
         least = self._wanted.real_time_factor
         if found and seconds and factor and least and self._too_slow(seconds):
             missed.append(
@@ -146,6 +147,7 @@ class CaseDocument:
                     "factor": factor,
                     "limit": self._wanted.limits[key] * factor,
                     "unit": ACCURACY[key][1],
+                    "shown": self._wanted.shown(key),
                     "order": [self._place(place, edges, costs) for place in order],
                     "same": sorted(ranks.items()) == usual,
                     "joined": [name for name in ranks if name not in places],

@@ -37,9 +37,9 @@ def document(choice: Choice) -> Row:
     """The whole choice: requirements, engines, cases, and what qualifies in every case."""
     cases = [CaseDocument(choice, found) for found in choice.cases]
     wanted = choice.requirements
-    accuracy = [  # limits in SI, next to their text as given
+    accuracy = [  # limits in SI, next to their text as given and the unit of that
         {"requirement": key, "limit": limit, "unit": ACCURACY[key][1]}
-        | {"requested": wanted.requested[key]}
+        | {"requested": wanted.requested[key], "shown": wanted.shown(key)}
         for key, limit in wanted.limits.items()
     ]
     others = {k: v for k, v in vars(wanted).items() if k not in ("limits", "requested")}

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-from omegadot.commands.units import quantity
+from omegadot.commands.units import UNITS, quantity, unit_written
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios.errors import ScenarioError
 from omegadot.scenarios.files import read_toml
@@ -48,6 +48,12 @@ class Requirements:
     licences: tuple[str, ...] = ()
     python: str | None = None
     duration: float | None = None
+
+    def shown(self, key: str) -> dict[str, Any]:
+        """The unit that a limit was written in, by name and in SI: in it errors are shown."""
+        kind, _ = ACCURACY[key]
+        unit = unit_written(self.requested[key], kind, f"--{key}")
+        return {"unit": unit, "si": UNITS[kind][unit]}
 
 
 def _texts(value: object, where: str) -> list[str]:

@@ -13,6 +13,7 @@ from omegadot.written import written
 
 Row = Mapping[str, Any]
 MOST_DIGITS = 17  # of a double
+STEP_DIGITS = 3
 NAMES = {
     "attitude": "attitude error",
     "omega": "omega error",
@@ -25,25 +26,29 @@ NAMES = {
 LONGEST = 3600.0  # s, for a run that a user might wait for
 
 
-def step_text(timestep: float, duration: float) -> str:
-    """A step in s to seven digits, rounded down: as many of them fit into the horizon as before."""
-    digits = 6 - math.floor(math.log10(timestep))
-    scaled = math.floor(timestep * 10.0**digits)
-    while duration / (scaled / 10.0**digits) < round(duration / timestep):
-        scaled -= 1
+def step_text(timestep: float) -> str:
+    """A step in s, rounded down to three digits, as it is known to 5 %: never above the step."""
+    digits = STEP_DIGITS - 1 - math.floor(math.log10(timestep))
+    scaled = math.floor(timestep * 10.0**digits * (1.0 + 1e-12))  # 0.002 is no 0.00199
     return f"{scaled / 10.0**digits:.{max(digits, 0)}f}".rstrip("0").rstrip(".")
 
 
-def setting_text(found: Row, duration: float) -> str:
+def setting_text(found: Row) -> str:
     """The step in s, or the accuracy of an integrator that chooses its own steps."""
     if found["timestep"] is None:
         return f"accuracy {written(found['accuracy'], 2)}"
-    return step_text(found["timestep"], duration)
+    return step_text(found["timestep"])
 
 
-def _setting(found: Row, duration: float) -> str:
-    text = setting_text(found, duration)
+def _setting(found: Row) -> str:
+    text = setting_text(found)
     return text if found["timestep"] is None else f"{text} s"
+
+
+def shown(value: float | None, row: Row, digits: int = 2) -> str:
+    """A value of a requirement in the unit that its limit was written in; SI in older files."""
+    own = row.get("shown") or {"unit": row["unit"], "si": 1.0}
+    return quantity(None if value is None else value / own["si"], own["unit"], digits)
 
 
 def requested(choice: Row) -> str:
@@ -83,9 +88,10 @@ def headline(case: Row) -> str:
     verb = "qualifies" if case["qualifying"] == 1 else "qualify"
     count = f"{case['qualifying']} of {times(len(rows), 'integrator')} {verb}{open_}"
     first = best[0]
-    step = _setting(first["found"], case["duration"])
-    kind = "a step of" if first["found"]["timestep"] is not None else "an"
-    named = f"{_label(first)} with {kind} {step}"
+    found = first["found"]
+    kind = "a step of" if found["timestep"] is not None else "an"
+    named = f"{_label(first)} with {kind} {_setting(found)}"
+    named += f" ({times(found['steps'], 'step')})" if found["timestep"] is not None else ""
     if len(best) > 1:
         others = listed([_label(row) for row in best[1:]])
         return f"{start}{count}. The cheapest is {named}, within the timing error of {others}."
@@ -101,9 +107,9 @@ def _nothing(rows: Sequence[Row]) -> str:
     return f"nothing qualifies. The nearest is {_label(near)}: {missed_text(near['missed'][0])}."
 
 
-def _written(values: Sequence[float], unit: str) -> Iterator[tuple[str, ...]]:
+def _written(values: Sequence[float], row: Row) -> Iterator[tuple[str, ...]]:
     for digits in range(2, MOST_DIGITS):
-        yield tuple(quantity(value, unit, digits) for value in values)
+        yield tuple(shown(value, row, digits) for value in values)
 
 
 def missed_text(missed: Row) -> str:
@@ -114,8 +120,8 @@ def missed_text(missed: Row) -> str:
     pair = [missed["limit"], missed["found"]]
     # As many digits as it takes to see that they differ.
     limit, found = next(
-        (texts for texts in _written(pair, missed["unit"]) if texts[0] != texts[1]),
-        tuple(quantity(value, missed["unit"]) for value in pair),
+        (texts for texts in _written(pair, missed) if texts[0] != texts[1]),
+        tuple(shown(value, missed) for value in pair),
     )
     wanted = "at least" if missed["requirement"] == "real-time-factor" else "at most"
     return f"{name} {found}, required {wanted} {limit} (off by {grouped(missed['factor'])}x)"
@@ -125,7 +131,7 @@ def variant_lines(case: Row) -> Iterator[str]:
     """How the ranking changes when a requirement is halved or doubled."""
     for variant in case["variants"]:
         term = {0.5: "halved", 2.0: "doubled"}.get(variant["factor"], f"x {variant['factor']}")
-        limit = quantity(variant["limit"], variant["unit"])
+        limit = shown(variant["limit"], variant)
         start = f"{NAMES[variant['requirement']]} {term} ({limit}): "
         order = variant["order"]
         changes = []
@@ -138,8 +144,7 @@ def variant_lines(case: Row) -> Iterator[str]:
         if not changes:
             changes.append("the ranking is the same" if variant["same"] else "the ranking changes")
         steps = [
-            f"rank {o['rank']}{'=' if o['tied'] else ''} {o['candidate']} at "
-            f"{_setting(o, case['duration'])}"
+            f"rank {o['rank']}{'=' if o['tied'] else ''} {o['candidate']} at {_setting(o)}"
             for o in order
         ]
         yield start + "; ".join(changes) + (": " + ", ".join(steps) if steps else "") + "."
@@ -160,8 +165,8 @@ def notes(choice: Row) -> Iterator[str]:
     yield from impossible_bodies(choice["scenarios"])
     for case in choice["scenarios"]:
         for key in case["unverifiable"]:
-            unit = {r["requirement"]: r["unit"] for r in choice["requirements"]["accuracy"]}[key]
-            floor = quantity(case["floor"][key], unit)
+            wanted = {r["requirement"]: r for r in choice["requirements"]["accuracy"]}[key]
+            floor = shown(case["floor"][key], wanted)
             yield (
                 f"{case['name']}: double precision resolves the {NAMES[key]} to {floor} only; "
                 "require a larger limit."
@@ -169,9 +174,10 @@ def notes(choice: Row) -> Iterator[str]:
 
 
 GUARANTEE = (
-    "The listed step is the largest verified one: it and all smaller steps tried met every limit "
-    "at every sample, and the next larger one tried failed. The margin is the limit over the "
-    "error. Steps are known to 5 %. Candidates share a rank unless one costs over 5 % more in "
+    "The listed number of steps is the smallest verified one: it and all larger ones tried met "
+    "every limit at every sample, and the next smaller one tried failed. It is known to 5 %; the "
+    "step is the horizon over it, rounded down to three digits. The margin is the limit over the "
+    "error. Candidates share a rank unless one costs over 5 % more in "
     "three of four timing rounds. A candidate is Pareto-optimal where no run tried is better in "
     "cost, error and memory at once. The real-time factor counts stepping alone: median and "
     "quartiles."

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.text import Text
 
 from omegadot.reports.choice import sentences
-from omegadot.reports.choice.sentences import LONGEST, NAMES, missed_text, setting_text
-from omegadot.reports.text.numbers import grouped, quantity, short
+from omegadot.reports.choice.sentences import LONGEST, NAMES, missed_text, setting_text, shown
+from omegadot.reports.text.numbers import grouped, short
 from omegadot.reports.text.text_grid import Grid, plain_console, text_grid
 
 Row = Mapping[str, Any]
@@ -28,13 +28,13 @@ def ranking(choice: Row, case: Row) -> Grid:
             _rank(row),
             f"{row['engine']} {row['version']}",
             row["integrator"],
-            setting_text(row["found"], case["duration"]),
+            setting_text(row["found"]),
             str(row["found"]["steps"]) if row["found"]["timestep"] else "–",
             *(_error(row["found"], requirement) for requirement in wanted),
             _factor(row),
             f"{row['memory'] / MEGABYTE:.0f}" if row["memory"] else "–",
             "yes" if row["on_front"] else "",
-            _larger(case, row),
+            _larger(row),
         )
         for row in case["candidates"]
         if row["status"] == "qualifies"
@@ -46,7 +46,7 @@ def _error(found: Row, requirement: Row) -> str:
     error = found["errors"].get(requirement["requirement"])
     if error is None:
         return "–"
-    text = quantity(error["value"], requirement["unit"])
+    text = shown(error["value"], requirement)
     margin = error["margin"]
     return text if margin is None else f"{text} (margin {grouped(margin)}x)"
 
@@ -63,14 +63,15 @@ def _rank(row: Row) -> str:
     return f"{row['rank']}=" if row["tied"] else str(row["rank"])
 
 
-def _larger(case: Row, row: Row) -> str:
+def _larger(row: Row) -> str:
     larger = row["larger"]
     if larger is None:
         return "none: every step tried passes"
-    message = f"{setting_text(larger, case['duration'])} fails ({grouped(larger['ratio'])}x)"
+    ratio = larger["ratio"]
+    by = "" if ratio is None else f": {grouped(ratio)} times the limit"
+    message = f"{setting_text(larger)} fails{by}"
     if row["passes_again"]:
-        again = setting_text(row["passes_again"], case["duration"])
-        message += f", {again} passes again"
+        message += f", {setting_text(row['passes_again'])} passes again"
     return message
 
 
@@ -81,7 +82,7 @@ def refusals(case: Row) -> Grid:
         if row["status"] == "qualifies":
             continue
         near, engine = row["nearest"], f"{row['engine']} {row['version']}"
-        at = setting_text(near, case["duration"]) if near else "–"
+        at = setting_text(near) if near else "–"
         if row["status"] != "out":
             rows.append((engine, row["integrator"], f"{row['status']}: {row['reason']}", at, ""))
             continue
@@ -109,10 +110,9 @@ def everywhere(choice: Row) -> Grid | None:
     heads = ("rank", "engine and integrator", "total in s", "steps in s, scenario by scenario")
     rows: list[tuple[str, ...]] = []
     for row in choice["everywhere"]:
-        knobs = zip(row["timesteps"], row["accuracies"], cases, strict=True)
+        knobs = zip(row["timesteps"], row["accuracies"], strict=True)
         settings = [
-            setting_text({"timestep": step, "accuracy": accuracy}, case["duration"])
-            for step, accuracy, case in knobs
+            setting_text({"timestep": step, "accuracy": accuracy}) for step, accuracy in knobs
         ]
         rows.append((
             _rank(row), row["candidate"], short(row["seconds"]["median"], 3),
