@@ -244,6 +244,24 @@ def test_nothing_qualifies(tmp_path: Path) -> None:
     assert "double precision cannot verify the requested attitude error" in result.out
 
 
+@pytest.mark.parametrize(("factor", "left_open"), [("0.001", True), ("500", False)])
+def test_what_would_be_too_slow_is_not_said_to_qualify_perhaps(
+    tmp_path: Path, factor: str, left_open: bool
+) -> None:
+    """Of order 1, Euler needs runs of minutes: too long for a factor of 500, not for 0.001."""
+    quick_scenario(tmp_path)
+    arguments = ["quick.toml", "--engine", "mujoco:RK4", "--engine", "mujoco:Euler"]
+    arguments += ["--attitude", "1e-7", "--budget", "0.03", "--real-time-factor", factor]
+    result = omegadot("choose", *arguments, "--out", "out", folder=tmp_path)
+    assert result.code == 0, result.err
+    page = (tmp_path / "out" / "choice.html").read_text()
+    for text in (result.out, page):
+        assert ("1 more might, in runs longer than the budget" in text) is left_open
+        assert ("(not verified)" in text) is left_open
+        assert ("cannot qualify: at a step of" in text) is not left_open
+    assert "required at least 500" in result.out or left_open
+
+
 def test_a_crash_is_distinguished_from_a_miss(tmp_path: Path) -> None:
     quick_scenario(tmp_path)
     arguments = ["quick.toml", "--adapter", f"{FAULTY}:Killed", "--engine", "killed"]

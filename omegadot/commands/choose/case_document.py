@@ -15,6 +15,14 @@ _NOTHING: Row = {"median": 0.0}
 Costs = dict[str, Spread]
 
 
+def _too_slow_row(least: float, factor: float) -> Row:
+    """The real-time factor as a requirement that is missed."""
+    return {
+        "requirement": "real-time-factor", "limit": least, "unit": "1",
+        "found": factor, "factor": least / factor,
+    }  # fmt: skip
+
+
 class CaseDocument:
     """One case's part of the document."""
 
@@ -86,11 +94,7 @@ class CaseDocument:
         missed = [{**one, "shown": self._wanted.shown(one["requirement"])} for one in missed]
         least = self._wanted.real_time_factor
         if found and seconds and factor and least and self._too_slow(seconds):
-            missed.append(
-                {"requirement": "real-time-factor", "limit": least, "unit": "1"}
-                | {"found": factor.median, "factor": least / factor.median}
-                | found.knobs
-            )
+            missed.append(_too_slow_row(least, factor.median) | found.knobs)
 
         def row(trial: Trial | None) -> Row | None:
             return trial.row(limits) if trial else None
@@ -114,9 +118,19 @@ class CaseDocument:
             "time_per_step": per_step and per_step.row(),
             "memory": self._choice.memory.get(candidate.engine.name),
             "on_front": candidate.name in on_front,
-            "predicted": None if found or broken else candidate.predicted(limits),
+            "predicted": None if found or broken else self._predicted(candidate),
             "tried": [trial.row(limits) for _, trial in sorted(candidate.trials.items())],
         }
+
+    def _predicted(self, candidate: Candidate) -> Row | None:
+        """Where the limits would be met, and what is missed there all the same."""
+        guess, least = candidate.predicted(self._wanted.limits), self._wanted.real_time_factor
+        if guess is None:
+            return None
+        missed = []
+        if least is not None and self._duration < least * guess["seconds"]:
+            missed.append(_too_slow_row(least, self._duration / guess["seconds"]))
+        return {**guess, "missed": missed}
 
     def _front(self, costs: Costs) -> set[str]:
         """Those with a run that none beats in cost, error and memory at once."""

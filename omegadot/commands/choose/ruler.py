@@ -142,7 +142,7 @@ class Ruler:
     def _exact(self, times: Array) -> Exact:
         answer = self._solve(times)
         if not answer.ok:
-            raise NoTruthError(f"no exact solution to measure by: {answer.reason}")
+            raise NoTruthError(f"the exact trajectory cannot be worked out: {answer.reason}")
         found: dict[str, Any] = answer.result
         state = State(**found["state"])
         return Exact(found["source"], state, found["omega_dot"], found["floor"])

@@ -14,6 +14,7 @@ from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.solutions.exact_solution import exact_solution
+from omegadot.reference_impl.solutions.representable import UnrepresentableError
 from omegadot.reference_impl.system import Array, State
 from omegadot.scenarios import ScenarioLike
 from omegadot.written import written
@@ -78,14 +79,13 @@ def exact(scenario: ScenarioLike, times: ArrayLike | None = None) -> ExactStates
     requested = case.sample_times if times is None else _checked(times, case)
     followed = _followed(case, requested)
     rows = np.searchsorted(followed, requested)
-    with np.errstate(all="ignore"):  # what overflows is refused below
+    try:
         solution = exact_solution(case.system, case.initial, followed)
-    if not all(np.isfinite(values).all() for values in vars(solution.state).values()):
+    except UnrepresentableError as error:
         raise UsageError(
-            f"exact solution of {case.name}: at {written(followed[-1])} s double precision "
-            "holds no digit "
-            "of the motion; give earlier times."
-        )
+            f"exact solution of {case.name}: at {written(followed[-1])} s, {error}; "
+            "give earlier times."
+        ) from None
     state = State(*(values[rows] for values in vars(solution.state).values()))
     return ExactStates(
         source=solution.source,

@@ -31,7 +31,9 @@ from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.errors.verdicts import Finding
 from omegadot.gates.rows import Row
+from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.flight.euler_angles import Angles
+from omegadot.reference_impl.solutions.representable import UnrepresentableError
 from omegadot.reference_impl.system import Array
 from omegadot.written import written
 
@@ -128,7 +130,11 @@ def judge_trace(
     trace = trace_of(reading, case.system)
     check_duration(reading, case.scenario.run.duration)
     trace, declared = declared_of(trace, scheme, timestep, _angles(reading))
-    truth = truth_at(case.system, case.initial, trace.times)
+    try:
+        truth = truth_at(case.system, case.initial, trace.times)
+    except UnrepresentableError as error:
+        why = f"the exact trajectory cannot be worked out: {error}"
+        raise UsageError(f"{case.name}: {why}; give numbers within that range.") from None
     measured = measure_trace(case, trace, truth)
     check_units(measured, reading)
     check_clock(measured, reading, case.scenario.run.duration)

@@ -23,7 +23,7 @@ def case_truth(exact: Driver, case: Case) -> Truth | str:
     times = case.sample_times
     answer = _requested(exact, case, "solve", times=times)
     if not answer.ok:
-        return f"no exact solution to compare with: {answer.reason}"
+        return f"the exact trajectory cannot be worked out: {answer.reason}"
     state = State(**answer.result["state"])
     yardstick = Yardstick(case.system, times, state)
     found, floor = answer.result, answer.result["floor"]

@@ -9,6 +9,7 @@ import numpy as np
 from omegadot.reference_impl.closed_forms import Floor, closed_form_of, floor
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.solutions.growth import growth_along
+from omegadot.reference_impl.solutions.representable import check_representable, check_solved
 from omegadot.reference_impl.solutions.series import solve_series
 from omegadot.reference_impl.system import Array, State, System
 
@@ -33,8 +34,14 @@ def exact_states(system: System, initial: State, times: Array) -> tuple[str, Sta
 
 
 def exact_solution(system: System, initial: State, times: Array) -> ExactSolution:
-    """The exact states at rising `times`, (n,) s, with the resolvable floor of each."""
-    source, state = exact_states(system, initial, times)
+    """The exact states at rising `times`, (n,) s, with the resolvable floor of each.
+
+    Raises UnrepresentableError where double precision cannot hold the motion.
+    """
+    check_representable(system, initial, float(np.max(np.abs(times), initial=0.0)))
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # refused where it matters
+        source, state = exact_states(system, initial, times)
+        check_solved(state, forward_dynamics(system, state).angular, times)
     if source == "closed-form":
         return ExactSolution(source, state, floor(system, initial, times))
     return ExactSolution(source, state, _floor_by_growth(system, times, state))

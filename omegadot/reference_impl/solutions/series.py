@@ -26,12 +26,15 @@ from omegadot.reference_impl.arithmetic.precision import (
 )
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.solutions.representable import UnrepresentableError
 from omegadot.reference_impl.solutions.series_equations import Equations, G, Q, T, W, equations_of
 from omegadot.reference_impl.system import Array, State, System
+from omegadot.written import written
 
 # Optimal is about -ln(eps)/2, 22 for 2^-63; a little more costs little and gives longer steps,
 # which dense output over few samples likes.
 ORDER = int(-0.6 * np.log(LEAST_EPS)) + 2
+MOST_STEPS = 100_000  # minutes of work
 
 
 @dataclass(frozen=True)
@@ -110,7 +113,12 @@ def _segments(equations: Equations, x: Array, end: float) -> Iterator[Segment]:
             yield Segment(start, end - sign * passed, series)
             return
         if not length > LEAST_EPS * passed:
-            raise ArithmeticError("the motion leaves the range of numbers")
+            raise UnrepresentableError("the motion leaves the range of numbers")
+        if (abs(end) - passed) / length > MOST_STEPS:
+            count = written((abs(end) - passed) / length, 2)
+            raise UnrepresentableError(
+                f"the motion is so fast that its series would take {count} steps"
+            )
         segment = Segment(start, sign * length, series)
         yield segment
         x = equations.refreshed(segment.at(segment.end[None])[0])
@@ -138,7 +146,8 @@ def solve_series(system: System, initial: State, times: Array) -> State:
     """The state at `times`, (n,) s in any order and of either sign; `initial` holds at zero.
 
     Leading axes of `initial` are lanes, which share their steps: the result has (n, lanes, ...).
-    Raises ValueError for a system with leading axes or a state or time that is not finite.
+    Raises ValueError for a system with leading axes or a state or time that is not finite, and
+    UnrepresentableError for a motion that no series can follow to its end.
     """
     return in_doubles(solve_extended(system, initial, times))
 

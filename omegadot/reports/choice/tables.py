@@ -9,7 +9,14 @@ from rich.console import Console
 from rich.text import Text
 
 from omegadot.reports.choice import sentences
-from omegadot.reports.choice.sentences import LONGEST, NAMES, missed_text, setting_text, shown
+from omegadot.reports.choice.sentences import (
+    LONGEST,
+    NAMES,
+    missed_text,
+    open_yet,
+    setting_text,
+    shown,
+)
 from omegadot.reports.text.numbers import grouped, short
 from omegadot.reports.text.text_grid import Grid, plain_console, text_grid
 
@@ -99,6 +106,9 @@ def _guess(row: Row) -> str:
     if guess["seconds"] > LONGEST:
         return "out of reach: a run would take more than an hour"
     step, seconds = short(guess["timestep"]), grouped(guess["seconds"])
+    if not open_yet(guess):
+        slow = "; ".join(missed_text(missed) for missed in guess["missed"])
+        return f"cannot qualify: at a step of {step} s, {seconds} s a run, {slow}"
     return f"a step of {step} s may suffice, {seconds} s a run (not verified)"
 
 

@@ -20,6 +20,7 @@ from typing import Any, BinaryIO, cast
 
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import OURS, AdapterError, build_adapter
+from omegadot.reference_impl.solutions.representable import UnrepresentableError
 from omegadot.workers.engine_end.checked import AnswerError, description_of
 from omegadot.workers.engine_end.command import (
     CommandAdapter,
@@ -50,7 +51,9 @@ def failure(error: BaseException) -> dict[str, Any]:
     texts = one_line(_text_of(error))
     if isinstance(error, UnsupportedError):
         return {"outcome": "unsupported", "reason": texts}
-    if isinstance(error, AnswerError | ProgramError):  # it states all, and no line of ours helps
+    if isinstance(
+        error, AnswerError | ProgramError | UnrepresentableError
+    ):  # it states all, and no line of ours helps
         return {"outcome": "raised", "reason": texts}
     last = traceback.extract_tb(error.__traceback__)[-1:]
     where = f" ({os.path.basename(last[0].filename)}:{last[0].lineno})" if last else ""
