@@ -33,6 +33,7 @@ from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.requests import siblings
 
+OF_BODY = {("model", metric) for metric in ("mass", "center_of_mass", "inertia")}
 OF_RATES = ((FORWARD, "residual"), (ALONG, "residual_on_path"))
 
 
@@ -120,11 +121,14 @@ class CaseCauses:
 
     def _of_model(self, failed: set[tuple[str, str]]) -> list[str]:
         """Of what reads back. failed: gates and metrics."""
+        rates = {("equation", metric) for _, metric in OF_RATES} & failed
+        lever = self._of_lever(numbers=False) if rates and not failed & OF_BODY else []
+        if lever:  # a place from another point is a place alone
+            return lever
         found = model_causes(self._across, self._case, self._states, self._answers)
         found = found or kept_causes(self._states, self._answers)
         # Of a place that is off by a few digits, the equation states by how much, and of what.
-        equation = {("equation", metric) for _, metric in OF_RATES}
-        return found or self._of_lever(numbers=not equation & failed)
+        return found or self._of_lever(numbers=not rates)
 
     def _of_lever(self, numbers: bool = True) -> list[str]:
         how = (self._across, self._case, self._states, self._answers)
@@ -139,7 +143,7 @@ class CaseCauses:
         right = bool(steps) and all(one is not None and one.sound for one in steps)
         failing = (one.fails.values() for one in self._over.values())
         right = right and not any(map(any, failing))
-        return [f"{one}{ALONE * right}" for one in found]
+        return [one if any(x in one for x in AT_SOME) else f"{one}{ALONE * right}" for one in found]
 
     def _of_reloaded(self) -> list[str]:
         """Of a system that was loaded after another."""
@@ -177,3 +181,5 @@ class CaseCauses:
 
 
 ALONE = ", in forward dynamics alone: steps are right"
+# Of states that the steps may not have come to.
+AT_SOME = ("but only where", "but not always", "wrong only where")

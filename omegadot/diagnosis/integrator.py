@@ -15,6 +15,7 @@ from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
 from omegadot.diagnosis.stepping.jumps import jump_cause, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
 from omegadot.diagnosis.stepping.order_lost import OrderLost
+from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import (
     agreed,
     either,
@@ -31,6 +32,7 @@ from omegadot.harness.judging.judged_run import JudgedRun
 # Scenarios on which the runs of an integrator are looked at in vain, before the rest is left alone:
 # stepping again by all that may be wrong takes long. The order that steps have lost explains them.
 VAIN, VAIN_BESIDE_ORDER = 8, 3
+LOGGED = "the run is logged"
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
 
@@ -97,9 +99,9 @@ class IntegratorCauses:
         if self._over.again:  # what is left over from a run spoils the short ones that follow
             return [self._over.again]
         if steps.stays_below[0] > 0.0:
-            limit = least_step(self._over.stays_below.values())
-            if limit or steps.still:
-                return [limit or least_step([steps.stays_below])]
+            limit = self._short_steps(steps)
+            if limit:
+                return limit
         found = self._in_steps.sentences(steps) or self._of_trajectories()
         if self._case.name in self._over.turned and all(map(is_fact, found)):
             begins = self._over.begins
@@ -113,6 +115,18 @@ class IntegratorCauses:
             return last
         slight = either([slight_jump_cause(steps)])
         return slight or self._in_steps.known(steps) or self._known_of_runs()
+
+    def _short_steps(self, steps: VanishingSteps) -> list[str]:
+        """Steps that are too short to move a body; none where that is not what is wrong.
+
+        Where no step moves any, whatever its length, the run may as well be logged late.
+        """
+        every = self._over.stays_below.values()
+        limit = least_step(every)
+        if any(np.isfinite(moving) for _, moving in every):
+            return [limit] if limit else []
+        late = [text for text in self._of_trajectories() if LOGGED in text]
+        return late or [limit or least_step([steps.stays_below])] * steps.still
 
     def _beyond(self, lost: OrderLost | None) -> bool:
         """Whether what makes single steps lose their order explains scenarios that no run does."""
