@@ -10,7 +10,7 @@ from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.wrong_equation import known_difference
 from omegadot.diagnosis.kept_case import KeptCase
 from omegadot.diagnosis.over_scenarios import OverScenarios
-from omegadot.diagnosis.stepping.follows import Followed, keeps_pace
+from omegadot.diagnosis.stepping.follows import Followed
 from omegadot.diagnosis.stepping.jumps import jump_cause, jumps
 from omegadot.diagnosis.stepping.kinematics import (
     kinematic_causes,
@@ -48,7 +48,8 @@ class StepCauses:
         """Where every state is off by the steps alone, the more basic first."""
         common = steps.common_cause()
         if common:
-            first = self._kept.beginning is not None and not keeps_pace(self._kept.beginning, steps)
+            pace = self._over.keeps_pace
+            first = not pace.get(self._kept.name, True) and not any(pace.values())
             if not first:
                 return [common]
             seen = [one for one in self._of_trajectories() if not one.startswith(FIRST_ALONE)]

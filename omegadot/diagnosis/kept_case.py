@@ -10,7 +10,7 @@ from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.reported.run import reported_run
-from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, begins_turned
+from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, begins_turned, keeps_pace
 from omegadot.diagnosis.stepping.jumps import first_turn
 from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
 from omegadot.diagnosis.stepping.rests import RunWithRests, rests_of
@@ -104,6 +104,8 @@ def _steps(
     stepped = State(**answer.result)
     steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
     over.stays_below[case.name] = steps.stays_below
+    if beginning is not None and not steps.sound:
+        over.keeps_pace[case.name] = keeps_pace(beginning, steps)
     angle = None if steps.sound else first_turn(steps)
     if angle is not None:
         alone = beginning is not None and begins_turned(beginning, angle)

@@ -30,7 +30,8 @@ class OverScenarios:
     does.  again: what shows where two answers to one request differ.  lost: orders.  seen: what is
     off.  beginnings: of the failed runs.  kept: the first samples of every run.  turned: by what
     angle in rad first steps turn the body, and whether later ones are seen not to.  stays_below: s,
-    up to which length steps change nothing, and from which on they do.
+    up to which length steps change nothing, and from which on they do.  keeps_pace: whether runs go
+    on as much too fast, or too slowly, as first steps do.
     angle in rad first steps turn the body, and whether later ones are seen not to.  rests: at what
     states the body is put to rest.
     """
@@ -43,6 +44,7 @@ class OverScenarios:
     beginnings: dict[str, Beginning] = field(default_factory=dict)
     kept: list[KeptRun] = field(default_factory=list)
     turned: dict[str, tuple[float, bool]] = field(default_factory=dict)
+    keeps_pace: dict[str, bool] = field(default_factory=dict)
     stays_below: dict[str, tuple[float, float]] = field(default_factory=dict)
     rests: dict[str, Rests] = field(default_factory=dict)
     _together: tuple[int, list[str]] = (0, [])

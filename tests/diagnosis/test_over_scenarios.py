@@ -189,10 +189,13 @@ def test_a_term_that_steps_hold_explains_every_scenario() -> None:
     assert "start" not in free.with_others([top.of_first]).text
 
 
-def test_what_is_off_is_that_of_the_most_basic_channel() -> None:
+def test_what_is_off_is_the_channel_of_the_scenario_itself() -> None:
+    """Caught: "omega is off" where it equals a sound engine's to the last bit."""
     late = Known("position", frozenset("z"), 1.0, 2.0)
     first = Known("omega", frozenset("xz"), 1.0, None)
-    assert late.with_others([first]).text == first.with_others([late]).text
+    other = Known("omega", frozenset("y"), 2.0, None)
+    assert late.with_others([first, other]).text == late.text
+    assert first.with_others([late, other]).text == "omega is off"
     assert first.text.startswith("omega is off in x and z of the body alone")
 
 

@@ -11,7 +11,7 @@ from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orde
 from omegadot.diagnosis.wording.digits import factor
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm, torque_size
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
 from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
 from omegadot.reference_impl.motion import forward_dynamics, inverse_dynamics
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
@@ -120,6 +120,9 @@ def _other_bodies(
     inertia, w = np.asarray(moving_inertia(system), dtype=float), states.angular_velocity
     gravity, body = gravity_torque(system, states), system.body.inertia
     diagonal = np.diag(np.diag(inertia))
+    about_origin = np.asarray(body) + parallel_axis(
+        float(system.body.mass), np.asarray(system.body.center_of_mass)
+    )
 
     def by(mass: Array, spin: Array) -> Callable[[], Array]:
         return lambda: apply(mass, requested.angular) + cross(w, apply(spin, w)) - gravity
@@ -133,6 +136,7 @@ def _other_bodies(
         "inverse dynamics use the inertia about the centre of mass, not about the pivot": by(
             np.asarray(body), np.asarray(body)
         ),
+        "inverse dynamics use the inertia about the body's origin": by(about_origin, about_origin),
         "inverse dynamics have the products of inertia with the wrong sign": by(
             2.0 * diagonal - inertia, 2.0 * diagonal - inertia
         ),

@@ -23,7 +23,7 @@ CLEAR = 2.0 * ROUNDINGS_PER_EVALUATION / (CLEAN * np.log(2.0))
 LEAST = 4  # samples that show how an error grows
 EARLY = 0.05  # of the vector itself, up to which its error is that of single steps added up
 CHANNELS = {
-    "omega": {"omega", "energy", "angular_momentum"},
+    "omega": {"omega"},
     "attitude": {"attitude"},
     "linear velocity": {"linear_momentum"},
     "position": {"position"},
@@ -42,13 +42,11 @@ class Known:
     time: float | None
 
     def with_others(self, others: Iterable[Known]) -> Known:
-        """One mistake shows in several channels: the most basic, with what holds wherever it is."""
-        every = [self, *others]
-        first = next(c for c in CHANNELS if any(one.channel == c for one in every))
-        same = [one for one in every if one.channel == first]
+        """The same channel on other scenarios: what holds wherever it is off."""
+        same = [self, *(one for one in others if one.channel == self.channel)]
         step, time = ({getattr(one, k) for one in same} for k in ("step", "time"))
         return Known(
-            first,
+            self.channel,
             frozenset().union(*(one.axes for one in same)),
             step.pop() if len(step) == 1 else None,
             time.pop() if len(time) == 1 else None,
@@ -76,8 +74,6 @@ def known_of_runs(
     runs: those that fail.  shortest: of all steps that were taken, in s.
     """
     failed = {row.channel for run in runs for row in run.rows if row.verdict == "fail"}
-    if "attitude" in failed and not failed & {"omega", "energy"}:
-        failed.discard("angular_momentum")  # in world axes, which the attitude turns
     errors = [found for run in runs if (found := _errors(truth, result, run)) is not None]
     for channel in (c for c, names in CHANNELS.items() if failed & names):
         shown = [(run, e[channel]) for run, e in errors if np.any(e[channel].clear)]

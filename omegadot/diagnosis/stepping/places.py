@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
-from omegadot.diagnosis.wording.digits import limits
+from omegadot.diagnosis.wording.digits import limits, number
 from omegadot.diagnosis.wording.state_features import Numbers, features_of_states
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.motion import forward_dynamics
@@ -76,8 +76,10 @@ def _where(name: str, term: str, sound: float, wrong: float, unit: str) -> str:
         angles = [np.degrees(np.arccos(np.clip(c, -1.0, 1.0))) for c in (wrong, sound)]
         axis = name.removeprefix(TILT)
         first, last = (float(f"{angle:.3g}") for angle in angles)
-        near = limits(first, last, "degrees")
-        return f"the body's {axis} is within a limit of the vertical, between {near}"
+        near = f"between {limits(first, last, 'degrees')}"
+        if first == last:
+            near = f"at {number(first)} degrees"
+        return f"the body's {axis} is within a limit of the vertical, {near}"
     first, last = sorted((float(f"{sound:.4g}"), float(f"{wrong:.4g}")))
     ends = limits(first, last, unit)
     return f"{name} is {term} a limit between {ends}"

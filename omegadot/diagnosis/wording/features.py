@@ -76,6 +76,10 @@ def features_of(system: System, initial: State) -> Features:
             float(moments[-1] / moments[0]),
             "",
         ),
+        "the difference of the largest and the least moment of inertia": (
+            float(moments[-1] - moments[0]),
+            "kg m^2",
+        ),
         "|omega| at the start": (float(norm(initial.angular_velocity)), "rad/s"),
         "the linear speed at the start": (float(norm(initial.linear_velocity)), "m/s"),
         "the distance from the pivot to the centre of mass": (arm, "m"),

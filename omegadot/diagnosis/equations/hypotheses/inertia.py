@@ -21,6 +21,9 @@ from omegadot.diagnosis.models.tensors import other_tensors
 from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
 from omegadot.reference_impl.system import Array, System
 
+# As of a tensor about the pivot that is moved there once more.
+TWICE = "the inertia is moved to the pivot twice"
+
 
 def spin_hypotheses() -> Iterator[Hypothesis]:
     """Each of them."""
@@ -52,23 +55,24 @@ def inertia_hypotheses(system: System) -> Iterator[Hypothesis]:
     """Of one system: its tensor, in the solve, in the gyroscopic term or in both."""
     own, names = own_inertia(system), other_tensors(system)
     about = _about(system)
-    for text, tensor in names.items():
+    for name, tensor in names.items():
+        text = TWICE if name.startswith("the inertia is about the pivot") else name
         if not np.linalg.eigvalsh(tensor)[0] > 0.0 or np.array_equal(tensor, own):
             continue
         yield of_body(
             f"in the dynamics, {text}",
             f"inertia:{text}",
-            given(text, lambda t, b, s: _named(s, t)),
+            given(name, lambda t, b, s: _named(s, t)),
         )
         yield of_form(
             f"where omega-dot is solved for, {text}",
             f"inertia:{text}",
-            given(text, lambda t, f, s: {"solve": np.linalg.inv(_about(s) + _tensor(s, t))}),
+            given(name, lambda t, f, s: {"solve": np.linalg.inv(_about(s) + _tensor(s, t))}),
         )
         yield of_form(
             f"in the gyroscopic term, {text}",
             "spin",
-            given(text, lambda t, f, s: {"spin": _about(s) + _tensor(s, t)}),
+            given(name, lambda t, f, s: {"spin": _about(s) + _tensor(s, t)}),
         )
     yield of_form(
         "where omega-dot is solved for, only the diagonal of the whole inertia is used",

@@ -26,7 +26,7 @@ class Operand:
 
     of: its values at states.  put: the accelerations with others in its place.  came: the values in
     the engine, where they follow from what was found.  constant: the same at every state of a
-    scenario.  reported: it does not move the body.
+    scenario.  reported: it does not move the body.  rounded: tried with rounding alone.
     """
 
     name: str
@@ -36,6 +36,7 @@ class Operand:
     came: Callable[[Evidence], Array] | None = None
     constant: bool = False
     reported: bool = False
+    rounded: bool = False
 
 
 def pushed(e: Evidence, torque: Array) -> Acceleration:
@@ -88,14 +89,18 @@ def _omega(what: str, terms: tuple[Callable[[System, State], Array], ...]) -> Op
     return Operand(f"omega in {what}", "rad/s", lambda e: e.states.angular_velocity, put)
 
 
-def _attitude(what: str, term: Callable[[System, State], Array]) -> Operand:
-    """The quaternion on its way into one term alone."""
+def _attitude(what: str, term: Callable[[System, State], Array], unit: bool = True) -> Operand:
+    """The quaternion on its way into one term alone.
+
+    unit: it is normalised there; else what is rounded turns by a matrix that is no rotation.
+    """
 
     def put(e: Evidence, q: Array) -> Acceleration:
-        other = replace(e.states, orientation=normalize(q))
+        other = replace(e.states, orientation=normalize(q) if unit else q)
         return pushed(e, term(e.system, other) - term(e.system, e.states))
 
-    return Operand(f"the attitude in {what}", "", lambda e: e.states.orientation, put)
+    name = f"the attitude in {what}{'' if unit else ', as it is,'}"
+    return Operand(name, "", lambda e: e.states.orientation, put, rounded=not unit)
 
 
 def _whole_omega(e: Evidence, w: Array) -> Acceleration:
@@ -119,6 +124,9 @@ OPERANDS = (
     _attitude("the torque of gravity", gravity_torque),
     _attitude("the torque in world axes", _world),
     _attitude("all loads", loads),
+    _attitude("the torque of gravity", gravity_torque, unit=False),
+    _attitude("the torque in world axes", _world, unit=False),
+    _attitude("all loads", loads, unit=False),
     Operand("the attitude on its way in", "", lambda e: e.states.orientation, _whole_attitude),
     Operand("omega on its way in", "rad/s", lambda e: e.states.angular_velocity, _whole_omega),
     Operand(

@@ -33,6 +33,7 @@ class Operator:
     change: of vectors (n, k) at states with numbers (p,).  text: with what it changes, its unit and
     the numbers.  guess: the numbers, nearly; None of an operator without any.  turns: it makes
     another vector of a constant one, too.  among: it depends on the other states of the request.
+    rounds: it rounds.
     """
 
     change: Callable[[Array, State, Array], Array]
@@ -40,3 +41,4 @@ class Operator:
     guess: Callable[[Seen], Array | None] | None = None
     turns: bool = False
     among: bool = False
+    rounds: bool = False

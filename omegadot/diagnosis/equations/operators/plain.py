@@ -20,11 +20,14 @@ DECIMALS = range(9)
 
 
 def _plain(
-    change: Callable[[Array, State], Array], text: str, turns: bool = False, among: bool = False
+    change: Callable[[Array, State], Array],
+    text: str,
+    turns: bool = False,
+    among: bool = False,
+    rounds: bool = False,
 ) -> Operator:
-    return Operator(
-        lambda v, x, p: change(v, x), lambda what, unit, p: f"{what} {text}", None, turns, among
-    )
+    made = (lambda v, x, p: change(v, x)), (lambda what, unit, p: f"{what} {text}")
+    return Operator(*made, None, turns, among, rounds)
 
 
 def _ordered(order: list[int], signs: Array) -> Operator:
@@ -37,7 +40,8 @@ def _ordered(order: list[int], signs: Array) -> Operator:
 
 def _decimal(digits: int, how: Callable[[Array], Array], what: str) -> Operator:
     scale = 10.0**digits
-    return _plain(lambda v, x: how(v * scale) / scale, f"is {what} to {digits} decimals")
+    text = f"is {what} to {digits} decimals"
+    return _plain(lambda v, x: how(v * scale) / scale, text, rounds=True)
 
 
 def of_vectors() -> Iterator[Operator]:
@@ -82,7 +86,8 @@ def _heading(q: Array, _: State) -> Array:
 
 def of_any() -> Iterator[Operator]:
     """Those without numbers, of vectors and quaternions."""
-    yield _plain(lambda v, x: v.astype(np.float32).astype(float), "is rounded to single precision")
+    single = "is rounded to single precision"
+    yield _plain(lambda v, x: v.astype(np.float32).astype(float), single, rounds=True)
     together = "among those that are requested together"
     yield _plain(lambda v, x: v[:1] + 0 * v, f"is that of the first state {together}", among=True)
     yield _plain(
