@@ -226,6 +226,7 @@ def test_the_next_command_repeats_how_the_failure_was_run(record: Record) -> Non
         "omegadot run sphere --adapter 'my dart.py:Dart' --engine dart:semi-implicit "
         "--setup as-shipped --timestep 0.02"
     )
+    assert failure.purpose == "runs it alone"
 
 
 def test_an_attitude_is_compared_with_those_of_its_order(record: Record) -> None:

@@ -13,7 +13,7 @@ import polars as pl
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import GATES, YARDSTICKS
 from omegadot.reports.summary.failed_gate import measure, worst_row
-from omegadot.reports.summary.next_command import next_command
+from omegadot.reports.summary.next_command import CHECK, next_command
 from omegadot.reports.summary.reasons import cause_of, failing_gates
 from omegadot.reports.text.numbers import engine_name, knob, listed, plain, quantity, short, times
 
@@ -58,6 +58,12 @@ class EngineFailure:
     def looks_at(self) -> str:
         """What the gate looks at."""
         return LOOKS_AT[self.gate]
+
+    @property
+    def purpose(self) -> str:
+        """What the command is for."""
+        shrinks = self.command.startswith(CHECK)
+        return "shrinks it and looks for its cause" if shrinks else "runs it alone"
 
     @property
     def sentence(self) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 from omegadot.reports.summary.provenance import requested_scenarios
 
 API = "api"
+CHECK = "omegadot check "
 DRAWN = "random-"  # begins the name of a system that was drawn
 
 
@@ -30,7 +31,7 @@ def next_command(run: Mapping[str, Any], worst: Mapping[str, Any], failing: Coll
     if worst["setup"] not in (None, "physics"):
         return shlex.join(_run(worst, given, argument, engine) + ways)
     names = [own["name"] for own in engine.get("integrators") or ()]
-    words = ["omegadot", "check", argument]
+    words = [*CHECK.split(), argument]
     if len(failing) == 1 < len(names):
         words += ["--integrator", *failing]
     if given != worst["scenario"] or given.startswith(DRAWN):
