@@ -46,6 +46,9 @@ class StepCauses:
 
     def sentences(self, steps: VanishingSteps) -> list[str]:
         """Where every state is off by the steps alone, the more basic first."""
+        if steps.late_velocity:
+            late = f"the {steps.late_velocity} of the step before"
+            return [f"the linear velocity of a pivoted body is reported by {late}"]
         common = steps.common_cause()
         if common:
             pace = self._over.keeps_pace

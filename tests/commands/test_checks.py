@@ -169,7 +169,7 @@ def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
     [
         ("Raises", 3, "raised: ArithmeticError: the solver did not converge"),
         ("Diverges", 1, "omega: error_max is not finite"),
-        ("Unsupporting", 1, "a skip is not a pass (unsupported: this engine has no rigid bodies)"),
+        ("Unsupporting", 3, "a skip is not a pass (unsupported: this engine has no rigid bodies)"),
         ("Missing", 3, "not-installed: "),
     ],
 )
@@ -182,11 +182,52 @@ def test_outcomes_stay_apart(name: str, code: int, text: str, tmp_path: Path) ->
         assert "rk4-quaternion" not in result.out
 
 
+def test_an_engine_is_given_as_run_takes_it(tmp_path: Path) -> None:
+    """Caught: NAME:INTEGRATOR and --adapter refused by one command of two."""
+    quick = quick_scenario(tmp_path)
+    one = ("check", "reference:lie-rk4", "--scenario", quick)
+    apart = ("check", "reference", "--integrator", "lie-rk4", "--scenario", quick)
+    first, second = omegadot(*one, folder=tmp_path), omegadot(*apart, folder=tmp_path)
+    assert (first.code, first.out) == (second.code, second.out)
+    assert first.code == 0
+    both = omegadot(*one, "--integrator", "rk4-quaternion", folder=tmp_path)
+    assert both.code == 2
+    assert "give reference, and --integrator for each" in both.err
+    own = omegadot("check", "--adapter", f"{FAULTY}:Unsupporting", "--scenario", quick,
+                   folder=tmp_path)  # fmt: skip
+    assert "a skip is not a pass" in own.out
+    two = omegadot("check", "reference", "--adapter", f"{FAULTY}:Unsupporting", folder=tmp_path)
+    assert two.code == 2
+    assert f"write omegadot check {FAULTY}:Unsupporting" in two.err
+    run = omegadot("run", "--scenario", quick, "--engine", "reference:lie-rk4", folder=tmp_path)
+    assert run.code == 0, run.err
+    assert "quick" in run.out
+
+
+def test_nothing_judged_is_no_success_of_run_or_check(tmp_path: Path) -> None:
+    """Caught: exit code 0 of a run in which a named engine takes no system."""
+    quick, target = quick_scenario(tmp_path), f"{FAULTY}:Unsupporting"
+    ran = omegadot("run", quick, "--adapter", target, "--engine", "unsupporting", folder=tmp_path)
+    assert "No verdict" in ran.out
+    checked = omegadot("check", target, "--scenario", quick, folder=tmp_path)
+    assert (ran.code, checked.code) == (3, 3)
+
+
+def test_a_run_that_diverges_keeps_its_equation_gate(tmp_path: Path) -> None:
+    """Caught: "no run was judged" beside an equation that holds at identical states."""
+    fast = quick_scenario(tmp_path, QUICK.replace("[0.3, 2.0, 0.1]", "[1e6, 3e6, 1e6]"))
+    one = ("--engine", "mujoco:RK4", "--timestep", "0.02", "--timestep", "0.01")
+    ran = omegadot("run", fast, *one, folder=tmp_path)
+    assert ran.code == 0, ran.out
+    assert "mujoco agrees with the Newton–Euler equations at identical states" in ran.out
+    assert "2 diverged" in ran.out
+
+
 @pytest.mark.parametrize(
     ("adapter", "arguments", "message"),
     [
         ("mujocco", Arguments(), "write mujoco"),
-        ("mujoco:RK4", Arguments(), "--integrator RK4"),
+        ("mujoco:", Arguments(), "give mujoco, or mujoco:INTEGRATOR"),
         ("mujoco", Arguments(update=True), "--baseline DIR"),
         ("mujoco", Arguments(exceptions=["nowhere.toml"]), "nowhere.toml"),
         ("mujoco", Arguments(random=1_000_001), "--random 1000001: give a whole number of at most"),

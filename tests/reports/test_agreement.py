@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import polars as pl
 import pytest
 from synthetic_record import metric, with_metrics
 
@@ -102,6 +103,80 @@ def test_rows_changed_beside_their_run_are_refused(folder: Path, record: Record)
     write_record(failing, folder, draw_page(failing))
     with pytest.raises(RecordError, match=r"scheme gate of dart .* is 'pass', and .* 'fail'"):
         read_record(folder)
+
+
+METRIC_EDITS: dict[str, tuple[Callable[[pl.DataFrame], pl.DataFrame], str]] = {
+    "no value is a number": (
+        lambda rows: rows.with_columns(value=pl.lit(float("nan"))),
+        r"is nan with a bound of .*, and its verdict is 'pass'",
+    ),
+    "every value is larger": (
+        lambda rows: rows.with_columns(value=pl.col("value") * 1e6),
+        r"with a bound of 1e-13, and its verdict is 'pass'",
+    ),
+    "an explained error is no number": (
+        lambda rows: rows.with_columns(
+            value=pl.when(pl.col("note").str.starts_with("explained"))
+            .then(pl.lit(float("nan")))
+            .otherwise("value")
+        ),
+        r"is nan with a bound of 1e-13, and its verdict is 'pass'",
+    ),
+    "an error has no reason": (
+        lambda rows: rows.with_columns(note=pl.lit("")),
+        r"with a bound of 1e-13, and its verdict is 'pass'",
+    ),
+    "no bounds": (
+        lambda rows: rows.with_columns(bound=pl.lit(None, pl.Float64), note=pl.lit("")),
+        r"without a bound, and its verdict is 'pass'",
+    ),
+    "every row twice": (lambda rows: pl.concat([rows, rows]), r" on sphere .*is there twice"),
+}
+
+
+@pytest.mark.parametrize("kind", METRIC_EDITS)
+def test_edited_rows_are_refused_in_one_sentence(kind: str, folder: Path) -> None:
+    """Caught: a pass beside a value that fails, which no verdict of another file shows."""
+    change, sentence = METRIC_EDITS[kind]
+    file = folder / METRICS
+    change(pl.read_parquet(file)).write_parquet(file)
+    with pytest.raises(RecordError, match=sentence) as problem:
+        read_record(folder)
+    assert str(problem.value).startswith(f"{folder}: metrics.parquet contradicts itself: ")
+
+
+def test_a_failure_within_its_bound_is_refused(folder: Path, record: Record) -> None:
+    row = metric("sphere", "dart", None, None, "equation", "omega_dot", "residual", 1e-16)
+    failing = with_metrics(record, {**row, "verdict": "fail"})
+    write_record(failing, folder, draw_page(failing))
+    with pytest.raises(RecordError, match="with a bound of 1e-13, and its verdict is 'fail'"):
+        read_record(folder)
+
+
+RUN_EDITS: dict[str, tuple[Change, str]] = {
+    "engines": (lambda run: run["engines"].extend(run["engines"]), "is among the engines twice"),
+    "scenarios": (
+        lambda run: run["scenarios"].append(run["scenarios"][0]),
+        "sphere is among the scenarios twice",
+    ),
+    "tasks": (
+        lambda run: run["tasks"].append(_task(run, **RK4)),
+        "the run mujoco RK4 on sphere at 0.01 is among the tasks twice",
+    ),
+    "created": (
+        lambda run: run.update(created="yesterday"),
+        "created is 'yesterday', expected a date and time, as 2026-01-31T12:00:00",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", RUN_EDITS)
+def test_what_is_listed_twice_or_is_no_time_is_refused(kind: str, folder: Path) -> None:
+    change, sentence = RUN_EDITS[kind]
+    edited(folder, change)
+    with pytest.raises(RecordError) as problem:
+        read_record(folder)
+    assert sentence in str(problem.value)
 
 
 def test_what_agrees_is_read(folder: Path, record: Record) -> None:

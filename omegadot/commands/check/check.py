@@ -57,8 +57,9 @@ class CheckResult:
 
     @property
     def answered(self) -> bool:
-        """Whether the engine started and answered every check."""
-        return all(result.verdict != "error" for result in self.by_check.values())
+        """Whether the engine started and answered every check, not all of its motion by a skip."""
+        lost = any(result.verdict == "error" for result in self.by_check.values())
+        return not lost and not self.only_skipped
 
     @property
     def passed(self) -> bool:
@@ -141,6 +142,8 @@ def _shrunk(
     """The simplest system for each kind of failure of the one engine."""
     cases = {case.name: case for case in selection.cases}
     given = engine if isinstance(engine, str) else target_of(engine)
+    if (name := given.partition(":")[0]) in known_engines():
+        given = name
     kinds, found = kinds_of_failure(results, cases), []
     deadline = time.monotonic() + SECONDS
     count = Count(report, "shrinking what fails", len(kinds)) if kinds else None
@@ -170,7 +173,7 @@ def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Argu
     elif not isinstance(engine, str) or is_target(engine, known) or ":" in engine:
         left, _, right = engine.partition(":") if isinstance(engine, str) else ("", "", "")
         if left in known:
-            raise UsageError(f"{engine}: give the integrator apart, as --integrator {right}.")
+            return _of_one_integrator(left, right, integrators, arguments)
         adapters = [target_of(engine)]
         name = next(iter(adapters_named(adapters)))
     else:
@@ -180,3 +183,17 @@ def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Argu
         )
     engines = [f"{name}:{integrator}" for integrator in integrators] or [name]
     return replace(arguments, engines=engines, adapters=adapters, required=[name])
+
+
+def _of_one_integrator(
+    name: str, integrator: str, others: Sequence[str], arguments: Arguments
+) -> Arguments:
+    """Of ``NAME:INTEGRATOR``, as `run` takes it. Raises UsageError."""
+    if not integrator:
+        raise UsageError(f"{name}:: no integrator is named; give {name}, or {name}:INTEGRATOR.")
+    if others:
+        raise UsageError(
+            f"{name}:{integrator}: --integrator is given too; give {name}, and --integrator for "
+            "each."
+        )
+    return replace(arguments, engines=[f"{name}:{integrator}"], required=[name])

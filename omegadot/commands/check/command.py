@@ -12,12 +12,16 @@ from omegadot.commands.options import Text, Texts, option
 
 def check(
     engine: Annotated[
-        str,
+        Text,
         typer.Argument(
             metavar="ADAPTER",
-            help="An engine's name, FILE.py, FILE.py:Class, module:Class, or a program's command.",
+            help="An engine's name, NAME:INTEGRATOR, FILE.py, FILE.py:Class, module:Class, or a "
+            "program's command.",
         ),
-    ],
+    ] = None,
+    adapter: Annotated[
+        Text, option("FILE.py:CLASS", "The engine, in place of ADAPTER.", "--adapter")
+    ] = None,
     scenarios: Annotated[
         Texts,
         option(
@@ -58,10 +62,11 @@ def check(
 ) -> None:
     """Check one engine, built in or your own, at every gate.
 
-    Exit codes: 0 every check holds, 1 one fails or all but those of the model were skipped, 2 wrong
-    usage or input, 3 the engine crashed, timed out or could not be started.
+    Exit codes: 0 every check holds, 1 one fails, 2 wrong usage or input, 3 the engine crashed,
+    timed out or could not be started, or all checks but those of its model were skipped.
     """
     arguments = options.given({k: v for k, v in locals().items() if k != "verbose"})
+    arguments["engine"] = _only_one(arguments.get("engine"), arguments.pop("adapter", None))
     from omegadot.commands.check.check import check as check_engine
     from omegadot.commands.check.print_checks import print_checks, print_json
 
@@ -71,3 +76,21 @@ def check(
     else:
         print_checks(found, verbose)
     raise typer.Exit(options.exit_code(found.passed, found.answered))
+
+
+def _only_one(engine: str | None, adapter: str | None) -> str:
+    """The engine, given one way or the other. Raises UsageError."""
+    from omegadot.harness.usage import UsageError
+
+    if engine is not None and adapter is not None:
+        raise UsageError(
+            f"--adapter {adapter}: {engine} is given too, and one engine is checked; write "
+            f"omegadot check {adapter}."
+        )
+    found = engine if engine is not None else adapter
+    if found is None:
+        raise UsageError(
+            "Missing argument 'ADAPTER'; give an engine, as omegadot check mujoco or omegadot "
+            "check FILE.py:Class."
+        )
+    return found

@@ -20,6 +20,9 @@ def run(
             help="Built-in names, random-SEED-INDEX or paths. Default: all built-in scenarios.",
         ),
     ] = None,
+    scenario: Annotated[
+        Texts, option("NAME", "A scenario, as SCENARIO; repeatable.", "--scenario")
+    ] = None,
     engines: Annotated[
         Texts,
         option(
@@ -67,10 +70,11 @@ def run(
     """Run scenarios on engines, judge them, and write a record with its report.
 
     Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
-    timed out or could not be started, or nothing but its model could be judged, or the record could
-    not be written where it was requested.
+    timed out or could not be started, or nothing but its model could be judged (of an engine given
+    by name: on no scenario), or the record could not be written where it was requested.
     """
     arguments = options.given(locals())
+    named = [*arguments.pop("scenarios", []), *arguments.pop("scenario", [])]
     from omegadot.commands.run.print_run import exit_code, print_json, print_text
     from omegadot.commands.run.result import RunInterrupted, unwritten
     from omegadot.commands.run.run import run as run_scenarios
@@ -78,7 +82,7 @@ def run(
     if memory is not None and not _memory_is_limited():
         typer.echo("omegadot: --memory is ignored: this system keeps no such limit.", err=True)
     try:
-        result = run_scenarios(**arguments, command=options.command_line())
+        result = run_scenarios(named or None, **arguments, command=options.command_line())
     except RunInterrupted as interrupted:
         result = interrupted.result
     except KeyboardInterrupt:

@@ -52,19 +52,21 @@ class RunResult:
 
     @property
     def untested(self) -> tuple[str, ...]:
-        """The engines without integrators of which the model was judged and nothing else.
+        """The engines of which the model was judged and nothing else, or nothing at all.
 
-        A trace is none of them: it has no model, and with no scheme declared it is measured alone.
+        Those without integrators, and those that were given by name. A trace is none of them: it
+        has no model, and with no scheme declared it is measured alone.
         """
-        tasks = [t for t in self.record.run["tasks"] if t["gates"] and not t["integrator"]]
+        tasks = self.record.run["tasks"]
         moved = {task["engine"] for task in tasks if tests_motion(task)}
-        still = [t["engine"] for t in tasks if "model" in t["gates"] and t["engine"] not in moved]
-        return tuple(dict.fromkeys(still))
+        modelled = [t["engine"] for t in tasks if not t["integrator"] and "model" in t["gates"]]
+        named = [task["engine"] for task in tasks if task["engine"] in self.required]
+        return tuple(e for e in dict.fromkeys([*modelled, *named]) if e not in moved)
 
     @property
     def answered(self) -> bool:
         """Whether every engine answered: no run is without an answer, no process died, and of no
-        engine was the model alone judged.
+        engine was the model alone judged, nor nothing of one that was given by name.
         """
         return not (self.unanswered or self.untested or self.record.run["worker_deaths"])
 

@@ -12,10 +12,21 @@ from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
 from omegadot.diagnosis.models.misreadings import Misreading, losses, misreadings, settings
 from omegadot.diagnosis.wording.features import SORTED_BY_KIND, Features, in_common
+from omegadot.diagnosis.wording.laws import law_of
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Case
 from omegadot.gates.states.model import state_rows
+from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.system import State, System
+
+SIGN = "without its sign"
+NEGATIVE = "the scalar part of the quaternion that is set is negative"
+TURNS = ("orientation", "angular_velocity")
+LAWS = {
+    "angular_velocity": ("omega", "rad/s"),
+    "linear_velocity": ("the linear velocity", "m/s"),
+    "position": ("the position", "m"),
+}
 
 
 @dataclass(frozen=True)
@@ -47,23 +58,49 @@ def state_causes(
         for one in across.scenes.values()
         if one.states is not None
     ]
+    signed = any(one.back.orientation[0] < 0.0 for one in every)
+    for text, left in losses().items():
+        if signed and SIGN in text:
+            continue
+        if not any(_differs(one, left(one.requested)) for one in every):
+            return [text]
     for way in _ways(case.system):
         if not here.fails(way.right(back)):
             fits = [not one.fails(_way(one, way.statement).right(one.back)) for one in every]
             found = _where(way.statement, every, fits)
             if found:
                 return [found]
-    for text, left in losses().items():
-        if not any(_differs(one, left(one.requested)) for one in every):
-            return [text]
+    law = _law(every)
+    if law:
+        return [law]
     for way in fitted_misreadings(back, requested, together=False):
         if not here.fails(way.right(back)):
-            return [way.statement]
+            fits = [not one.fails(way.right(one.back)) for one in every]
+            found = _where(way.statement, every, fits)
+            if found:
+                return [found]
     single = State(*(f.astype(np.float32).astype(float) for f in vars(requested).values()))
     pairs = zip(vars(single).values(), vars(back).values(), strict=True)
     if eps <= EPS and all(np.array_equal(a, b) for a, b in pairs):
         return ["the state is kept in single precision"]
     return []
+
+
+def _law(every: Sequence[_Round]) -> str:
+    """A limit, a rounding or the like of one quantity, by which all states come back."""
+    for field, (what, unit) in LAWS.items():
+        pairs = [(getattr(one.requested, field), getattr(one.back, field)) for one in every]
+        text = law_of(pairs, what, unit)
+        if text and not any(_differs(one, _with(one, field)) for one in every):
+            return f"{text} as a state is set or read back"
+    return ""
+
+
+def _with(one: _Round, field: str) -> State:
+    """The state that was set with one quantity of the other; a pivoted body's place follows."""
+    made = replace(one.requested, **{field: getattr(one.back, field)})
+    pivoted = one.case.system.load.pivot is not None
+    return place_on_pivot(one.case.system, made) if pivoted and field in TURNS else made
 
 
 def _ways(system: System) -> tuple[Misreading, ...]:
@@ -89,8 +126,14 @@ def _where(text: str, every: Sequence[_Round], fits: Sequence[bool]) -> str:
     shown = [o for o, fit in zip(every, fits, strict=True) if fit and o.fails(o.back)]
     if comb(len(shown) + len(against), len(shown)) < SORTED_BY_KIND:
         return text  # so few are sorted by chance
-    common = in_common([one.features for one in shown], [one.features for one in against])
+    common = in_common([_features(one) for one in shown], [_features(one) for one in against])
     return f"{text}, but only where {' or where '.join(common)}" if 0 < len(common) < 3 else ""
+
+
+def _features(one: _Round) -> Features:
+    """With those of the state that was set."""
+    negative = bool(one.requested.orientation[0] < 0.0)
+    return replace(one.features, kinds={**one.features.kinds, NEGATIVE: negative})
 
 
 def _differs(one: _Round, made: State) -> bool:

@@ -20,6 +20,8 @@ from omegadot.reference_impl.rotations import quaternion_product
 from omegadot.reference_impl.system import Array, State
 from omegadot.written import written
 
+LEAST_LATE = 3  # samples
+
 
 def begin_apart(reported: ReportedRun, result: CaseResult) -> bool:
     """Whether runs of the same case do not even begin at the same state."""
@@ -56,7 +58,11 @@ def last_repeated(reported: ReportedRun) -> str:
     asleep = all(np.array_equal(values[-2], values[-3]) for values in vars(state).values())
     if not all(same) or asleep or reported.agrees(own[before], own[end], end):
         return ""
-    numbers = reported.sweep.sample_steps
+    sweep = reported.sweep
+    ends = [one.times[-1] for one in reported.case.sweeps if one.timestep == sweep.timestep]
+    if ends and reported.time[-1] < ends[0]:
+        return ""  # of a run that is looked at until it is off
+    numbers = sweep.sample_steps
     short = numbers[-1] - numbers[-2] != reported.sweep.every
     where = ", after an interval shorter than the others," if short else ""
     return f"the last sample{where} is the one before, reported twice"
@@ -85,7 +91,8 @@ def misread(reported: ReportedRun) -> list[str]:
             found.append(text)
         unsigned = own.orientation.copy()
         unsigned[:, 0] = np.abs(unsigned[:, 0])
-        if reported.agrees(came, replace(own, orientation=unsigned), later):
+        signed = bool(np.any(came.orientation[:, 0] < 0.0))
+        if not signed and reported.agrees(came, replace(own, orientation=unsigned), later):
             found.append("the quaternion's scalar part is reported without its sign")
     for one in OF_ANY_STATE if not found else ():
         start = one.right(reported.case.initial)
@@ -120,6 +127,7 @@ def late(reported: ReportedRun) -> list[str]:
         ),
     }
     found = [text for text, holds in whole.items() if holds]
+    found = found or _late_from(reported, late)
     if found:
         return found
     inner = slice(1, -1)  # the first is the state given
@@ -135,6 +143,20 @@ def late(reported: ReportedRun) -> list[str]:
     if reported.agrees(reported.state[before], reported.own[before], before):
         return [text for text in (_last_in_full(reported),) if text]
     return []
+
+
+def _late_from(reported: ReportedRun, late: State) -> list[str]:
+    """From some sample on each is the state of the step before, as where a buffer has wrapped."""
+    yardstick, bounds = reported.truth.yardstick, reported.bounds
+    own = [yardstick.distance(c, reported.state, reported.own) <= bounds[c] for c in bounds]
+    first = int(np.argmin(np.logical_and.reduce(own)))  # the first that is off
+    after = slice(first, None)
+    if first < 2 or len(reported.time) - first < LEAST_LATE:
+        return []
+    if not reported.agrees(reported.state[after], late[after], after):
+        return []
+    since = written(reported.time[first], 4)
+    return [f"from t = {since} s on, every sample is the state one step before"]
 
 
 def _alone_late(reported: ReportedRun, every: State) -> list[str]:

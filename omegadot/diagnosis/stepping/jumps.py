@@ -55,8 +55,11 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
     if np.all(stays(steps, relative)):
         return "the attitude of a run is relative to its start, or starts from the identity"
     unsigned = before.orientation * np.sign(before.orientation * [1.0, 0, 0, 0] + [0, 1, 1, 1])
-    if np.any(before.orientation[:, 0] < 0.0) and np.all(
-        stays(replace(steps, states=replace(before, orientation=unsigned)), after)
+    signed = np.any(after.orientation[:, 0] < 0.0)
+    if (
+        not signed
+        and np.any(before.orientation[:, 0] < 0.0)
+        and np.all(stays(replace(steps, states=replace(before, orientation=unsigned)), after))
     ):
         return "the quaternion's scalar part is reported without its sign"
     w, new = before.angular_velocity, after.angular_velocity
@@ -74,7 +77,11 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
             text = _limit(what, unit, was, now, allowed, jumped, damped)
             if text:
                 return text
-    where = only_where([(steps.system, before, stays(steps, after))])
+    sound = stays(steps, after)
+    where = only_where([(steps.system, before, sound)])
+    for one in misreadings(steps.system) if where else ():
+        if np.all(sound | stays(steps, one.right(after))):
+            return f"in the run, {one.statement}, but only where {where}"
     return f"a step changes the state, however short it is, only where {where}" if where else ""
 
 

@@ -12,9 +12,9 @@ from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
 from omegadot.gates.steps.limits import Limit, Tolerated, extrapolated
 from omegadot.gates.steps.limits import limits as rates_at_no_step
 from omegadot.gates.steps.probe import Probe
-from omegadot.reference_impl.rotations import (
-    attitude_angle,
-)
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import lever
+from omegadot.reference_impl.rotations import attitude_angle, rotate
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 from omegadot.written import written
 
@@ -32,8 +32,9 @@ class VanishingSteps:
 
     start and moved: from the two shortest steps.  limit: from the shortest five, which knows it to
     rounding where the steps are smooth.  longer: from the five before, in double precision.
-    stays_below: s, the longest step up to which none changes anything, and the shortest that does;
-    zero and infinity where there is none.
+    late_velocity: by which omega and attitude a pivoted body's velocity is that of no place now; ""
+    where it is the right one.  stays_below: s, the longest step up to which none changes anything,
+    and the shortest that does; zero and infinity where there is none.
     """
 
     system: System
@@ -44,6 +45,7 @@ class VanishingSteps:
     limit: State
     eps: float = EPS
     longer: State | None = None
+    late_velocity: str = ""
     stays_below: tuple[float, float] = (0.0, np.inf)
 
     @property
@@ -106,8 +108,28 @@ def vanishing_steps(
     states = (State(*ends), State(*moved), State(*limit))
     before = [f[:, -RANGE - 1 : -1] for f in vars(stepped).values()]
     longer = State(*map(extrapolated, before)) if before[0].shape[1] == RANGE else None
-    still = _stays_below(probe, stepped, rates)
-    return VanishingSteps(system, probe.states, rates, *states, eps, longer, still)
+    late, still = _late_velocity(system, probe, stepped, eps), _stays_below(probe, stepped, rates)
+    return VanishingSteps(system, probe.states, rates, *states, eps, longer, late, still)
+
+
+def _late_velocity(system: System, probe: Probe, stepped: State, eps: float) -> str:
+    """What stands for omega, or for the attitude, in ``v = R (omega x r)`` after a step."""
+    if system.load.pivot is None:
+        return ""
+    arm = np.asarray(lever(system), dtype=float)
+    before = State(*(values[:, None] for values in vars(probe.states).values()))
+    w, q, v = stepped.angular_velocity, stepped.orientation, stepped.linear_velocity
+    bound = ROUNDINGS_PER_EVALUATION * eps * norm(w) * float(norm(arm))
+
+    def is_of(attitude: Array, omega: Array) -> bool:
+        made = rotate(attitude, cross(omega, arm))
+        return bool(np.all(norm(v - made) <= bound))
+
+    if is_of(q, w):
+        return ""
+    old, was = before.angular_velocity + 0.0 * w, before.orientation + 0.0 * q
+    ways = {"omega": (q, old), "attitude": (was, w), "omega and attitude": (was, old)}
+    return next((what for what, way in ways.items() if is_of(*way)), "")
 
 
 def _stays_below(probe: Probe, stepped: State, rates: dict[str, Limit]) -> tuple[float, float]:

@@ -93,6 +93,7 @@ def kinds_of_states(states: State) -> dict[str, NDArray[np.bool_]]:
     found = {
         "omega is zero": ~np.any(w, axis=-1),
         "the body does not move": ~np.any(v, axis=-1),
+        "the quaternion's scalar part is negative": q[:, 0] < 0.0,
         "the attitude is the identity": ~np.any(q[:, 1:], axis=-1),
     }
     for k, axis in enumerate("xyz"):

@@ -7,8 +7,8 @@ from typing import Any
 
 import polars as pl
 
+from omegadot.reports.record.own_rows import entry_problems, row_problems, whose
 from omegadot.reports.record.schema import VERDICTS, RecordError
-from omegadot.written import exactly
 
 # Rows of engine and scenario, without integrator and step, belong to each of its tasks.
 _WHOLE = ("scenario", "engine", "engine_version", "setup")
@@ -23,8 +23,15 @@ def check_agreement(run: Mapping[str, Any], metrics: pl.DataFrame, where: str) -
 
     Each task's engine and scenario must be listed, the verdict of each of its gates must be the
     worst of its rows, and every row must belong to a task. What was only measured has no verdict.
+    Nothing is listed twice, and each row's verdict follows from its value and its bound.
     where: the record's folder.
     """
+    for file, problems in (
+        ("run.json", entry_problems(run)),
+        ("metrics.parquet", row_problems(metrics)),
+    ):
+        for problem in problems:
+            raise RecordError(f"{where}: {file} contradicts itself: {problem}; run again.")
     for problem in _problems(run, metrics):
         raise RecordError(f"{where}: run.json and metrics.parquet disagree: {problem}; run again.")
 
@@ -39,18 +46,18 @@ def _problems(run: Mapping[str, Any], metrics: pl.DataFrame) -> Iterator[str]:
         if task["engine"] not in versions:
             yield f"a run of {task['engine']} is stored, which is not among the engines"
         elif (own := task.get("engine_version")) and own not in versions[task["engine"]]:
-            yield f"{_named(task)} is of version {own}, which is not among the engines"
+            yield f"{whose(task)} is of version {own}, which is not among the engines"
         due = _worst_of(found.get(key, {}), found.get(whole, {}))
         gates = {g: v for g, v in (task.get("gates") or {}).items() if v in _JUDGED}
         for gate in dict.fromkeys([*gates, *due]):
             if gates.get(gate) != due.get(gate):
                 one, other = gates.get(gate, "no verdict"), due.get(gate, "no verdict")
-                yield f"the {gate} gate of {_named(task)} is {one!r}, and by its rows {other!r}"
+                yield f"the {gate} gate of {whose(task)} is {one!r}, and by its rows {other!r}"
     known = {key for task in tasks for key in _keys(task)}
     for key in found:
         # The exact solution has rows wherever it was computed, whether or not it was requested.
         if key not in known and key[1] != "exact":
-            yield f"{_named(dict(zip(_RUN, key, strict=True)))} has rows and no run"
+            yield f"{whose(dict(zip(_RUN, key, strict=True)))} has rows and no run"
 
 
 def _versions(run: Mapping[str, Any]) -> dict[str, set[str]]:
@@ -84,10 +91,3 @@ def _worst_of(own: Gates, shared: Gates) -> Gates:
     for gate in own.keys() & shared.keys():
         both[gate] = min(own[gate], shared[gate], key=VERDICTS.index)
     return both
-
-
-def _named(task: Mapping[str, Any]) -> str:
-    """A run in a sentence, such as ``mujoco RK4 on sphere at 0.01``."""
-    name = " ".join(filter(None, (task["engine"], task.get("integrator"))))
-    knob = task.get("timestep") or task.get("accuracy")
-    return f"{name} on {task['scenario']}" + (f" at {exactly(knob)}" if knob else "")

@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
+import datetime
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 from pydantic_core import PydanticCustomError
 
 from omegadot.reports.record import schema
 from omegadot.reports.record.schema import RecordError
 from omegadot.scenarios.errors import describe
 
+
+def _time(text: str) -> str:
+    try:
+        datetime.datetime.fromisoformat(text)
+    except ValueError:
+        raise PydanticCustomError("time", "a date and time, as 2026-01-31T12:00:00") from None
+    return text
+
+
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
 Text = str | None
 Texts = list[str] | None
+Time = Annotated[str, AfterValidator(_time)]
 Verdict = Literal[*schema.VERDICTS]  # type: ignore[valid-type]
 Outcome = Literal[*schema.OUTCOMES]  # type: ignore[valid-type]
 
@@ -115,7 +126,7 @@ class _Run(_Table):
     tasks: list[_Task]
     clusters: list[_Cluster] = []
     omegadot: Text = None
-    created: Text = None
+    created: Time | None = None
     command: Texts = None
     seed: int | None = None
     seconds: Number | None = None

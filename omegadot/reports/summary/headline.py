@@ -61,7 +61,7 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
         count = f"{len(failing)} of {times(len(engines), 'engine')}"
         return f"{count} {verb}: {_failing(summary, failing)}.{_open(engines, failing)}"
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
-    passed = {n for n, cells in engines.items() if any(c.runs.get("pass") for c in cells)}
+    passed = {n for n, cells in engines.items() if any(map(_holds, cells))}
     # A declared exception is a known failure: such an engine is not reported as agreeing.
     excused = [n for n, cells in engines.items() if any(c.runs.get("declared") for c in cells)]
     agreeing = [name for name in measured if name in passed and name not in excused]
@@ -83,11 +83,18 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     )
 
 
+def _holds(cell: Cell) -> bool:
+    """Whether something was judged and holds: the equation needs no step, so it is of runs that
+    diverged too.
+    """
+    return bool(cell.runs.get("pass") or (cell.runs.get("diverged") and cell.residual))
+
+
 def _open(engines: dict[str, list[Cell]], named: Sequence[str]) -> str:
     """The engines besides those that are named on which there is no verdict; "" without any."""
 
     def is_judged(cells: list[Cell]) -> bool:
-        passed = any(c.runs.get("pass") for c in cells) and any(c.residual for c in cells)
+        passed = any(map(_holds, cells)) and any(c.residual for c in cells)
         return passed or any(c.runs.get("declared") for c in cells)
 
     open_ = [n for n, cells in engines.items() if n not in named and not is_judged(cells)]

@@ -25,7 +25,7 @@ _SIGNS = {
     "fail": "a gate fails, the first with its worst measure",
     "declared": "declared exception",
 }
-_WITH_NUMBERS = ("pass", "fail", "declared", "not-judged")
+_WITH_NUMBERS = ("pass", "fail", "declared", "not-judged", "diverged")
 # The heading of each number, and what it stands for.
 _NUMBERS = (
     ("residual", "residual: of omega-dot at identical states, relative."),
