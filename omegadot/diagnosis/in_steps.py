@@ -46,6 +46,8 @@ class StepCauses:
 
     def sentences(self, steps: VanishingSteps) -> list[str]:
         """Where every state is off by the steps alone, the more basic first."""
+        if steps.rounded:
+            return [steps.rounded]
         if steps.late_velocity:
             late = f"the {steps.late_velocity} of the step before"
             return [f"the linear velocity of a pivoted body is reported by {late}"]

@@ -66,6 +66,18 @@ def test_omega_dot_in_the_place_of_an_omega_is_named(more: More, term: str) -> N
     assert named(more, FEW) == {one.name: due for one in FEW}
 
 
+def about_origin(s: System, x: State, a: Acceleration) -> Array:
+    c, w = np.asarray(s.body.center_of_mass), x.angular_velocity
+    more = s.body.mass * (c @ c * np.eye(3) - np.outer(c, c))
+    return np.asarray(a.angular @ more.T + cross(w, w @ more.T))
+
+
+def test_the_inertia_about_the_origin_is_named() -> None:
+    due = ["inverse dynamics use the inertia about the body's origin"]
+    free = tuple(one for one in FEW if one.system.load.pivot is None)
+    assert named(about_origin, free) == {one.name: due for one in free}
+
+
 def gravity_turned(s: System, x: State, _: Acceleration) -> Array:
     torque = gravity_torque(s, x)  # inverse dynamics take it from what the joint gives
     return torque - rotate(x.orientation, torque)

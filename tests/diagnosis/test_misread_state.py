@@ -122,3 +122,40 @@ def test_what_holds_of_free_bodies_alone_is_stated_of_these() -> None:
     found = {text for texts in causes(made, list(CASES)) for text in texts}
     assert len(found) == 1
     assert next(iter(found)).endswith("R v reads back, but only where the body is free")
+
+
+def test_a_limit_on_what_is_set_is_one_law_of_all_scenarios() -> None:
+    """Caught: "omega is scaled by 0.3", by another number on each scenario."""
+
+    def held(case: Case, state: State) -> State:
+        w = state.angular_velocity
+        short = w * min(1.0, 1.2 / float(np.linalg.norm(w)))
+        return place_on_pivot(case.system, replace(state, angular_velocity=short))
+
+    found = [texts for texts in causes(held, list(CASES)) if texts]
+    assert len(found) > 2
+    text = "the size of omega is limited to 1.2 rad/s as a state is set or read back"
+    assert {one for texts in found for one in texts} == {text}
+
+
+def test_numbers_that_are_others_on_each_scenario_name_nothing() -> None:
+    """Caught: a factor of one state, told of all."""
+
+    def scaled(_: Case, state: State) -> State:
+        return replace(state, linear_velocity=state.linear_velocity * (2.0 + state.position[0]))
+
+    assert [texts for texts in causes(scaled, FREE) if texts] == []
+
+
+def test_a_condition_of_the_state_that_is_set_is_named() -> None:
+    """Caught: "transposed" of an engine that conjugates where it is to negate."""
+
+    def conjugated(_: Case, state: State) -> State:
+        q = state.orientation
+        return replace(state, orientation=q * [1, -1, -1, -1] if q[0] < 0.0 else q)
+
+    texts = {one for found in causes(conjugated, FREE) for one in found}
+    (text,) = texts
+    assert text.startswith("the rotation looks transposed")
+    where = "but only where the scalar part of the quaternion that is set is negative"
+    assert text.endswith(where)

@@ -8,16 +8,19 @@ import numpy as np
 from in_process import builtin, declared, truth_of
 
 from omegadot.diagnosis.reported.run import ReportedRun
-from omegadot.diagnosis.reported.run_causes import last_repeated
+from omegadot.diagnosis.reported.run_causes import last_repeated, late
 from omegadot.diagnosis.stepping.kinematics import least_step
 from omegadot.diagnosis.stepping.vanishing_steps import vanishing_steps
 from omegadot.diagnosis.wording.laws import law_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states
 from omegadot.gates.steps.probe import DOUBLE, Probe
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product
+from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product, rotate
 from omegadot.reference_impl.system import State
+from omegadot.written import written
 
 SCHEME = "semi-implicit-euler"
 
@@ -87,3 +90,54 @@ def test_components_that_are_zero_but_for_rounding_have_a_limit() -> None:
     ]
     text = "each component of the lever is taken for zero below a limit between 0.004 and 0.006 m"
     assert law_of(pairs, "the lever", "m") == text
+
+
+def test_a_quantity_in_a_few_decimals_is_named() -> None:
+    """Caught: "the first step changes the linear velocity by some 1e-7 m/s"."""
+    case = builtin("free-bar")
+    states = random_states(case, 6, [1])
+    w = np.linalg.norm(states.angular_velocity, axis=-1)
+    probe = Probe(states, (2.0**-7 / w)[:, None] / 2.0 ** np.arange(DOUBLE.count))
+    ends = one_step(case, probe)
+    assert vanishing_steps(case.system, probe, ends).rounded == ""
+    velocity = np.round(ends.linear_velocity * 1e6) * 1e-6  # off by a last digit
+    found = vanishing_steps(case.system, probe, replace(ends, linear_velocity=velocity))
+    assert found.rounded == "the linear velocity is rounded to 6 decimals in each step"
+
+
+def test_samples_that_are_late_from_some_time_on_are_named() -> None:
+    """Caught: "the run is wrong once", where a buffer has wrapped."""
+    case = builtin("heavy-top")
+    truth, integrator = truth_of(case, (SCHEME,)), declared(SCHEME, SCHEME)
+    sweep = case.sweeps_of(integrator)[0]
+    own = truth.companion(integrator, sweep)
+    assert own is not None
+    run = ReportedRun(case, truth, integrator, sweep, sweep.times, own.state, own.state, own.growth)
+    every, numbers = run.stepped(every_step=True), sweep.sample_steps
+    since = 7
+    shifted = np.where(np.arange(len(numbers)) < since, numbers, numbers - 1)
+    found = late(replace(run, state=every[shifted]))
+    assert found == [
+        f"from t = {written(sweep.times[since], 4)} s on, every sample is the state one step before"
+    ]
+    assert late(run) == []
+
+
+def test_the_velocity_of_a_pivoted_body_by_an_omega_of_the_step_before_is_named() -> None:
+    """Caught: "the linear acceleration has r x omega-dot in it", of a report that is late."""
+    case = builtin("heavy-top")
+    arm = np.asarray(lever(case.system), dtype=float)
+    states = random_states(case, 6, [1])
+    w = np.linalg.norm(states.angular_velocity, axis=-1)
+    probe = Probe(states, (2.0**-7 / w)[:, None] / 2.0 ** np.arange(DOUBLE.count))
+    ends = one_step(case, probe)
+    start = State(*(values[:, None] for values in vars(states).values()))
+    for what, q, omega in (
+        ("", ends.orientation, ends.angular_velocity),
+        ("omega", ends.orientation, start.angular_velocity),
+        ("attitude", start.orientation, ends.angular_velocity),
+        ("omega and attitude", start.orientation, start.angular_velocity),
+    ):
+        velocity = rotate(q, cross(omega, arm)) + 0.0 * ends.linear_velocity
+        placed = replace(ends, linear_velocity=velocity, position=rotate(ends.orientation, arm))
+        assert vanishing_steps(case.system, probe, placed).late_velocity == what

@@ -22,6 +22,13 @@ EXACT = Tolerated()
 AMPLIFIED = 8.0  # what the extrapolation from five halved steps makes of a rounding
 STILL = 1e-9  # a factor that is none but for rounding
 RANGE = 5  # steps
+MOST_DECIMALS = 11
+QUANTITIES = {
+    "angular_velocity": "omega",
+    "orientation": "the attitude",
+    "position": "the position",
+    "linear_velocity": "the linear velocity",
+}
 PART = 1e-3  # of what a step is to change: less is nothing
 LEFT = 1e-5  # relative: what is left of a state extrapolated to no step from two short ones
 
@@ -32,6 +39,7 @@ class VanishingSteps:
 
     start and moved: from the two shortest steps.  limit: from the shortest five, which knows it to
     rounding where the steps are smooth.  longer: from the five before, in double precision.
+    rounded: which quantity comes back in a few decimals, and in how many.
     late_velocity: by which omega and attitude a pivoted body's velocity is that of no place now; ""
     where it is the right one.  stays_below: s, the longest step up to which none changes anything,
     and the shortest that does; zero and infinity where there is none.
@@ -46,6 +54,7 @@ class VanishingSteps:
     eps: float = EPS
     longer: State | None = None
     late_velocity: str = ""
+    rounded: str = ""
     stays_below: tuple[float, float] = (0.0, np.inf)
 
     @property
@@ -109,7 +118,25 @@ def vanishing_steps(
     before = [f[:, -RANGE - 1 : -1] for f in vars(stepped).values()]
     longer = State(*map(extrapolated, before)) if before[0].shape[1] == RANGE else None
     late, still = _late_velocity(system, probe, stepped, eps), _stays_below(probe, stepped, rates)
-    return VanishingSteps(system, probe.states, rates, *states, eps, longer, late, still)
+    seen = (late, _rounded(probe, stepped), still)
+    return VanishingSteps(system, probe.states, rates, *states, eps, longer, *seen)
+
+
+def _rounded(probe: Probe, stepped: State) -> str:
+    """A quantity of which every number after a step, but not before, has a few decimals."""
+    for name, what in QUANTITIES.items():
+        came, set_ = (getattr(states, name) for states in (stepped, probe.states))
+        if not np.all(np.isfinite(came)) or not np.all(np.ptp(came, axis=(0, 1))):
+            continue
+        digits = next((d for d in range(1, MOST_DECIMALS) if _has_decimals(came, d)), None)
+        if digits is not None and not _has_decimals(set_, digits):
+            return f"{what} is rounded to {digits} decimals in each step"
+    return ""
+
+
+def _has_decimals(values: Array, digits: int) -> bool:
+    """However the last digit of the double was rounded."""
+    return bool(np.all(np.abs(values - np.round(values, digits)) <= 2.0 * EPS * np.abs(values)))
 
 
 def _late_velocity(system: System, probe: Probe, stepped: State, eps: float) -> str:
