@@ -177,11 +177,11 @@ def intervals(reported: ReportedRun) -> str:
         )
     if first > 0 and len(wrong) == len(sound) - first:
         until = written(time[first], 4)
-        return f"the run is sound until t = {until} s, and every step after it is wrong"
+        return f"the run is sound until t = {until} s, and between no two samples after it"
     if np.count_nonzero(np.diff(sound.astype(int))) < LEAST_CHANGES:
         return ""  # what changes once goes with the time as well as with anything that grows
     where = only_where([(reported.case.system, reported.state[: len(sound)], sound)])
-    return f"steps are wrong only where {where}" if where else ""
+    return f"samples are wrong only where {where}" if where else ""
 
 
 def _goes_on(reported: ReportedRun, sample: int) -> bool:

@@ -68,7 +68,7 @@ def place_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     if not 0 < len(plain) <= MOST_NAMED:
         return []
     either = "either " * (len(plain) > 1) + ", or ".join(plain)
-    return [f"steps are wrong only where {either}"]
+    return [f"samples are wrong only where {either}"]
 
 
 def _where(name: str, term: str, sound: float, wrong: float, unit: str) -> str:

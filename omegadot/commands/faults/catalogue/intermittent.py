@@ -75,7 +75,7 @@ class FirstStepByEuler(Timed):
     wrong_scheme = SCHEMES["semi-implicit-euler"]
 
 
-@fault("stepping", "scheme", named="and every step after it is wrong")
+@fault("stepping", "scheme", named="is sound until")
 class DampingAfterAWhile(Timed):
     """From the middle of a run on, a damping acts that was not requested."""
 
