@@ -12,7 +12,7 @@ from omegadot.diagnosis.kept_case import kept_case
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
-from omegadot.diagnosis.stepping.jumps import jump_cause, slight_jump_cause
+from omegadot.diagnosis.stepping.jumps import jump_cause, jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
@@ -102,6 +102,10 @@ class IntegratorCauses:
             limit = self._short_steps(steps)
             if limit:
                 return limit
+        slight = either([slight_jump_cause(steps)]) if not jumps(steps) else []
+        if slight:  # by which the rates at no step are no rates
+            found = [one for one in self._of_trajectories() if not is_fact(one)]
+            return found or slight
         found = self._in_steps.sentences(steps) or self._of_trajectories()
         if self._case.name in self._over.turned and all(map(is_fact, found)):
             begins = self._over.begins
@@ -113,8 +117,7 @@ class IntegratorCauses:
         last = last or either([still_cause(steps)])
         if last:
             return last
-        slight = either([slight_jump_cause(steps)])
-        return slight or self._in_steps.known(steps) or self._known_of_runs()
+        return self._in_steps.known(steps) or self._known_of_runs()
 
     def _short_steps(self, steps: VanishingSteps) -> list[str]:
         """Steps that are too short to move a body; none where that is not what is wrong.

@@ -77,11 +77,12 @@ def _goes(parts: Sequence[tuple[Scene, Evidence]], off: Off | None, kind: str, i
     free = any(e.system.load.pivot is None for _, e in parts)
     moves = OF_THE_STATE if free else OF_THE_STATE[:1]  # a pivoted body's place is its attitude's
     still = all(powers.get(what, (1.0, 0))[0] == 0.0 for what in moves)
-    turned = any(changes_with_attitude(e, s.scaled, kind) for s, e in parts)
+    turned = [changes_with_attitude(e, s.scaled, kind) for s, e in parts]
     alone = off is not None and off.turns and still and ATTITUDE not in powers
     rest = {k: v for k, v in powers.items() if not (alone and k in OF_THE_STATE)}
     texts = [f"nothing else of the state than the attitude is seen to change {it}"] * alone
-    texts += [f"{it} changes with the attitude"] * (turned and not alone)
+    some = "" if all(turned) else f" on {sum(turned)} of {len(turned)} scenarios"
+    texts += [f"{it} changes with the attitude{some}"] * (any(turned) and not alone)
     return "; ".join(text for text in (*texts, dependence_text(rest, it)) if text)
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from omegadot.diagnosis.equations.evidence import Evidence
-from omegadot.diagnosis.equations.operators.operands import pushed
+from omegadot.diagnosis.equations.gyroscopic_terms import wrong_products
+from omegadot.diagnosis.equations.operators.operands import gyroscopic, pushed
 from omegadot.diagnosis.equations.operators.operands import turned as turned_by
 from omegadot.diagnosis.equations.turned_inertia import turned_inertias
 from omegadot.diagnosis.models.misreadings import OF_ANY_STATE, Misreading
@@ -16,10 +18,11 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.loads import applied_torque, gravity_torque
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
-from omegadot.reference_impl.symmetric import apply
-from omegadot.reference_impl.system import Acceleration, Array, System
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 
 @dataclass(frozen=True)
@@ -129,6 +132,43 @@ def _reported() -> Iterator[Reading]:
     )
 
 
+def _not_solved() -> Iterator[Reading]:
+    """A torque that is taken as a rate, or divided by the inertia twice."""
+    terms: dict[str, Callable[[System, State], Array]] = {
+        "the gyroscopic term": gyroscopic,
+        "the applied torque": applied_torque,
+        "the torque of gravity": gravity_torque,
+    }
+
+    def made(term: Callable[[System, State], Array], twice: bool, e: Evidence) -> Acceleration:
+        inertia = moving_inertia(e.system)
+        torque = term(e.system, e.states) + 0.0 * e.states.angular_velocity
+        other = apply(inverse(inertia) if twice else np.asarray(inertia), torque)
+        return pushed(e, other - torque)
+
+    for what, term in terms.items():
+        yield Reading(f"{what} is not divided by the inertia", partial(made, term, False))
+        yield Reading(f"{what} is divided by the inertia twice", partial(made, term, True))
+
+
+def _mixed() -> Iterator[Reading]:
+    """The answers to several states in another order."""
+
+    def transposed(e: Evidence) -> Acceleration:
+        return Acceleration(e.true.angular.T.reshape(-1, 3), e.true.linear)
+
+    def both(e: Evidence) -> Acceleration:
+        return Acceleration(transposed(e).angular, e.true.linear.T.reshape(-1, 3))
+
+    def reversed_(e: Evidence) -> Acceleration:
+        return Acceleration(e.true.angular[::-1], e.true.linear[::-1])
+
+    mixed = "of several states come out as a 3 x n array that is read as n x 3"
+    yield Reading(f"the omega-dot {mixed}", transposed)
+    yield Reading(f"omega-dot and the linear acceleration {mixed}", both)
+    yield Reading("the answers to several states come in the opposite order", reversed_)
+
+
 def _misread(one: Misreading) -> Iterator[Reading]:
     def there(e: Evidence) -> Acceleration:
         return forward_dynamics(e.system, place_on_pivot(e.system, one.right(e.states)))
@@ -143,6 +183,9 @@ def _misread(one: Misreading) -> Iterator[Reading]:
 
 READINGS = (
     *_reported(),
+    *_not_solved(),
+    *_mixed(),
     *(Reading(text, made) for text, made in turned_inertias()),
+    *(Reading(text, made) for text, made in wrong_products()),
     *(reading for one in OF_ANY_STATE for reading in _misread(one)),
 )

@@ -58,8 +58,10 @@ def _fitted(field: str, reported: State, meant: State) -> Iterator[Misreading]:
     if not np.all(np.isfinite(came)):
         return
     k = float(np.sum(came * due) / np.sum(due * due)) if size > 0.0 else 0.0
-    if k and np.max(np.abs(came - k * due)) <= LOOSE * abs(k) * size and abs(k - 1.0) > CLOSE:
-        for number in dict.fromkeys((float(f"{k:.{PLAIN}g}"), k)):
+    near = k != 0.0 and np.max(np.abs(came - k * due)) <= LOOSE * abs(k) * size
+    if near and abs(k - 1.0) > NOTHING:
+        plain = float(f"{k:.{PLAIN}g}")
+        for number in dict.fromkeys((plain, k) if plain != 1.0 else (k,)):
             yield Misreading(f"{what} is scaled by {factor(number)}", _by(field, number))
     more = np.mean(came - due, axis=0)
     several = came.ndim > 1 and len(came) >= LEAST  # any one vector is another and a rest

@@ -11,7 +11,7 @@ import numpy as np
 from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Array, Body, Load, System
 
-DECIMALS, SMALL, DIGITS = range(1, 8), range(1, 7), range(2, 6)
+DECIMALS, SMALL, DIGITS = range(1, 8), range(1, 7), range(2, 10)
 SPHERE = "the inertia is that of a sphere with the same trace"
 UNIT = "the inertia is the unit matrix"
 

@@ -89,6 +89,9 @@ def misread(reported: ReportedRun) -> list[str]:
         if reported.agrees(replace(came, orientation=turned), own, later):
             text = "the attitude of a run is relative to its start, or starts from the identity"
             found.append(text)
+        moved = replace(came, position=reported.case.initial.position + came.position)
+        if reported.agrees(moved, own, later):
+            found = ["the position of a run is reported from where it began"]
         unsigned = own.orientation.copy()
         unsigned[:, 0] = np.abs(unsigned[:, 0])
         signed = bool(np.any(came.orientation[:, 0] < 0.0))

@@ -54,6 +54,9 @@ def jump_cause(steps: VanishingSteps, beginning: Beginning | None = None) -> str
     relative = replace(after, orientation=quaternion_product(before.orientation, after.orientation))
     if np.all(stays(steps, relative)):
         return "the attitude of a run is relative to its start, or starts from the identity"
+    placed = replace(after, position=before.position + after.position)
+    if steps.system.load.pivot is None and np.all(stays(steps, placed)):
+        return "the position of a run is reported from where it began"
     unsigned = before.orientation * np.sign(before.orientation * [1.0, 0, 0, 0] + [0, 1, 1, 1])
     signed = np.any(after.orientation[:, 0] < 0.0)
     if (

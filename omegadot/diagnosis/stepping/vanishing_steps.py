@@ -126,7 +126,7 @@ def _rounded(probe: Probe, stepped: State) -> str:
     """A quantity of which every number after a step, but not before, has a few decimals."""
     for name, what in QUANTITIES.items():
         came, set_ = (getattr(states, name) for states in (stepped, probe.states))
-        if not np.all(np.isfinite(came)) or not np.all(np.ptp(came, axis=(0, 1))):
+        if not np.all(np.isfinite(came)) or not np.any(np.ptp(came, axis=(0, 1))):
             continue
         digits = next((d for d in range(1, MOST_DECIMALS) if _has_decimals(came, d)), None)
         if digits is not None and not _has_decimals(set_, digits):

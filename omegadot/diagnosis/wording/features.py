@@ -59,6 +59,17 @@ def features_of(system: System, initial: State) -> Features:
         "the scalar part of the first quaternion is negative": bool(initial.orientation[0] < 0.0),
         "the body moves at the start": bool(np.any(initial.linear_velocity)),
     }
+    vectors = {
+        "gravity": gravity,
+        "the torque in body axes": load.torque_body,
+        "the torque in world axes": load.torque_world,
+        "the centre of mass": body.center_of_mass,
+        "the pivot": load.pivot if pivoted else (),
+    }
+    for what, vector in vectors.items():
+        for k, axis in enumerate("xyz"):
+            none = bool(np.any(vector)) and float(np.asarray(vector)[k]) == 0.0
+            kinds[f"{what} has no {axis} component"] = none
     arm = float(norm(lever(system))) if pivoted else 0.0
     mass = float(body.mass)
     sizes = {
