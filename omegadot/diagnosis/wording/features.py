@@ -18,6 +18,7 @@ from omegadot.reference_impl.system import State, System
 # likely by itself; of a size the limit may lie anywhere, and every size is tried from both sides.
 SORTED_BY_KIND, ODDS = 6, 20
 EQUAL = 1e-12  # of the largest moment, by how much others differ from it by rounding
+COMPONENT = "has no"  # of a vector
 FOLLOWS = {
     "the body is pivoted": ("the pivot lies off the origin", "the body does not move at the start"),
     "the body is free": ("the pivot lies at the origin", "the body moves at the start"),
@@ -69,7 +70,7 @@ def features_of(system: System, initial: State) -> Features:
     for what, vector in vectors.items():
         for k, axis in enumerate("xyz"):
             none = bool(np.any(vector)) and float(np.asarray(vector)[k]) == 0.0
-            kinds[f"{what} has no {axis} component"] = none
+            kinds[f"{what} {COMPONENT} {axis} component"] = none
     arm = float(norm(lever(system))) if pivoted else 0.0
     mass = float(body.mass)
     sizes = {
@@ -133,6 +134,9 @@ def in_common(
             here, there = ({one.kinds[text] for one in group} for group in (shown, others))
             if here != there and len(here) == len(there) == 1:
                 kinds.append((text, True in here))
+    # a single component is looked at where nothing plainer holds
+    plain = [one for one in kinds if COMPONENT not in one[0]]
+    kinds = plain or [(text, holds) for text, holds in kinds if holds]
     every = [(one.kinds, wrong) for one, wrong in tried]
     texts = [[_worded(*one) for one in each] for each in decided(kinds, every)]
     found = [" and ".join(_plainest(each)) for each in texts]
