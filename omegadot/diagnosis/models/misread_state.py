@@ -58,18 +58,22 @@ def state_causes(
         for one in across.scenes.values()
         if one.states is not None
     ]
-    signed = any(one.back.orientation[0] < 0.0 for one in every)
-    for text, left in losses().items():
-        if signed and SIGN in text:
-            continue
-        if not any(_differs(one, left(one.requested)) for one in every):
-            return [text]
+    lost = [
+        text
+        for text, left in losses().items()
+        if not any(_differs(one, left(one.requested)) for one in every)
+    ]
+    if lost and SIGN in lost[0] and not any(one.back.orientation[0] < 0.0 for one in every):
+        return lost[:1]
     for way in _ways(case.system):
         if not here.fails(way.right(back)):
             fits = [not one.fails(_way(one, way.statement).right(one.back)) for one in every]
             found = _where(way.statement, every, fits)
             if found:
                 return [found]
+    lost = [text for text in lost if SIGN not in text]
+    if lost:
+        return lost[:1]
     law = _law(every)
     if law:
         return [law]

@@ -129,7 +129,11 @@ def _rounded(probe: Probe, stepped: State) -> str:
         if not np.all(np.isfinite(came)) or not np.any(np.ptp(came, axis=(0, 1))):
             continue
         digits = next((d for d in range(1, MOST_DECIMALS) if _has_decimals(came, d)), None)
-        if digits is not None and not _has_decimals(set_, digits):
+        if digits is None or _has_decimals(set_, digits):
+            continue
+        # of so many digits large numbers have fewer decimals than small ones
+        large = came[np.abs(came) >= 0.5 * np.max(np.abs(came))]
+        if not _has_decimals(large, digits - 1):
             return f"{what} is rounded to {digits} decimals in each step"
     return ""
 
