@@ -105,6 +105,21 @@ def test_paths_that_are_no_files(tmp_path, capsys):
 W = ("--scenario", BRICK, "--column", "w=p,q,r")
 
 
+def test_one_component_in_another_unit_is_refused(tmp_path, capsys):
+    """Caught: an error of 98 rad/s that is measured and not judged."""
+    path, rows = lines(tmp_path)
+    names = rows[0].split(",")
+    k = names.index("r")
+    scaled = [rows[0]]
+    for row in rows[1:]:
+        cells = row.split(",")
+        cells[k] = repr(float(cells[k]) * np.pi / 180)
+        scaled.append(",".join(cells))
+    path.write_text("\n".join(scaled) + "\n")
+    message = refused(tmp_path, capsys, path)
+    assert "column 'r' is 0.0175 times what deg/s would give here, and looks like rad/s" in message
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

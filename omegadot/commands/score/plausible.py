@@ -46,6 +46,35 @@ def check_units(found: Measured, reading: Reading) -> None:
                     f"{reading.table.file}: {what} {times} what {given} would give here, and looks "
                     f"like {unit}; give {option_of(field)} {unit}."
                 )
+    _check_one_rate(found, reading)
+
+
+def _check_one_rate(found: Measured, reading: Reading) -> None:
+    """Raise TraceError where one component of omega is in another unit than the others, which fit.
+
+    In its first part, within GROSS of the motion's rate: the factor is that of two units.
+    """
+    came, due = found.trace.angular_velocity, found.truth.state.angular_velocity
+    if came is None:
+        return
+    rows = slice(0, max(3, int(FIRST * len(found.trace.times))))
+    size = float(np.median(norm(due[rows])))
+    gaps = np.median(np.abs(came - due)[rows], axis=0)
+    wrong = np.flatnonzero(~(gaps <= GROSS * size / NEARER))
+    if len(wrong) != 1 or not np.all(np.isfinite(came)):
+        return
+    k, units, given = int(wrong[0]), UNITS["rate"], reading.how.rate_unit
+    for unit in units:
+        factor = units[given] / units[unit]
+        gap = float(np.median(np.abs(came[rows, k] / factor - due[rows, k])))
+        if gap <= GROSS * size / NEARER and gap * NEARER < gaps[k]:
+            role = "w" + "xyz"[k]
+            name = reading.columns.get(role, role)
+            raise TraceError(
+                f"{reading.table.file}: column {name!r} is {written(factor, 3)} times what {given} "
+                f"would give here, and looks like {unit}, where the other components of omega are "
+                f"in {given}; convert it to {given}."
+            )
 
 
 # By the kind of a unit: a group of columns and a channel that show it.
