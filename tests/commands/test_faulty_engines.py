@@ -92,7 +92,7 @@ def test_a_flood_on_both_streams_garbles_nothing(tmp_path: Path) -> None:
 
 def test_unsupported_is_neither_a_pass_nor_a_failure(tmp_path: Path) -> None:
     result = run_faulty("Unsupporting", tmp_path)
-    assert result.code == 0, result.err
+    assert result.code == 3, result.err  # nothing of the engine that was given is judged
     run = json.loads((tmp_path / "out" / "run.json").read_text())
     refused = [t for t in run["tasks"] if t["engine"] == "unsupporting"]
     assert {t["outcome"] for t in refused} == {"unsupported"}
