@@ -139,7 +139,7 @@ def test_a_limit_on_what_is_set_is_one_law_of_all_scenarios() -> None:
 
 
 def test_numbers_that_are_others_on_each_scenario_name_nothing() -> None:
-    """Caught: a factor of one state, told of all."""
+    """Caught: a factor of one state, stated of all."""
 
     def scaled(_: Case, state: State) -> State:
         return replace(state, linear_velocity=state.linear_velocity * (2.0 + state.position[0]))

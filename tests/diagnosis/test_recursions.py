@@ -7,25 +7,17 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from in_process import builtin, declared, truth_of
+from test_short_steps import own_run
 
 from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array
 
-SCHEME = "semi-implicit-euler"
-
 
 @pytest.fixture(scope="module")
 def sound() -> ReportedRun:
-    case = builtin("heavy-top")
-    truth, integrator = truth_of(case, (SCHEME,)), declared(SCHEME, SCHEME)
-    sweep = case.sweeps_of(integrator)[0]
-    own = truth.companion(integrator, sweep)
-    assert own is not None
-    run = ReportedRun(case, truth, integrator, sweep, sweep.times, own.state, own.state, own.growth)
-    return run.until(12)
+    return own_run("heavy-top").until(12)
 
 
 def summed(run: ReportedRun, first: Array, rate: Array, share: float) -> Array:

@@ -25,6 +25,18 @@ from omegadot.written import written
 SCHEME = "semi-implicit-euler"
 
 
+def own_run(name: str) -> ReportedRun:
+    """The reference's own run of a built-in scenario."""
+    case = builtin(name)
+    truth, integrator = truth_of(case, (SCHEME,)), declared(SCHEME, SCHEME)
+    sweep = case.sweeps_of(integrator)[0]
+    own = truth.companion(integrator, sweep)
+    assert own is not None
+    return ReportedRun(
+        case, truth, integrator, sweep, sweep.times, own.state, own.state, own.growth
+    )
+
+
 def one_step(case: Case, probe: Probe) -> State:
     """By the explicit Euler method, (m, k, ...); a pivoted body's place is left out."""
     start = State(*(values[:, None] for values in vars(probe.states).values()))
@@ -65,12 +77,8 @@ def test_steps_below_a_limit_are_one_cause_of_all_scenarios() -> None:
 
 def test_a_last_sample_that_comes_twice_is_named() -> None:
     """Caught: "the run is wrong once". A body that sleeps repeats more than the last."""
-    case = builtin("heavy-top")
-    truth, integrator = truth_of(case, (SCHEME,)), declared(SCHEME, SCHEME)
-    sweep = case.sweeps_of(integrator)[0]
-    own = truth.companion(integrator, sweep)
-    assert own is not None
-    run = ReportedRun(case, truth, integrator, sweep, sweep.times, own.state, own.state, own.growth)
+    run = own_run("heavy-top")
+    sweep, own = run.sweep, run.own
     assert last_repeated(run) == ""
     for repeated, text in (
         ([-2], "the last sample is the one before, reported twice"),
@@ -78,7 +86,7 @@ def test_a_last_sample_that_comes_twice_is_named() -> None:
     ):
         count = len(sweep.times) - len(repeated)
         order = np.concatenate((np.arange(count), len(sweep.times) + np.array(repeated)))
-        assert last_repeated(replace(run, state=own.state[order])) == text
+        assert last_repeated(replace(run, state=own[order])) == text
 
 
 def test_components_that_are_zero_but_for_rounding_have_a_limit() -> None:
@@ -107,12 +115,8 @@ def test_a_quantity_in_a_few_decimals_is_named() -> None:
 
 def test_samples_that_are_late_from_some_time_on_are_named() -> None:
     """Caught: "the run is wrong once", where a buffer has wrapped."""
-    case = builtin("heavy-top")
-    truth, integrator = truth_of(case, (SCHEME,)), declared(SCHEME, SCHEME)
-    sweep = case.sweeps_of(integrator)[0]
-    own = truth.companion(integrator, sweep)
-    assert own is not None
-    run = ReportedRun(case, truth, integrator, sweep, sweep.times, own.state, own.state, own.growth)
+    run = own_run("heavy-top")
+    sweep = run.sweep
     every, numbers = run.stepped(every_step=True), sweep.sample_steps
     since = 7
     shifted = np.where(np.arange(len(numbers)) < since, numbers, numbers - 1)

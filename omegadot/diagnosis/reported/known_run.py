@@ -22,13 +22,12 @@ CLEAN = 0.05  # of an exponent
 CLEAR = 2.0 * ROUNDINGS_PER_EVALUATION / (CLEAN * np.log(2.0))
 LEAST = 4  # samples that show how an error grows
 EARLY = 0.05  # of the vector itself, up to which its error is that of single steps added up
-CHANNELS = {
-    "omega": {"omega"},
-    "attitude": {"attitude"},
-    "linear velocity": {"linear_momentum"},
-    "position": {"position"},
+CHANNELS = {  # as they are worded, and as rows name them
+    "omega": "omega",
+    "attitude": "attitude",
+    "linear velocity": "linear_momentum",
+    "position": "position",
 }
-ORDERED = ("omega", "attitude", "linear_momentum", "position")  # channels of a declared order
 AXES = {"omega": "the body", "attitude": "the body", "position": "the world"}
 
 
@@ -75,12 +74,12 @@ def known_of_runs(
     """
     failed = {row.channel for run in runs for row in run.rows if row.verdict == "fail"}
     errors = [found for run in runs if (found := _errors(truth, result, run)) is not None]
-    for channel in (c for c, names in CHANNELS.items() if failed & names):
+    for channel in (c for c, name in CHANNELS.items() if name in failed):
         shown = [(run, e[channel]) for run, e in errors if np.any(e[channel].clear)]
         if shown:
             seen = _known(channel, shown)
             tried = min(run.sweep.timestep for run, _ in shown) <= shortest
-            due = runs[0].integrator.orders.get(min(CHANNELS[channel] & {*ORDERED}))
+            due = runs[0].integrator.orders.get(CHANNELS[channel])
             if seen.step is not None and due is not None and seen.step >= due:
                 return replace(seen, step=None, time=None)  # until there it is a sound scheme's own
             return seen if tried or seen.step != 0.0 else replace(seen, step=None)

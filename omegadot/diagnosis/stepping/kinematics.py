@@ -119,7 +119,7 @@ def moves_by_cause(steps: VanishingSteps) -> str:
 
 
 def omega_still_cause(steps: VanishingSteps) -> str:
-    """Omega does not change at the start of a run, which has several explanations."""
+    """That the first step does not change omega, which has several explanations."""
     limit = steps.rates["omega"]
     found, bound = better(limit)
     still = bool(np.all(norm(found) <= SLACK * bound)) and not np.all(limit.shares() <= 1.0)

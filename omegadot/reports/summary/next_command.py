@@ -31,21 +31,21 @@ def next_command(run: Mapping[str, Any], worst: Mapping[str, Any], failing: Coll
     if worst["setup"] not in (None, "physics"):
         return shlex.join(_run(worst, given, argument, engine) + ways)
     names = [own["name"] for own in engine.get("integrators") or ()]
-    words = [*CHECK.split(), argument]
+    arguments = [*CHECK.split(), argument]
     if len(failing) == 1 < len(names):
-        words += ["--integrator", *failing]
+        arguments += ["--integrator", *failing]
     if given != worst["scenario"] or given.startswith(DRAWN):
-        words += ["--scenario", given]
-    return shlex.join(words + ways)
+        arguments += ["--scenario", given]
+    return shlex.join(arguments + ways)
 
 
 def _run(
     worst: Mapping[str, Any], scenario: str, argument: str, engine: Mapping[str, Any]
 ) -> list[str]:
-    """The words that run the cell of a row alone."""
+    """The command that runs the cell of a row alone."""
     own = argument != engine["name"]
     name = worst["engine"] + (f":{worst['integrator']}" if worst["integrator"] else "")
-    words = ["omegadot", "run", scenario, *(["--adapter", argument] if own else [])]
-    words += ["--engine", name, "--setup", worst["setup"]]
+    arguments = ["omegadot", "run", scenario, *(["--adapter", argument] if own else [])]
+    arguments += ["--engine", name, "--setup", worst["setup"]]
     step = worst["timestep"]
-    return words + ([] if step is None else ["--timestep", repr(step)])
+    return arguments + ([] if step is None else ["--timestep", repr(step)])
