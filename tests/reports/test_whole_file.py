@@ -8,7 +8,7 @@ import pytest
 
 from omegadot.commands.report.report import report
 from omegadot.commands.run.result import result_of
-from omegadot.reports.record.interrupted import place_of_interrupted
+from omegadot.reports.record.interrupted import place_of_interrupted, written_in
 from omegadot.reports.record.record import FILES, Record, check_folder, read_record, write_record
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.record.whole_file import PAGE_MARK, write_whole
@@ -123,11 +123,30 @@ def test_a_shorter_interrupted_run_is_kept_out_of_the_way(  # type: ignore[no-un
     folder = tmp_path / "run"
     write_record(record, folder, PAGE)
     write_record(interrupted(record, 2), tmp_path / "run-interrupted", PAGE)
-    result = result_of(RunRecord.of(interrupted(record, 1)), (), folder)
+    result = result_of(RunRecord.of(interrupted(record, 1)), (), folder, written_in(folder))
     assert result.folder is not None
     assert not read_record(result.folder).run["complete"]
     assert "interrupted after 2 tasks, this one after 1." in result.note
     assert result.note.endswith(f"This run's record is in {result.folder}.")
+
+
+def test_the_second_of_two_runs_into_one_folder_keeps_the_first(  # type: ignore[no-untyped-def]
+    tmp_path: Path, record, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Caught: two runs at once, of which the first to end is lost without a word."""
+    monkeypatch.setattr(RunRecord, "page", lambda _: PAGE)
+    folder = tmp_path / "run"
+    earlier = written_in(folder)
+    of = RunRecord.of(record)
+    first = result_of(of, (), folder, earlier)
+    assert (first.folder, first.note) == (folder, "")
+    second, third = (result_of(of, (), folder, earlier) for _ in range(2))
+    assert (second.folder, third.folder) == (tmp_path / "run-2", tmp_path / "run-3")
+    assert second.note == (
+        f"The record in {folder} is kept: another run wrote it during this one. "
+        f"This run's record is in {tmp_path / 'run-2'}."
+    )
+    assert result_of(of, (), folder, written_in(folder)).folder == folder  # an earlier one
 
 
 def test_a_link_to_nothing_is_no_place_for_a_record(tmp_path: Path) -> None:

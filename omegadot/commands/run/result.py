@@ -10,7 +10,11 @@ from pathlib import Path
 
 from omegadot.commands.run.uninterrupted import uninterrupted
 from omegadot.harness.plan import EngineChoice
-from omegadot.reports.record.interrupted import place_of_interrupted
+from omegadot.reports.record.interrupted import (
+    Written,
+    place_of_complete,
+    place_of_interrupted,
+)
 from omegadot.reports.record.record import RUN
 from omegadot.reports.record.schema import RecordError
 from omegadot.reports.run_record import RunRecord, TaskResult
@@ -108,10 +112,15 @@ class RunInterrupted(KeyboardInterrupt):
 
 
 def result_of(
-    record: RunRecord, choices: Sequence[EngineChoice], out: str | os.PathLike[str] | None
+    record: RunRecord,
+    choices: Sequence[EngineChoice],
+    out: str | os.PathLike[str] | None,
+    earlier: Written,
 ) -> RunResult:
     """The result of a record, which is written where a folder is given. Raises RecordError.
 
+    earlier: the record that was in the folder as the run began (`written_in`). Where another run
+    wrote there meanwhile, both are kept (`place_of_complete`).
     An interrupted run goes to the folder only where there is no earlier record, else beside it (see
     `place_of_interrupted`). What finds no place, or is refused by the disk, is written to the
     system's folder for temporary files. Ctrl-C waits until it is written.
@@ -120,18 +129,20 @@ def result_of(
     if out is None:
         return RunResult(record, None, required)
     with uninterrupted() as came:
-        folder, note = _written(record, Path(out))
+        folder, note = _written(record, Path(out), earlier)
     result = RunResult(record, folder, required, note)
     if came:
         raise RunInterrupted(result)
     return result
 
 
-def _written(record: RunRecord, requested: Path) -> tuple[Path, str]:
+def _written(record: RunRecord, requested: Path, earlier: Written) -> tuple[Path, str]:
     """Write the record; its folder, and the note on it."""
-    folder: Path | None = requested
-    complete, note = bool(record.run["complete"]), ""
-    if not complete:
+    folder: Path | None
+    complete = bool(record.run["complete"])
+    if complete:
+        folder, note = place_of_complete(requested, earlier)
+    else:
         folder, note = place_of_interrupted(record.run, requested)
     replaced = folder is not None and os.path.lexists(folder / RUN)
     try:
@@ -143,8 +154,8 @@ def _written(record: RunRecord, requested: Path) -> tuple[Path, str]:
         folder, note = None, str(error)
     if folder is None:
         folder = record.save(Path(tempfile.mkdtemp(prefix="omegadot-")) / "run")
-    elif complete:
+    elif complete and not note:
         return folder, ""
-    elif replaced:
+    elif replaced and not complete:
         note = f"{note} The record of an interrupted run in {folder} is replaced."
     return folder, f"{note or 'Interrupted.'} This run's record is in {folder}.".strip()

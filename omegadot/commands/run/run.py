@@ -19,6 +19,7 @@ from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.outcome import Outcome, RunRequest, tasks_of
 from omegadot.harness.runner import Runner
 from omegadot.harness.usage import UsageError
+from omegadot.reports.record.interrupted import written_in
 from omegadot.reports.record.record import check_folder
 from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.run_record import RunRecord
@@ -70,6 +71,7 @@ def run(
     known = exceptions_of(choices, map(path_of, files))
     if out is not None:
         check_folder(path_of(out))
+    earlier = None if out is None else written_in(path_of(out))
     cores = (os.cpu_count() or 1) if jobs is None else jobs
     request = RunRequest(cases, choices, setup, seed, timeout, cores, memory)
     started = time.perf_counter()
@@ -83,7 +85,7 @@ def run(
         outcome = replace(outcome, interrupted=True)
         record = record_of(outcome, request, command, seconds, causes=False)
     record.run["stale_exceptions"] = stale
-    result = result_of(RunRecord.of(record), choices, out)
+    result = result_of(RunRecord.of(record), choices, out, earlier)
     if outcome.interrupted:
         raise RunInterrupted(result)
     return result

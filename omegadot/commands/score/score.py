@@ -26,6 +26,7 @@ from omegadot.harness.engine_target import EngineLike
 from omegadot.harness.own_engines import known_engines
 from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError
+from omegadot.reports.record.interrupted import written_in
 from omegadot.reports.record.record import check_folder
 from omegadot.reports.record.whole_file import path_of
 from omegadot.reports.run_record import RunRecord
@@ -125,6 +126,7 @@ def score(
     case, choices = case_given(scenario), _choices(name, several(engines, "engines"))
     if out is not None:
         check_folder(path_of(out))
+    earlier = None if out is None else written_in(path_of(out))
     requirements = requirements_of(required)
     mapped = path_of(map_file) if map_file else None
     reading = reading_of(read_table(path_of(trace)), columns, mapped, settings)
@@ -134,7 +136,7 @@ def score(
         record = scored_record(found, rows, name, choices, command, report)
     interrupted = False
     try:
-        held = result_of(RunRecord.of(record), choices, out)
+        held = result_of(RunRecord.of(record), choices, out, earlier)
     except RunInterrupted as came:  # as it was written
         held, interrupted = came.result, True
     result = ScoreResult(**vars(held), name=name, found=found, rows=tuple(rows))

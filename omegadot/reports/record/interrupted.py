@@ -1,7 +1,8 @@
-"""Where the record of an interrupted run goes: into one folder beside a complete record."""
+"""Where a record goes whose folder is taken: of an interrupted run, or of a second at once."""
 
 from __future__ import annotations
 
+import itertools
 import os
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,31 @@ from omegadot.reports.record.run_json import read_run
 from omegadot.reports.record.schema import RecordError
 
 _UNFINISHED = ("interrupted", "not-installed")
+Written = tuple[int, int] | None  # the inode and the time (ns) of a record's run.json
+
+
+def written_in(folder: Path) -> Written:
+    """Which record is in `folder`, to know later whether it is another; None of none."""
+    try:
+        found = os.stat(folder / RUN)
+    except OSError:  # what cannot be read is refused as it is written
+        return None
+    return found.st_ino, found.st_mtime_ns
+
+
+def place_of_complete(folder: Path, earlier: Written) -> tuple[Path, str]:
+    """The folder for a complete run that was to go to `folder`, and a sentence on what stays.
+
+    It is `folder` unless its record is another than the `earlier` one, of when the run began: two
+    runs into one folder would else lose the first. Then it is the first free of ``folder-2``,
+    ``folder-3`` and so on.
+    """
+    now = written_in(folder)
+    if now is None or now == earlier:
+        return folder, ""
+    beside = (folder.with_name(f"{folder.name}-{n}") for n in itertools.count(2))
+    free = next(place for place in beside if not os.path.lexists(place))
+    return free, f"The record in {folder} is kept: another run wrote it during this one."
 
 
 def place_of_interrupted(run: dict[str, Any], folder: Path) -> tuple[Path | None, str]:
