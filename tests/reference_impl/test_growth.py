@@ -139,3 +139,17 @@ def test_growth_that_cannot_be_followed_is_infinite() -> None:
     found = growth_along(stiff, times, still, 1.0)
     assert found[0] == 1.0
     assert np.all(found[1:] == np.inf)
+
+
+def test_growth_that_leaves_the_range_of_doubles_is_infinite() -> None:
+    """Caught: a product of maps that overflows, of which no singular value can be found."""
+    moments, rate = np.array([1.0, 2.0, 2.5]), 3.0
+    times = np.arange(0.0, 600.0)
+    angles = rate * times / 2
+    turned = np.stack((np.cos(angles), 0 * angles, np.sin(angles), 0 * angles), axis=-1)
+    spun = np.broadcast_to([0.0, rate, 0.0], (600, 3))
+    states = State(turned, spun, np.zeros((600, 3)), np.zeros((600, 3)))
+    found = growth_along(system(moments), times, states, rate)
+    assert found[100] > 1e50  # exp(1.34 t), 1.34 = 3 sqrt(0.2)
+    assert found[-1] == np.inf
+    assert np.all(found[1:] >= found[:-1])

@@ -45,7 +45,8 @@ def growth_along(system: System, times: Array, states: State, rate: float) -> Ar
     samples, each well conditioned, are then multiplied up, so that the growth may be as large as
     it will. Infinite from the first state on that is not finite, or turns so far to the next sample
     that its neighbours cannot be followed there in MOST_STEPS: a trajectory that has blown up, or a
-    damping that stops the body in far less than the time between samples.
+    damping that stops the body in far less than the time between samples. Infinite as well from
+    where its square leaves the range of doubles: long before, nothing of the start is left.
     """
     w = states.angular_velocity
     finite = np.all(np.isfinite(w), axis=-1) & np.all(np.isfinite(states.orientation), axis=-1)
@@ -64,11 +65,14 @@ def growth_along(system: System, times: Array, states: State, rate: float) -> Ar
     start = 0
     for n in range(count):
         if n:
-            products[:start] = maps[n - 1] @ products[:start]
+            with np.errstate(over="ignore", invalid="ignore"):
+                products[:start] = maps[n - 1] @ products[:start]
         if start < len(starts) and starts[start] == n:
             products[start] = np.eye(6)
             start += 1
         found[n] = max(1.0, _largest(products[:start]))
+        if not np.isfinite(found[n]):
+            break
     return found
 
 
@@ -104,6 +108,10 @@ def _largest(matrices: Array) -> float:
     """The largest spectral norm of (m, 6, 6), of the one whose sum of squares is largest.
 
     The sum of squares bounds the norm within a factor of the root of six and is far cheaper.
+    Infinite where one is not finite.
     """
-    squares = np.einsum("mij,mij->m", matrices, matrices)
+    with np.errstate(over="ignore", invalid="ignore"):
+        squares = np.einsum("mij,mij->m", matrices, matrices)
+    if not np.all(np.isfinite(squares)):
+        return float("inf")
     return float(np.linalg.norm(matrices[int(np.argmax(squares))], 2))
