@@ -20,6 +20,7 @@ from omegadot.diagnosis.wording.kinds import (
     agreed,
     either,
     is_fact,
+    is_named,
     is_of_one_run,
     kind_of,
     over_run,
@@ -72,12 +73,20 @@ class IntegratorCauses:
         self._result, self._runs = None, []
 
     def sentences(self) -> list[str]:
-        """What makes the runs of all scenarios together, or else what this one shows."""
+        """What makes the runs of all scenarios together, or else what this one shows.
+
+        Where all together show no more than in which places they are wrong, a cause of this one
+        is more.
+        """
         asleep = self._engine.sleep(self._integrator.name, self._case.name)
         if asleep and not self._kept.again:
             return [asleep]
         failing = self._over.fails[self._case.name] and not self._kept.again
-        return (self._over.together(self._integrator) if failing else []) or self._of_case()
+        together = self._over.together(self._integrator) if failing else []
+        if any(map(is_named, together)):
+            return together
+        own = self._of_case()
+        return own if any(map(is_named, own)) else together or own
 
     def _of_case(self) -> list[str]:
         """Of the steps as they vanish and of the run itself.

@@ -19,6 +19,7 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 from omegadot.diagnosis.stepping.rests import Rests, sleep_law
+from omegadot.diagnosis.wording.kinds import is_named
 from omegadot.written import written
 
 
@@ -64,7 +65,8 @@ class OverScenarios:
         """
         failing = len({run.name for run in self.kept if run.fails}).bit_length()
         if self._likely[0] != failing:
-            self._likely = failing, bool(failing > 1 and causes_over_runs(integrator, self.kept))
+            found = causes_over_runs(integrator, self.kept) if failing > 1 else []
+            self._likely = failing, any(map(is_named, found))
         return self._likely[1]
 
     @property

@@ -36,6 +36,7 @@ from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun, is_finite
+from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.written import written
 
 ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
@@ -191,7 +192,12 @@ def _lower_order(guesses: Sequence[ReportedRun]) -> RunCauses:
             return NOTHING  # by one of those that it may be, all is as declared
         named = guess.declared.name
         texts.append(f"it is stepped by {named}, which is of order {order}, not {due}")
-    return RunCauses(tuple(texts), is_decisive(guesses[0]))
+    if is_steppable(guesses[0]):
+        # By a slip in one of the declared order some motions are a known one's of lower order.
+        due = max(filter(None, guesses[0].integrator.orders.values()), default=0)
+        of_order = [one for one in OF_SCHEME if SCHEMES[one].orders["omega"] >= due]
+        texts += [text for one in of_order for text in slips_of(guesses[0], one)]
+    return RunCauses(tuple(dict.fromkeys(texts)), is_decisive(guesses[0]))
 
 
 def _of_other_slips(guesses: Sequence[ReportedRun]) -> RunCauses:

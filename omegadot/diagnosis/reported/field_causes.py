@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.diagnosis.reported.of_steps import SLACK, Way, ways_of_steps
-from omegadot.diagnosis.reported.recursions import both_summed, sums_of_steps
+from omegadot.diagnosis.reported.recursions import added_in_steps, both_summed, sums_of_steps
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.wording.digits import number
 from omegadot.gates.bounds.scales import norm
@@ -74,6 +74,7 @@ def _ways(reported: ReportedRun, name: str, what: str, unit: str) -> Iterator[Wa
     yield from _quotients(reported, every, name, what)
     yield from _shares(due, came, what)
     yield from sums_of_steps(reported, every, name)
+    yield from added_in_steps(reported, every) if name == "position" else ()
     yield from ways_of_steps(reported, every, name, what)
 
 

@@ -45,9 +45,12 @@ class Guesses:
     def equal(self, run: JudgedRun) -> set[str]:
         """The schemes that the run equals: none of those that do not begin as it does is."""
         whole = self._whole(run)
-        if whole is None or not any(off == 0 for (_, off, _), _ in self._by_distance(run, whole)):
+        if whole is None:
             return set()
-        return {one.integrator.scheme or "" for one in self.nearest(run) if one.is_own}
+        begin = [k for (_, off, _), k in self._by_distance(run, whole)[:MOST_GUESSES] if off == 0]
+        known = self._nearest.get(run.sweep.knob)  # those that do not begin as it does are no use
+        tried = [_beside_scheme(whole, key) for key in begin] if known is None else known
+        return {one.integrator.scheme or "" for one in tried if begin and one.is_own}
 
     def _whole(self, run: JudgedRun) -> ReportedRun | None:
         """The run next to itself; None where there is none or its scheme is declared."""

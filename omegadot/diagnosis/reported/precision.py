@@ -1,13 +1,14 @@
-"""Causes in the numbers of a run: of single precision, or of a few decimal digits."""
+"""Causes in the numbers of a run: of single precision, packed, or of a few decimal digits."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.runs.trajectory import grain_of
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import Array, State
 
 MOST_DECIMALS = 11
 DECIMAL = {
@@ -16,6 +17,9 @@ DECIMAL = {
     "position": "the position",
     "linear_velocity": "the linear velocity",
 }
+BITS = range(6, 25)  # of the integers that an attitude may be packed in, without the sign
+LEAST_PACKED = 4  # samples whose quaternion has two parts or more
+ROUNDINGS = 64.0  # of a product, a sum of four squares, its root and a quotient, with room
 MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
 
 
@@ -25,8 +29,8 @@ def precision_reported(reported: ReportedRun) -> str:
     Places are not looked at: they may follow, in double, from what is kept. Numbers that are all
     multiples of one step are rounded to it, whatever their size.
     """
-    if grain := _grain_reported(reported):
-        return grain
+    if rounded := _grain_reported(reported) or _packed_reported(reported):
+        return rounded
 
     def single(state: State, field: str) -> bool:
         kept = getattr(state, field)[1:]
@@ -52,6 +56,39 @@ def _grain_reported(reported: ReportedRun) -> str:
         if (grain := grain_of(came)) is not None and grain_of(own) != grain:
             return f"{what} is rounded to multiples of 2^{grain} in the run"
     return ""
+
+
+def _packed_reported(reported: ReportedRun) -> str:
+    """Every quaternion is one of whole numbers, up to a power of two or one less, made unit.
+
+    Some scale s of a unit quaternion makes all its parts whole; s is a whole number over its
+    largest part, near the largest number that the integers hold. Where none of that many numbers
+    lies within rounding of a whole one by chance, this needs two parts that are not zero.
+    """
+    came, own = (x.orientation[1:] for x in (reported.state, reported.own))
+    several = np.count_nonzero(np.abs(came) > 2.0 ** -BITS[0], axis=-1) > 1
+    if np.count_nonzero(several) < LEAST_PACKED:
+        return ""
+    for bits in BITS:
+        for most in (2**bits - 1, 2**bits):
+            if np.all(_is_packed(came, most)) and not np.all(_is_packed(own[several], most)):
+                return (
+                    f"the attitude is packed in integers of {bits + 1} bits in the run: its parts "
+                    f"are as whole numbers of up to 2^{bits}"
+                )
+    return ""
+
+
+def _is_packed(quaternions: Array, most: int) -> NDArray[np.bool_]:
+    """(n,): whether each is a quaternion of whole numbers, of about this length, made unit."""
+    largest = np.max(np.abs(quaternions), axis=-1, keepdims=True)
+    found = np.zeros(len(quaternions), bool)
+    for near in range(-2, 3):  # the length of four rounded parts is within one of what it was
+        with np.errstate(all="ignore"):
+            whole = quaternions * ((np.round(largest * most) + near) / largest)
+            off = np.max(np.abs(whole - np.round(whole)), axis=-1)
+        found |= off <= ROUNDINGS * EPS * most
+    return found
 
 
 def decimals_reported(reported: ReportedRun) -> str:

@@ -12,8 +12,9 @@ from itertools import product
 
 import numpy as np
 
-from omegadot.diagnosis.reported.of_steps import SLACK, Way
+from omegadot.diagnosis.reported.of_steps import NEAR, SLACK, Way
 from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.wording.digits import number
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.system import Array, State
 
@@ -40,6 +41,32 @@ def sums_of_steps(reported: ReportedRun, every: State, name: str) -> Iterator[Wa
             made = _sum(reported, name, _accelerations(reported, every), which)
             text = f"the velocity of a pivoted body is summed up from its rate, {_by(which)}"
             yield f"{text}: {PARTS}", made[reported.sweep.sample_steps], SLACK
+
+
+def added_in_steps(reported: ReportedRun, every: State) -> Iterator[Way]:
+    """Of a free body, whose place acts on nothing: what each step moves it by in addition.
+
+    every: all steps of the right run.
+    """
+    if reported.case.system.load.pivot is not None:
+        return
+    h, numbers = reported.sweep.timestep, reported.sweep.sample_steps
+    off = np.ravel(reported.state.position - every.position[numbers])
+    for text, power in (("the velocity", 1), ("the linear acceleration", 2)):
+        rate = every.linear_velocity if power == 1 else _accelerations(reported, every)
+        for which, part in (("start", rate[:-1]), ("end", rate[1:])):
+            sums = np.cumsum(np.concatenate((0.0 * rate[:1], h**power * part)), axis=0)[numbers]
+            line = np.ravel(sums)
+            size = float(line @ line)
+            times = float(line @ off) / size if size > 0.0 and np.isfinite(size) else 0.0
+            if abs(times) > NEAR:
+                by = f"{number(float(f'{times:.6g}'))} h{'^2' * (power > 1)} times {text}"
+                at = "" if np.array_equal(rate[:-1], rate[1:]) else f" at its {which}"
+                yield (
+                    f"each step moves the position by {by}{at} in addition",
+                    every.position[numbers] + times * sums,
+                    SLACK,
+                )
 
 
 def both_summed(reported: ReportedRun) -> list[str]:

@@ -124,13 +124,22 @@ class ReportedRun:
         return replace(self, sweep=self.sweep.until(count), **first)
 
     def is_made(self, made: Callable[[ReportedRun], State], slack: float = 1.0) -> bool:
-        """Whether this is how the run is made: in its beginning, then in the whole of it."""
-        parts = [self.beginning] if self.beginning is not self else []
-        return all(one.agrees(one.state, made(one), slack=slack) for one in (*parts, self))
+        """Whether this is how the run is made: in its first samples, then in more of it.
 
-    def stepped_on(self, states: State) -> State:
-        """Where the declared scheme leads from each of (m,) states to the next sample."""
-        plan = (self.sweep.timestep, self.sweep.every, self.sweep.every)
+        Most ways are ruled out by the first, which are stepped in no time.
+        """
+        parts = {len(one.time): one for one in (self.until(LEAST_SAMPLES), self.beginning, self)}
+        return all(
+            one.agrees(one.state, made(one), slack=slack) for _, one in sorted(parts.items())
+        )
+
+    def stepped_on(self, states: State, steps: int | None = None) -> State:
+        """Where the declared scheme leads from each of (m,) states to the next sample.
+
+        steps: that many on, where given.
+        """
+        count = steps or self.sweep.every
+        plan = (self.sweep.timestep, count, count)
         unit = replace(states, orientation=normalize(states.orientation))
         how = (*plan, self.integrator.coordinates)
         return step_body(self.declared, self.case.system, unit, *how)[1][-1]

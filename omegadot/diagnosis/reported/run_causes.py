@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.diagnosis.models.fitted_misreadings import ADDED, fitted_misreadings
 from omegadot.diagnosis.models.misreadings import NOT_UNIT, OF_ANY_STATE, misreadings
@@ -21,6 +22,7 @@ from omegadot.reference_impl.system import Array, State
 from omegadot.written import written
 
 LEAST_LATE = 3  # samples
+LEAST_APART = 2  # samples, each a whole state of another step
 
 
 def begin_apart(reported: ReportedRun, result: CaseResult) -> bool:
@@ -130,7 +132,7 @@ def late(reported: ReportedRun) -> list[str]:
         ),
     }
     found = [text for text, holds in whole.items() if holds]
-    found = found or _late_from(reported, late)
+    found = found or _late_from(reported, late) or _some_apart(reported, every)
     if found:
         return found
     inner = slice(1, -1)  # the first is the state given
@@ -160,6 +162,41 @@ def _late_from(reported: ReportedRun, late: State) -> list[str]:
         return []
     since = written(reported.time[first], 4)
     return [f"from t = {since} s on, every sample is the state one step before"]
+
+
+def _some_apart(reported: ReportedRun, every: State) -> list[str]:
+    """Some samples are the state of the step before, or after, and all others are right.
+
+    every: all steps of the right run.
+    """
+    yardstick, bounds, numbers = (
+        reported.truth.yardstick,
+        reported.bounds,
+        reported.sweep.sample_steps,
+    )
+
+    def same(other: State) -> NDArray[np.bool_]:
+        shares = [yardstick.distance(c, reported.state, other) <= bounds[c] for c in bounds]
+        return np.asarray(np.logical_and.reduce(shares))
+
+    own = same(reported.own)
+    past = reported.stepped_on(every[-1:], 1)
+    after = State(
+        *(np.concatenate(pair) for pair in zip(*map(_values, (every, past)), strict=True))
+    )
+    for when, shifted in (
+        ("before", every[np.maximum(numbers - 1, 0)]),
+        ("after", after[numbers + 1]),
+    ):
+        apart = same(shifted) & ~own
+        if np.all(own | apart) and LEAST_APART <= np.count_nonzero(apart) < len(own) - 1:
+            first = written(reported.time[int(np.argmax(apart))], 4)
+            return [f"some samples, the first at t = {first} s, are the state one step {when}"]
+    return []
+
+
+def _values(states: State) -> tuple[Array, ...]:
+    return tuple(vars(states).values())
 
 
 def _alone_late(reported: ReportedRun, every: State) -> list[str]:

@@ -44,11 +44,10 @@ def restart_cause(truth: Truth, result: CaseResult, run: JudgedRun) -> str:
     first_apart = int(np.argmin(same))
     if first_apart > 1:
         steps = int(sweep.sample_steps[sample + first_apart] - sweep.sample_steps[sample])
-        return (
-            f"the steps depend on how many went before: restarted at t = "
-            f"{written(sweep.times[sample], 4)} s, the run is the same for a while and another "
-            "after "
-            f"{steps} steps"
+        return (  # what is logged in fewer digits than are stepped does the same
+            f"restarted at its own sample at t = {written(sweep.times[sample], 4)} s, the run is "
+            f"the same for a while and another after {steps} steps: they depend on how many went "
+            "before, or a sample is not all of the state"
         )
     return ""
 

@@ -17,7 +17,7 @@ FACTS = (
     "only the first steps are wrong",
     "the last of the run, are wrong",
     "are wrong only where",
-    "the steps depend on how many went before",
+    "the run is the same for a while and another after",
     "samples came back",
     "every time",
     "times are",
