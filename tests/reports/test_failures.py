@@ -9,6 +9,7 @@ from io import StringIO
 import numpy as np
 import polars as pl
 import pytest
+from changed_records import FIGURE, edited
 from rich.console import Console
 from synthetic_record import metric, with_metrics
 
@@ -49,8 +50,8 @@ def test_a_failing_engine_is_which_where_why_and_what_it_costs(record: Record) -
         "dart fails the equation gate (omega-dot at given states) in 3 of 6 runs, worst on sphere, "
         "semi-implicit, step 0.02 s: omega-dot residual 0.002, 2e10 times its bound. Its scheme "
         "and trajectory gates fail as well. Likely cause: the gyroscopic term is missing. Cost: "
-        "its attitude is off by 0.006 rad on sphere (semi-implicit, step 0.005 s); that of "
-        "integrators of its order, 1, that pass by 0.006 rad."
+        "attitude wrong by 3 rad (172 deg) on sphere with semi-implicit, step 0.02 s; sound "
+        "integrators of order 1: 0.024 rad (1.4 deg)."
     )
     assert summarise(record).failures == ()
 
@@ -65,13 +66,13 @@ def test_what_it_costs_is_of_the_scenario_that_is_named(record: Record) -> None:
     rows = [{**row, "verdict": "fail"} for row in (equation, *runs)]
     (found,) = summarise(with_metrics(record, *rows)).failures
     assert (found.scenario, found.run) == ("sphere", "")
-    assert found.cost.startswith("its attitude is off by 0.006 rad on sphere (semi-implicit, ")
+    assert found.cost.startswith("attitude wrong by 3 rad (172 deg) on sphere with semi-implicit")
 
 
 def test_what_fails_in_no_run_costs_nothing_there(record: Record) -> None:
     row = metric("sphere", "dart", None, None, "equation", "torque", "residual", 1.0)
     (found,) = summarise(with_metrics(record, {**row, "verdict": "fail"})).failures
-    assert found.cost == "none in its trajectories, which pass"
+    assert found.cost == "nothing in its trajectories, which pass"
     alone = record.metrics.filter(gate="equation")
     (found,) = summarise(
         with_metrics(replace(record, metrics=alone), {**row, "verdict": "fail"})
@@ -232,17 +233,53 @@ def test_the_next_command_repeats_how_the_failure_was_run(record: Record) -> Non
 def test_an_attitude_is_compared_with_those_of_its_order(record: Record) -> None:
     """Caught: a first-order engine whose error stands beside a range that begins at RK4's."""
     found = failing(record)
-    assert summarise(found).failures[0].cost.endswith("its order, 1, that pass by 0.006 rad")
+    assert summarise(found).failures[0].cost.endswith("of order 1: 0.024 rad (1.4 deg)")
     for engine in found.run["engines"]:
         for own in engine["integrators"] if engine["name"] == "mujoco" else ():
             own["orders"] = {"attitude": 4}
     cost = summarise(found).failures[0].cost
-    assert cost.endswith("that of integrators of other orders that pass by 7.5e-10 to 0.006 rad")
+    assert cost.endswith("of other orders: 1.9e-7 to 0.024 rad (1.1e-5 to 1.4 deg)")
     for engine in found.run["engines"]:
         for own in engine["integrators"]:
             own["orders"] = {}
     cost = summarise(found).failures[0].cost
-    assert cost.endswith("that of integrators that pass by 7.5e-10 to 0.006 rad")
+    assert cost.endswith("; sound integrators: 1.9e-7 to 0.024 rad (1.1e-5 to 1.4 deg)")
+
+
+def failing_in_a_probe(record: Record, **error: object) -> Record:
+    """DART's steps fail from a state that its run does not reach; the error that it has is this."""
+    where = ("sphere", *FAILING, 0.005)
+    row = metric(*where, "scheme", "omega", "rate_at_no_step", 3e8, bound=1.0, verdict="fail")
+    return with_metrics(edited(record, where, FIGURE, **error), row)
+
+
+def test_an_error_that_sound_integrators_have_as_well_costs_nothing(record: Record) -> None:
+    """Caught: "off by 2 rad" of a run that is a sound engine's to rounding."""
+    (same,) = record.metrics.filter(
+        engine="mujoco", scenario="sphere", integrator="Euler", timestep=0.005, metric="error_max"
+    )["value"]
+    text = (
+        "nothing in the attitude on sphere: semi-implicit, step 0.005 s, has an error of 0.006 rad "
+        "(0.34 deg) there, as sound integrators of order 1 have: 0.006 rad (0.34 deg)"
+    )
+    equal = {"value": same + 1.5e-9, "bound": 1e-9, "verdict": "info"}
+    near = edited(record, ("sphere", "mujoco", "Euler", 0.005), FIGURE, bound=1e-9)
+    for case in (failing_in_a_probe(record), failing_in_a_probe(near, **equal)):
+        (found,) = summarise(case).failures
+        assert found.cost == text
+    beyond = {**equal, "value": same + 3e-9}  # more than both bounds
+    (found,) = summarise(failing_in_a_probe(near, **beyond)).failures
+    assert found.cost.startswith("attitude wrong by 0.006 rad (0.34 deg) on sphere")
+
+
+def test_an_error_of_its_order_costs_nothing_where_no_other_has_that_order(record: Record) -> None:
+    found = failing_in_a_probe(record)
+    for engine in found.run["engines"]:
+        for own in engine["integrators"] if engine["name"] == "mujoco" else ():
+            own["orders"] = {"attitude": 4}
+    (failure,) = summarise(found).failures
+    assert failure.cost.startswith("nothing in the attitude on sphere")
+    assert failure.cost.endswith("which passes as the truncation error of its order")
 
 
 def test_an_equation_that_every_integrator_shares_names_them_so(record: Record) -> None:

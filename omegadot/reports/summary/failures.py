@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
 import polars as pl
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.record.schema import GATES, YARDSTICKS
+from omegadot.reports.record.schema import GATES
+from omegadot.reports.summary.cost import WHO, cost_of
 from omegadot.reports.summary.failed_gate import measure, worst_row
 from omegadot.reports.summary.next_command import CHECK, next_command
 from omegadot.reports.summary.reasons import cause_of, failing_gates
-from omegadot.reports.text.numbers import engine_name, knob, listed, plain, quantity, short, times
+from omegadot.reports.text.numbers import engine_name, knob, listed, times
 
 UNKNOWN = "none is known"
 # What each gate looks at, for readers who do not know their names.
@@ -27,7 +27,6 @@ LOOKS_AT = {
     "trajectory": "the motion over time",
     "cost": "what a step costs",
 }
-WHO = ("engine", "engine_version", "setup")
 Row = Mapping[str, Any]
 
 
@@ -109,7 +108,7 @@ def failures_of(record: Record) -> tuple[EngineFailure, ...]:
                 measure(worst),
                 f"{len(at_gate)} of {times(len(tasks), 'run')}",
                 _likeliest(failing),
-                _cost(record, who, own),
+                cost_of(record, who, own),
                 tuple(g for g in GATES if g in others and GATES.index(g) > _place(worst)),
                 _seen(failing),
                 next_command(record.run, worst, {task["integrator"] for task in failing}),
@@ -131,64 +130,6 @@ def _run(worst: Row, tasks: Sequence[Row], failing: Sequence[Row]) -> str:
     if len(names) > 1 and len(names) == len({task["integrator"] for task in here}):
         return "every integrator"
     return listed(list(names)) if names else ""
-
-
-def _cost(record: Record, who: tuple[str, ...], rows: Sequence[Row]) -> str:
-    """The attitude's error at the finest step, next to that of integrators that pass.
-
-    On the scenario of the worst measure where a run fails there, else of the worst run. Those of
-    its own order stand beside it, or the others where there are none.
-    """
-    metrics = record.metrics
-    stepped = [row for row in rows if row["integrator"] is not None]
-    if not stepped:
-        judged = metrics.filter(pl.col("gate") == "trajectory").filter(
-            pl.col(key).eq_missing(value) for key, value in zip(WHO, who, strict=True)
-        )
-        return "none in its trajectories, which pass" if "pass" in judged["verdict"] else ""
-    where = worst_row(rows)["scenario"]
-    here = [row for row in stepped if row["scenario"] == where] or stepped
-    scenario = worst_row(here)["scenario"]
-    failing = {row["integrator"] for row in here if row["scenario"] == scenario}
-    errors = _finest_errors(metrics, scenario)
-    own = [r for r in errors if tuple(map(r.get, WHO)) == who and r["integrator"] in failing]
-    if not own:
-        return ""
-    worst = max(own, key=lambda row: row["value"])
-    at = f"on {scenario} ({worst['integrator']}, {knob(worst['timestep'], None)})"
-    text = f"its attitude is off by {quantity(worst['value'], 'rad')} {at}"
-    others = [r for r in errors if tuple(map(r.get, WHO)) != who and r["verdict"] == "pass"]
-    if not others:
-        return text
-    order = _order(record, worst)
-    same = [row for row in others if order is not None and _order(record, row) == order]
-    values = [row["value"] for row in same or others]
-    ends = [short(end) for end in dict.fromkeys((min(values), max(values)))]
-    whose = "integrators that pass"
-    if same:
-        whose = f"integrators of its order, {plain(order)}, that pass"
-    elif order is not None:
-        whose = "integrators of other orders that pass"
-    return f"{text}; that of {whose} by {' to '.join(ends)} rad"
-
-
-def _order(record: Record, row: Row) -> float | None:
-    """The order in attitude that a row's integrator declares; None without any."""
-    for engine in record.run["engines"]:
-        for integrator in engine.get("integrators") or ():
-            if (engine["name"], integrator["name"]) == (row["engine"], row["integrator"]):
-                return (integrator.get("orders") or {}).get("attitude")
-    return None
-
-
-def _finest_errors(metrics: pl.DataFrame, scenario: str) -> list[dict[str, Any]]:
-    """The attitude's largest errors of every engine on a scenario, at the finest step there."""
-    of_attitude = (pl.col("channel") == "attitude") & (pl.col("metric") == "error_max")
-    judged = metrics.filter((pl.col("gate") == "trajectory") & (pl.col("scenario") == scenario))
-    rows = judged.filter(of_attitude & ~pl.col("engine").is_in(YARDSTICKS)).to_dicts()
-    known = [r for r in rows if r["timestep"] and r["value"] is not None and isfinite(r["value"])]
-    finest = min((row["timestep"] for row in known), default=None)
-    return [row for row in known if row["timestep"] == finest]
 
 
 def _likeliest(failing: Sequence[Row]) -> str:
