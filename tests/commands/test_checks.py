@@ -86,6 +86,14 @@ def test_what_is_not_finite_is_the_worst_of_all(value: float) -> None:
     assert failure([row, broken]).startswith("torque: residual is not finite")
 
 
+def test_the_plain_residual_is_quoted_where_it_fails() -> None:
+    """Caught: "residual_of_sibling" of an engine that is wrong without any system before."""
+    plain = Row("equation", "omega_dot", "residual", 0.12, "1", 2e-14, "fail")
+    after = replace(plain, metric="residual_of_sibling", value=0.15, note="after another mass")
+    assert failure([after, plain]).startswith("omega_dot: residual is 0.12, ")
+    assert "after another mass" in failure([after, replace(plain, verdict="pass")])
+
+
 def test_an_engine_is_idle_only_when_every_check_was_skipped() -> None:
     tally = Tally()
     for engine, verdict in (("a", "skip"), ("a", "skip"), ("b", "skip"), ("b", "pass")):

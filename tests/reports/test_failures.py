@@ -13,11 +13,12 @@ from changed_records import FIGURE, edited
 from rich.console import Console
 from synthetic_record import metric, with_metrics
 
+from omegadot.reports.page.failures_table import failures_table
 from omegadot.reports.page.glance import glances
 from omegadot.reports.page.page import draw_page
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.failed_gate import failed_gates
-from omegadot.reports.summary.provenance import Sources
+from omegadot.reports.summary.provenance import Sources, sources_for
 from omegadot.reports.summary.summary import summarise
 from omegadot.reports.text.markdown import markdown_of
 from omegadot.reports.text.numbers import short
@@ -48,8 +49,8 @@ def test_a_failing_engine_is_which_where_why_and_what_it_costs(record: Record) -
     (found,) = summarise(failing(record)).failures
     assert found.sentence == (
         "dart fails the equation gate (omega-dot at given states) in 3 of 6 runs, worst on sphere, "
-        "semi-implicit, step 0.02 s: omega-dot residual 0.002, 2e10 times its bound. Its scheme "
-        "and trajectory gates fail as well. Likely cause: the gyroscopic term is missing. Cost: "
+        "semi-implicit, step 0.02 s: omega-dot residual 0.002 (0.2 % of the terms of the "
+        "equation), 2e10 times its bound. Its scheme and trajectory gates fail as well. Likely cause: the gyroscopic term is missing. Cost: "
         "attitude wrong by 3 rad (172 deg) on sphere with semi-implicit, step 0.02 s; sound "
         "integrators of order 1: 0.024 rad (1.4 deg)."
     )
@@ -84,7 +85,9 @@ def test_what_fails_in_no_run_costs_nothing_there(record: Record) -> None:
 def test_the_failing_gate_stands_beside_its_engine_with_its_number(record: Record) -> None:
     """Caught: a failing cell that shows a figure which passes, and no other."""
     found = failing(record)
-    text = "equation gate: omega-dot residual 0.002, 2e10 times its bound"
+    text = (
+        "equation gate: omega-dot residual 0.002 (0.2 % of the terms of the equation), 2e10 times"
+    )
     failed = {key: cell.failed.text for key, cell in summarise(found).cells.items() if cell.failed}
     assert [(name, column.engine) for name, column in failed] == [("sphere", "dart")]
     assert next(iter(failed.values())).startswith(text)
@@ -301,7 +304,7 @@ def test_the_glance_shows_the_residual_that_the_failure_names(record: Record) ->
     ]
     found = with_metrics(record, *({**row, "verdict": "fail"} for row in rows))
     (failure,) = summarise(found).failures
-    assert failure.measured.startswith("omega-dot residual 0.5, ")
+    assert failure.measured.startswith("omega-dot residual 0.5 ")
     rows_shown = glances(summarise(found), found.metrics, Sources())
     (shown,) = (g for g in rows_shown if g["engine"].startswith("dart"))
     assert shown["residual"][0] == "0.5"
@@ -322,3 +325,43 @@ def test_an_engine_that_declares_no_scheme_says_so(record: Record) -> None:
     metrics = record.metrics.filter(pl.col("metric") != "match")
     found = glances(summarise(replace(record, metrics=metrics)), metrics, Sources())
     assert {g["error_source"][0] for g in found} == {"no scheme declared"}
+
+
+def test_the_plain_residual_is_quoted_where_it_fails(record: Record) -> None:
+    """Caught: "after another mass was loaded", which reads as numbers kept from another system, of
+    an engine that is as wrong without any."""
+    after, note = "residual_of_sibling", "after the same system with another mass was loaded"
+    rows = [
+        metric("sphere", "dart", None, None, "equation", channel, name, value, **more)
+        for channel, name, value, more in (
+            ("omega_dot", "residual", 0.12, {}),
+            ("torque", "residual", 0.5, {"bound": 1e-14}),
+            ("omega_dot", after, 0.15, {"note": note}),
+        )
+    ]
+    rows = [{**row, "verdict": "fail"} for row in rows]
+    (found,) = summarise(with_metrics(record, *rows)).failures
+    assert found.measured == (
+        "omega-dot residual 0.12 (12 % of the terms of the equation), 1.2e12 times its bound"
+    )
+    (found,) = summarise(with_metrics(record, rows[1])).failures
+    assert found.measured.startswith("torque residual 0.5 (50 % of the terms of the equation)")
+    (found,) = summarise(with_metrics(record, rows[2])).failures  # it is all that fails
+    assert note in found.measured
+
+
+def test_the_cell_the_table_and_the_headline_have_one_residual(record: Record) -> None:
+    """Caught: 0.5 at the top, 0.69 in the table and the bound of 0.5 in the cell."""
+    rows = [
+        metric("sphere", "dart", None, None, "equation", channel, "residual", value, bound=bound)
+        for channel, value, bound in (("omega_dot", 0.69, 2e-14), ("torque", 0.5, 1.4e-14))
+    ]
+    found = with_metrics(record, *({**row, "verdict": "fail"} for row in rows))
+    summary = summarise(found)
+    assert "residual 0.69 " in summary.failures[0].measured
+    (cell,) = (cell for cell in summary.cells.values() if cell.failed)
+    assert cell.failed.number == "3.4e13 × bound"
+    (table, *_), _ = failures_table(found, summary.columns, sources_for(found.run["engines"]))
+    assert table.size == "3.4e13 × bound (0.69 relative)"
+    (shown,) = (g for g in glances(summary, found.metrics, Sources()) if g["status"] == "fail")
+    assert shown["residual"][0] == "0.69"

@@ -21,6 +21,7 @@ from omegadot.gates.runs import repeats
 from omegadot.gates.runs.exact import exact_rows
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
+from omegadot.reports.summary.failed_gate import is_plain
 from omegadot.reports.text.numbers import listed, short, times_its_bound
 from omegadot.workers.harness_end.process import Answer
 
@@ -55,7 +56,7 @@ def sentence(row: Row) -> str:
 def failure(rows: Sequence[Row], cause: str = "") -> str:
     """The failing rows of one gate: the worst in full, the other channels by name."""
     failing = [row for row in rows if row.verdict == "fail"]
-    worst = max(failing, key=_excess)
+    worst = max([row for row in failing if is_plain(row.metric)] or failing, key=_excess)
     others = dict.fromkeys(row.channel for row in failing if row.channel != worst.channel)
     message = sentence(worst)
     if others:
