@@ -48,11 +48,11 @@ def failing(record: Record, cause: str = "the gyroscopic term is missing") -> Re
 def test_a_failing_engine_is_which_where_why_and_what_it_costs(record: Record) -> None:
     (found,) = summarise(failing(record)).failures
     assert found.sentence == (
-        "dart fails the equation gate (omega-dot at given states) in 3 of 6 runs, worst on sphere, "
-        "semi-implicit, step 0.02 s: omega-dot residual 0.002 (0.2 % of the terms of the "
-        "equation), 2e10 times its bound. Its scheme and trajectory gates fail as well. Likely cause: the gyroscopic term is missing. Cost: "
-        "attitude wrong by 3 rad (172 deg) on sphere with semi-implicit, step 0.02 s; sound "
-        "integrators of order 1: 0.024 rad (1.4 deg)."
+        "dart fails the equation gate (omega-dot at given states) on sphere, before any step is "
+        "taken, so in all 3 runs there: omega-dot residual 0.002 (0.2 % of the terms of the "
+        "equation), 2e10 times its bound. Its scheme and trajectory gates fail as well. Likely "
+        "cause: the gyroscopic term is missing. Cost: attitude wrong by 3 rad (172 deg) on sphere "
+        "with semi-implicit, step 0.02 s; sound integrators of order 1: 0.024 rad (1.4 deg)."
     )
     assert summarise(record).failures == ()
 
@@ -273,6 +273,71 @@ def test_an_error_that_sound_integrators_have_as_well_costs_nothing(record: Reco
     beyond = {**equal, "value": same + 3e-9}  # more than both bounds
     (found,) = summarise(failing_in_a_probe(near, **beyond)).failures
     assert found.cost.startswith("attitude wrong by 0.006 rad (0.34 deg) on sphere")
+
+
+def test_a_state_that_no_run_comes_near_is_named_as_such(record: Record) -> None:
+    """Caught: a reader sent to a scenario whose every chart is that of a sound engine."""
+    found = failing_in_a_probe(record)
+    for task in found.run["tasks"]:
+        if task["engine"] == "dart" and task["scenario"] == "sphere":
+            task["gates"] = {**task["gates"], "scheme": "fail"}
+    (failure,) = summarise(found).failures
+    assert failure.unseen == (
+        "the runs on sphere do not show it: |omega| is at most 2 rad/s, and their invariants and "
+        "trajectory gates hold"
+    )
+    assert f"{failure.unseen[1:]}" in failure.sentence
+    assert failure.unseen[1:] in draw_page(found).replace("\u2060", "")
+    # Whatever the step of a run, its own steps are not those that fail: none is the worst.
+    assert failure.tail == ", in all 3 runs there, with semi-implicit"
+    for task in found.run["tasks"]:
+        if task["engine"] == "dart":
+            task["gates"] = {**task["gates"], "trajectory": "fail"}
+    assert summarise(found).failures[0].unseen == ""
+
+
+def test_an_equation_that_holds_along_the_motion_is_named_as_such(record: Record) -> None:
+    where = ("sphere", "dart", None, None, "equation", "omega_dot")
+    note = "at a state of |omega| = 31.4 rad/s"
+    off = metric(*where, "residual", 1.0, verdict="fail", note=note)
+    found = with_metrics(record, off, metric(*where, "residual_on_path", 1e-16))
+    (failure,) = summarise(found).failures
+    assert f" {note}, 1e13 times its bound" in failure.measured
+    text = "along the motion of sphere it does not show: |omega| is at most 2 rad/s, and it holds"
+    assert failure.unseen.startswith(text)
+    along = metric(*where, "residual_on_path", 1e-3, verdict="fail")
+    assert summarise(with_metrics(record, off, along)).failures[0].unseen == ""
+
+
+def test_where_and_in_how_many_runs_it_fails(record: Record) -> None:
+    """Caught: "in 6 of 18 runs, worst on" the only scenario, of a gate that takes no step."""
+    (failure,) = summarise(failing(record)).failures
+    assert (failure.lead, failure.tail) == (
+        *("on ", ", before any step is taken, so in all 3 runs there"),
+    )
+    both = failing(record)
+    row = metric("spun-again", "dart", None, None, "equation", "omega_dot", "residual", 1e-3)
+    (failure,) = summarise(with_metrics(both, {**row, "verdict": "fail"})).failures
+    assert failure.lead == "on 2 of 2 scenarios, worst on "
+    rows = [
+        metric("sphere", *FAILING, step, "scheme", "omega", "match", size, verdict="fail")
+        for step, size in ((0.02, 3.0), (0.01, 2.0))
+    ]
+    (failure,) = summarise(with_metrics(record, *rows)).failures
+    assert failure.tail == ", with semi-implicit, step 0.02 s"
+    for task in record.run["tasks"]:
+        if (task["engine"], task["scenario"]) == ("dart", "sphere") and task["timestep"] > 0.005:
+            task["gates"] = {**task["gates"], "scheme": "fail"}
+    (failure,) = summarise(with_metrics(record, *rows)).failures
+    assert failure.tail == ", in 2 of 3 runs there, worst with semi-implicit, step 0.02 s"
+
+
+def test_a_cause_among_several_is_named_as_open(record: Record) -> None:
+    """Caught: one cell, run again by its command, gives another cause than the page, and does not
+    say that more scenarios had excluded it."""
+    (failure,) = summarise(failing(record, "either the mass is halved, or the inertia is")).failures
+    assert failure.cause.endswith("; more scenarios may exclude some)")
+    assert "more scenarios" not in summarise(failing(record)).failures[0].cause
 
 
 def test_an_error_of_its_order_costs_nothing_where_no_other_has_that_order(record: Record) -> None:

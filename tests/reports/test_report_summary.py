@@ -178,6 +178,13 @@ def test_the_headline_of_a_failing_run(record):
     assert message == "1 of 2 engines fails: dart, on sphere."
 
 
+def test_the_headline_of_one_engine_counts_nothing() -> None:
+    """Caught: "1 of 1 engine fails"."""
+    one = build(("sphere",), engines={"dart": INTEGRATORS["dart"]})
+    failed = change(one, 0, gates={"equation": "fail"})
+    assert headline(summarise(failed)) == "dart fails on sphere."
+
+
 def test_the_headline_names_which_engine_fails_on_which_scenario(record):
     other = next(t for t in record.run["tasks"] if t["scenario"] != "sphere")
     failed = change(record, first_of(record, "dart"), gates={"equation": "fail"})

@@ -12,8 +12,6 @@ import polars as pl
 from omegadot.reports.record.schema import GATES
 from omegadot.reports.text.numbers import knob, quantity, short, times_its_bound
 
-# Of a metric that is measured after another system was loaded, which its note names.
-OF_SIBLING = " of sibling"
 RESIDUAL = "residual"
 # Of the states as they are given, at random and along the exact motion.
 PLAIN = (RESIDUAL, "residual_on_path")
@@ -103,8 +101,9 @@ def measure(row: Row) -> str:
     if row["note"] and (row["bound"] == 1.0 or not isfinite(row["value"] or 0.0)):
         return f"{channel}: {row['note']}"
     metric, after = row["metric"].replace("_", " "), ""
-    if metric.endswith(OF_SIBLING):
-        metric, after = metric.removesuffix(OF_SIBLING), f" {row['note']}".rstrip()
+    if row["metric"].startswith(RESIDUAL) and row["gate"] == "equation" and row["note"]:
+        metric = metric if row["metric"] in PLAIN else RESIDUAL
+        after = f" {row['note']}"
     text = f"{channel} {metric} {quantity(row['value'], row['unit'])}{_percent(row)}{after}"
     times = excess(row)
     if row["bound"] is not None and 1.0 < times < float("inf"):

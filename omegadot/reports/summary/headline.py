@@ -58,8 +58,11 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     failing = [name for name, cells in engines.items() if any(c.status == "fail" for c in cells)]
     if failing:
         verb = "fails" if len(failing) == 1 else "fail"
+        named = _failing(summary, failing)
+        if len(engines) == 1:
+            return f"{named.replace(', on ', ' fails on ', 1)}."
         count = f"{len(failing)} of {times(len(engines), 'engine')}"
-        return f"{count} {verb}: {_failing(summary, failing)}.{_open(engines, failing)}"
+        return f"{count} {verb}: {named}.{_open(engines, failing)}"
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(map(_holds, cells))}
     # A declared exception is a known failure: such an engine is not reported as agreeing.

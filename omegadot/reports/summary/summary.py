@@ -16,8 +16,9 @@ import polars as pl
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.run_json import impossible_bodies
 from omegadot.reports.record.schema import YARDSTICKS
+from omegadot.reports.summary.engine_failure import EngineFailure
 from omegadot.reports.summary.failed_gate import FailedGate, failed_gates
-from omegadot.reports.summary.failures import EngineFailure, failures_of
+from omegadot.reports.summary.failures import failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
 from omegadot.reports.summary.not_tried import not_tried
 from omegadot.reports.summary.reasons import MODEL_ALONE, failing_gates, tests_motion
