@@ -16,6 +16,7 @@ import polars as pl
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.run_json import impossible_bodies
 from omegadot.reports.record.schema import YARDSTICKS
+from omegadot.reports.summary.advice import Advice
 from omegadot.reports.summary.engine_failure import EngineFailure
 from omegadot.reports.summary.failed_gate import FailedGate, failed_gates
 from omegadot.reports.summary.failures import failures_of
@@ -114,7 +115,7 @@ class Summary:
     failures: tuple[EngineFailure, ...]
     truths: Counter[str]
     notes: tuple[str, ...]
-    untried: str = ""
+    untried: Advice | None = None
 
 
 def worst(statuses: Iterable[str]) -> str:
@@ -170,7 +171,7 @@ def summarise(record: Record) -> Summary:
         failures_of(record),
         _truths(record.trajectories),
         (*impossible_bodies(record.run["scenarios"]), *_ended(record.run), *_unstepped(record.run)),
-        not_tried(record.run, held) if not failing else "",
+        not_tried(record.run, held) if not failing else None,
     )
 
 

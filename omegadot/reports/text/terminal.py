@@ -59,7 +59,7 @@ def print_summary(record: Record, console: Console | None = None) -> None:
         console.print(Text(failure.sentence, _STYLES["fail"]))
     console.print(Text(" ".join(remarks(summary) + truth(summary))))
     if summary.untried:
-        console.print(Text(summary.untried))
+        console.print(Text(summary.untried.sentence))
 
 
 def _fitting_table(summary: Summary, console: Console) -> tuple[int, Table]:
