@@ -5,12 +5,14 @@ from dataclasses import replace
 import pytest
 from synthetic_record import INTEGRATORS, build, metric, task, with_metrics
 
-from omegadot.reports.page.glance import _spread
+from omegadot.reports.page.glance import _largest, glances
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import METRICS, OUTCOMES, TRAJECTORIES, empty
 from omegadot.reports.run_record import TaskResult
 from omegadot.reports.summary.figures import Figure
 from omegadot.reports.summary.headline import headline, remarks
+from omegadot.reports.summary.matrix import shown
+from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import STATUSES, summarise, task_status, worst
 from omegadot.reports.text.numbers import short
 
@@ -220,12 +222,27 @@ def test_a_headline_pairs_each_failing_engine_with_its_own_scenarios():
     assert "scenario" not in many
 
 
-def test_a_failing_engine_shows_its_largest_error_beside_the_median():
-    """Caught: a failure whose row shows the small error of the scenarios that hold."""
+def test_an_engine_shows_its_largest_error_and_where() -> None:
+    """Caught: a median, which hides the scenario on which the engine fails or is no use."""
     errors = {"a": 1e-7, "b": 1e-7, "c": 3.1}
-    figures = [Figure(v, "rad", s, "dart", "error_max", "RK4") for s, v in errors.items()]
-    assert _spread(figures, failing=True)[2] == "RK4; largest 3.1 rad"
-    assert _spread(figures, failing=False)[2] == "RK4"
+    figures = [Figure(v, "rad", s, "dart", "error_max", "RK4", 0.01) for s, v in errors.items()]
+    assert _largest(figures) == (
+        *("3.1 rad (178 deg)", "step 0.01 s; median of 3 scenarios 1e-7 rad", "RK4, on c"),
+    )
+    assert _largest(figures[:1]) == ("1e-7 rad (5.7e-6 deg)", "step 0.01 s", "RK4, on a")
+
+
+@pytest.mark.parametrize(("gates", "text"), [("fail", "1 of 3 runs fail"), ("info", "2 of 3 runs")])
+def test_runs_are_counted_in_one_sense(record, gates, text):
+    """Caught: "fail 0 of 6 runs pass" beside "fail 6 of 18 runs"."""
+    failed = change(record, first_of(record, "dart"), gates={"equation": gates})
+    found = cell(failed, "sphere", "dart")
+    assert shown(found).part.startswith(text)
+    assert shown(cell(failed, "sphere", "mujoco")).part == ""
+    rows = glances(summarise(failed), failed.metrics, Sources())
+    runs = {row["engine"].split()[0]: row["runs"] for row in rows}
+    if gates == "fail":
+        assert runs == {"dart": "1 of 6 runs fail", "mujoco": "12 of 12 runs pass"}
 
 
 def test_an_accuracy_is_that_of_engines_that_pass(record):

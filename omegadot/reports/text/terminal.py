@@ -8,7 +8,8 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
+from omegadot.reports.summary.cluster_sentences import extent, sentence
+from omegadot.reports.summary.clusters import clusters_over_scenarios
 from omegadot.reports.summary.failed_gate import FailedGate
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.headline import headline, remarks, truth
