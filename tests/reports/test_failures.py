@@ -125,7 +125,13 @@ def test_it_stands_wherever_the_run_is_summed_up(
     table = page[page.index("Engine by engine") :]
     assert table.index(">dart ") < table.index(">mujoco ")  # the record has mujoco first
     print_summary(found)
-    assert failure.sentence in " ".join(capsys.readouterr().out.split())
+    lines = capsys.readouterr().out.splitlines()
+    assert f"{failure.head}." in lines
+    # A line each, by the names that the page has.
+    listed = [line.strip() for line in lines if line.startswith("  ")]
+    for name, text in failure.labelled:
+        assert any(line.startswith(name) and line.endswith(text) for line in listed)
+        assert f"<dt>{name}</dt>" in page
     assert "gyroscopic term is missing" in markdown_of(found)
     assert "The errors over time differ more" not in page  # it follows an agreement alone
 

@@ -85,10 +85,23 @@ class EngineFailure:
         return ". ".join(filter(None, (self.measured, later, unseen)))
 
     @property
+    def head(self) -> str:
+        """Which gate fails, and where: a sentence without its full stop."""
+        gate = f"fails the {self.gate} gate ({self.looks_at})"
+        return f"{self.engine} {gate} {self.lead}{self.scenario}{self.tail}"
+
+    @property
+    def labelled(self) -> list[tuple[str, str]]:
+        """What is known of it, by name: as page and terminal list it."""
+        known = self.cause or f"none was found; {self.seen or 'what fails is listed'}"
+        found = [("likely cause", known), ("measured", self.found), ("what it costs", self.cost)]
+        command = f"{self.command} ({self.purpose})" if self.command else ""
+        return [(name, text) for name, text in (*found, ("next", command)) if text]
+
+    @property
     def sentence(self) -> str:
         """All of it in a few sentences."""
-        head = f"{self.engine} fails the {self.gate} gate ({self.looks_at})"
-        parts = [f"{head} {self.lead}{self.scenario}{self.tail}: {self.found}"]
+        parts = [f"{self.head}: {self.found}"]
         parts += [f"Likely cause: {self.cause}"] if self.cause else []
         parts += [f"No cause was found: {self.seen}"] if self.seen else []
         parts += [f"Cost: {self.cost}"] if self.cost else []

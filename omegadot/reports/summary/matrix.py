@@ -26,7 +26,8 @@ FAILED = "failed"
 class Shown:
     """One cell as text.
 
-    mark and status: a sign and its name.  part: how many of its runs fail, or pass where not all do.
+    mark and status: a sign and its name.  part: how many of its runs fail, or pass, where not all
+    do.
     numbers: text by the keys of NUMBERS; where a gate fails, by FAILED its worst measure alone: no
     number that passes stands beside a failure.  card: the number of its card among `cards`.  rank:
     for sorting, the worst first.  gate: the first that fails, if one does.

@@ -24,7 +24,8 @@ def markdown_of(record: Record) -> str:
     lines += [escape(notes, 1000), ""] if notes else []
     lines += [f"- {escape(one.sentence, 1000)}" for one in summary.failures]
     lines += [""] * bool(summary.failures)
-    lines += [_advice(summary.untried), ""] if summary.untried else []
+    for advice in (summary.accuracy, summary.untried):
+        lines += [_advice(advice), ""] if advice else []
     lines += [_counts(summary), ""]
     lines += _matrix(summary, COMMENT // 4)
     lines += _failures(record, COMMENT // 4)
