@@ -82,7 +82,7 @@ def over_bound(row: Row) -> str:
     if value is None or not isfinite(value):
         return "no number"
     if row["metric"] == "observed_order" and bound is not None:
-        return f"{value:.2f} of order {bound:.0f}"
+        return f"{value:z.2f} of order {bound:.0f}"
     own = excess(row)
     return f"{short(own)} × bound" if isfinite(own) else quantity(value, row["unit"])
 

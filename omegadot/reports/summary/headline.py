@@ -41,7 +41,7 @@ def step_notes(engines: Iterable[Mapping[str, Any]]) -> list[str]:
     for engine in engines:
         kinds = {integrator.get("note") for integrator in engine.get("integrators") or ()}
         if engine["name"] not in YARDSTICKS and len(kinds) == 1 and (note := kinds.pop()):
-            found.append(f"{engine['name']}: a step is {note}")
+            found.append(f"{engine['name']}: the time of a step is that of {note}")
     return found
 
 
