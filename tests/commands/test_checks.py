@@ -176,7 +176,7 @@ def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
     explained = re.search(r"What explains the (\d+) failures:\n +(\d+)  (.*)\n", result.out)
     assert explained is not None
     assert explained[1] == explained[2] == str(result.out.count("FAIL  "))
-    assert explained[3].startswith("the gyroscopic term is missing (equation and ")
+    assert explained[3].startswith("the gyroscopic term is missing (equation gate, runs")
 
 
 @pytest.mark.parametrize(
@@ -350,7 +350,7 @@ def test_skips_of_one_reason_are_one_line_with_their_scenarios(
     }
     print_checks(CheckResult(checks, ()))
     printed = capsys.readouterr().out
-    assert printed.count("skip  ") == 1
+    assert printed.count("not judged: ") == 1
     assert "skip  5 checks: not judged: it is not resolved (on s-0, s-1, s-2 and 2 more)" in printed
 
 
