@@ -132,12 +132,11 @@ class PlainHelp(TyperCommand):
         """``[OPTIONS]`` and the arguments by their metavars."""
         return ["[OPTIONS]", *(_metavar(p) for p in self.params if _is_argument(p))]
 
-    def format_help_text(self, ctx: Any, formatter: Any) -> None:
-        """What the command does, with its exit codes and those that all commands have."""
-        super().format_help_text(ctx, formatter)
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        """The exit codes that all commands have, below what is the command's own."""
+        super().format_epilog(ctx, formatter)
         formatter.write_paragraph()
-        with formatter.indentation():
-            formatter.write_text(ENDED)
+        formatter.write_text(ENDED)
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """The arguments, then the options, each with its help and its default."""

@@ -22,6 +22,7 @@ from omegadot.commands.check.result import (
     coverage,
 )
 from omegadot.commands.check.select import Arguments, select
+from omegadot.commands.check.shrink import Failing
 from omegadot.gates.rows import Row
 from omegadot.harness.arguments import case_of, scenarios_of
 from omegadot.harness.usage import UsageError
@@ -59,7 +60,11 @@ def test_the_exact_solution_is_not_checked_against_itself() -> None:
 def test_coverage_counts_scenarios_gates_and_checks() -> None:
     cases = [case_of(load_builtin(name), ()) for name in ("t-handle", "sphere")]
     checks = checks_of([MUJOCO], cases)
-    assert coverage([MUJOCO], checks) == ["mujoco 4.0.0 (RK4): 2 scenarios x 5 gates, 22 checks"]
+    # Caught: "2 scenarios x 5 gates", which no one multiplies to 22.
+    assert coverage([MUJOCO], checks) == [
+        "mujoco 4.0.0 (RK4): 22 checks (5 gates on 2 scenarios, those of runs at every integrator "
+        "and step)"
+    ]
     assert coverage([MUJOCO.whole], checks)[0].startswith("mujoco 4.0.0: ")
 
 
@@ -73,7 +78,9 @@ def test_a_failure_names_the_worst_row_its_bound_and_the_others() -> None:
     large = replace(small, channel="attitude", value=5e-3, unit="rad")
     fine = replace(small, channel="position", value=1.0, bound=0.0, verdict="pass")
     text = failure([small, large, fine], "the step is too long.")
-    assert text.startswith("attitude: error_max is 0.005 rad, 5e6 times its bound of 1e-9 rad")
+    assert text.startswith(
+        "attitude: largest error is 0.005 rad (0.29 deg), 5e6 times its bound of 1e-9 rad"
+    )
     assert "omega fails as well" in text
     assert "position" not in text
     assert text.endswith("Likely cause: the step is too long.")
@@ -84,6 +91,14 @@ def test_what_is_not_finite_is_the_worst_of_all(value: float) -> None:
     row = Row("equation", "omega_dot", "residual", 1e200, "1", 1e-14, "fail")
     broken = replace(row, channel="torque", value=value)
     assert failure([row, broken]).startswith("torque: residual is not finite")
+
+
+def test_the_plain_residual_is_quoted_where_it_fails() -> None:
+    """Caught: "residual_of_sibling" of an engine that is wrong without any system before."""
+    plain = Row("equation", "omega_dot", "residual", 0.12, "1", 2e-14, "fail")
+    after = replace(plain, metric="residual_of_sibling", value=0.15, note="after another mass")
+    assert failure([after, plain]).startswith("omega_dot: residual is 0.12, ")
+    assert "after another mass" in failure([after, replace(plain, verdict="pass")])
 
 
 def test_an_engine_is_idle_only_when_every_check_was_skipped() -> None:
@@ -161,14 +176,14 @@ def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
     explained = re.search(r"What explains the (\d+) failures:\n +(\d+)  (.*)\n", result.out)
     assert explained is not None
     assert explained[1] == explained[2] == str(result.out.count("FAIL  "))
-    assert explained[3].startswith("the gyroscopic term is missing (equation and ")
+    assert explained[3].startswith("the gyroscopic term is missing (equation gate, runs")
 
 
 @pytest.mark.parametrize(
     ("name", "code", "text"),
     [
         ("Raises", 3, "raised: ArithmeticError: the solver did not converge"),
-        ("Diverges", 1, "omega: error_max is not finite"),
+        ("Diverges", 1, "omega: largest error is not finite"),
         ("Unsupporting", 3, "a skip is not a pass (unsupported: this engine has no rigid bodies)"),
         ("Missing", 3, "not-installed: "),
     ],
@@ -305,6 +320,59 @@ def test_a_fault_in_every_check_is_a_screen_long(capsys: pytest.CaptureFixture[s
     few = CheckResult(dict(list(many.items())[:20]), ())
     print_checks(few)
     assert capsys.readouterr().out.count("FAIL  ") == 20
+
+
+def test_what_explains_names_gates_and_runs_apart(capsys: pytest.CaptureFixture[str]) -> None:
+    """Caught: "(equation, a and b)", of which the first is a gate and the others integrators."""
+    wrong = Result("fail", f"off. {CAUSE}no spin.")
+    other = Result("fail", "off by more.")
+    checks = {
+        Check("toy", "s", "equation"): wrong,
+        Check("toy", "s", "scheme", "a", 0.1): wrong,
+        Check("toy", "s", "scheme", "b", 0.1): wrong,
+        Check("toy", "s", "trajectory", "b", 0.1): other,
+    }
+    print_checks(CheckResult(checks, ()))
+    printed = capsys.readouterr().out
+    assert "       3  no spin (equation gate, runs of a and b)\n" in printed
+    assert "       1  no cause found (runs of b)\n" in printed
+
+
+def test_skips_of_one_reason_are_one_line_with_their_scenarios(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Caught: four lines that differ in an observed order, and none names a scenario."""
+    checks = {
+        Check("toy", f"s-{n}", "scheme", "a", 0.1): Result(
+            "skip", f"not judged: it is not resolved: observed order {n}.00, declared 1"
+        )
+        for n in range(5)
+    }
+    print_checks(CheckResult(checks, ()))
+    printed = capsys.readouterr().out
+    assert printed.count("not judged: ") == 1
+    assert "skip  5 checks: not judged: it is not resolved (on s-0, s-1, s-2 and 2 more)" in printed
+
+
+def test_two_small_systems_of_one_cause_are_one(capsys: pytest.CaptureFixture[str]) -> None:
+    """Caught: two files that show one fault, and the total below both, off the screen."""
+    checks = [Check("toy", "t-handle", "scheme", name, 0.1) for name in ("a", "b")]
+    small = omegadot_scenario("t-handle")
+    failing = [Failing(c, small, "off.", (), 1, True, "command", cause="no spin.") for c in checks]
+    results = {check: Result("fail", f"off. {CAUSE}no spin.") for check in checks}
+    print_checks(CheckResult(results, (), failing=tuple(failing)))
+    printed = capsys.readouterr().out
+    assert printed.count("Smallest failing system") == printed.count("[body]") == 1
+    assert f"{checks[1].id} fails for the same cause as {checks[0].id}" in printed
+    assert printed.count(CAUSE) == 1
+    assert printed.count("2 checks: 2 fail.\n") == 2
+    assert printed.index("2 checks: 2 fail.") < printed.index("Smallest")
+    several = [failing[0], replace(failing[1], cause="no mass.")]
+    results[checks[1]] = Result("fail", f"off. {CAUSE}no mass.")
+    print_checks(CheckResult(results, (), failing=tuple(several)))
+    printed = capsys.readouterr().out
+    assert printed.count("Smallest failing system") == 2
+    assert "Likely cause, found on t-handle: no mass." in printed
 
 
 def test_verbose_lists_every_failure(tmp_path: Path) -> None:

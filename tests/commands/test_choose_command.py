@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import re
@@ -13,6 +14,7 @@ import pytest
 from axe_check import LOOKS, violations
 from chromium import Chromium
 from command_line import FAULTY, QUICK, Result, omegadot, quick_scenario
+from rich.console import Console
 
 from omegadot.adapters.mujoco.adapter import MujocoAdapter
 from omegadot.commands.cli import main
@@ -20,7 +22,8 @@ from omegadot.reference_impl.from_scenario import initial_state_of, system_of
 from omegadot.reference_impl.rotations import attitude_angle, rotate
 from omegadot.reference_impl.solutions.exact_solution import exact_states
 from omegadot.reports.choice.page import draw_choice
-from omegadot.reports.choice.sentences import missed_text, step_text
+from omegadot.reports.choice.sentences import headline, missed_text, step_text, variant_lines
+from omegadot.reports.choice.tables import narrow, print_choice, ranking
 from omegadot.scenarios import load_scenario
 
 ATTITUDE, MOMENTUM = 1e-4, 1e-8
@@ -103,6 +106,39 @@ def test_halved_and_doubled_requirements_were_run(chosen: tuple[Path, Result]) -
             assert run["errors"][variant["requirement"]]["value"] <= variant["limit"]
             if name in usual and variant["factor"] < 1.0:
                 assert place["steps"] >= usual[name]["steps"]
+
+
+def printed(choice: dict[str, Any], width: int = 100) -> str:
+    raw = io.StringIO()
+    print_choice(choice, Console(file=raw, width=width))
+    return raw.getvalue()
+
+
+def test_the_answer_is_what_is_printed_first(chosen: tuple[Path, Result]) -> None:
+    """Caught: the answer below 45 lines of tables, and a row six lines high on 100 columns."""
+    choice = chosen[1].json
+    lines = printed(choice).splitlines()
+    assert " ".join(lines[:2]).startswith(headline(choice["scenarios"][0])[:90])
+    assert "Pareto" not in printed(choice)
+    assert "memory" not in printed(choice)
+    assert {"memory in MB", "Pareto-optimal"} <= set(ranking(choice, choice["scenarios"][0]).heads)
+    narrowed = narrow(ranking(choice, choice["scenarios"][0]))
+    assert all(len(row) == len(narrowed.heads) for row in narrowed.rows)
+
+
+def test_where_nothing_qualifies_no_ranking_is_the_same(chosen: tuple[Path, Result]) -> None:
+    """Caught: "the ranking is the same", twice, of an empty ranking."""
+    case = chosen[1].json["scenarios"][0]
+    nothing = {"left": [], "joined": [], "order": [], "same": True}
+    variants = [{**variant, **nothing} for variant in case["variants"]]
+    assert list(variant_lines({**case, "variants": variants})) == []
+
+
+def test_a_step_is_written_in_one_way() -> None:
+    """Caught: 0.00000897 in one column and 4.6e-6 in the next."""
+    assert [step_text(h) for h in (0.05674, 8.97e-6, 0.002, 12345.0)] == [
+        *("0.0567", "8.97e-6", "0.002", "12300"),
+    ]
 
 
 def test_the_page_stands_alone_and_the_json_is_the_one_printed(

@@ -86,3 +86,5 @@ def test_help_lists_the_codes_of_signals(folder: Path) -> None:
         assert "Exit codes: 0" in shown, arguments
         for code in ("130 interrupted", "143 terminated", "129 terminal closed"):
             assert code in shown, arguments
+        if arguments:  # Caught: what all commands share, above a command's own arguments
+            assert shown.index("Options:") < shown.index("130 interrupted")

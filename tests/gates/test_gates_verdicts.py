@@ -40,6 +40,12 @@ def test_a_low_order_is_looked_at_again_at_finer_steps(
     assert judge(replace(found, settled=settled), "rk4", 4).kind == kind
 
 
+def test_an_order_of_nothing_has_no_sign() -> None:
+    """Caught: "observed order -0.00, declared 1"."""
+    found = evidence([0.0, 1e-3, 1e-3], None, None, ObservedOrder(-0.001, True))
+    assert judge(found, None, 1).note == "observed order 0.00, declared 1"
+
+
 def test_a_body_too_thin_for_the_steps_leaves_a_low_order_open() -> None:
     """Caught: a stiff scheme that is accused where its finest step does not resolve the motion."""
     for order in (SLOW, ObservedOrder(0.1, False)):

@@ -9,14 +9,16 @@ from io import StringIO
 import numpy as np
 import polars as pl
 import pytest
+from changed_records import FIGURE, edited
 from rich.console import Console
 from synthetic_record import metric, with_metrics
 
+from omegadot.reports.page.failures_table import failures_table
 from omegadot.reports.page.glance import glances
 from omegadot.reports.page.page import draw_page
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary.failed_gate import failed_gates
-from omegadot.reports.summary.provenance import Sources
+from omegadot.reports.summary.provenance import Sources, sources_for
 from omegadot.reports.summary.summary import summarise
 from omegadot.reports.text.markdown import markdown_of
 from omegadot.reports.text.numbers import short
@@ -46,11 +48,11 @@ def failing(record: Record, cause: str = "the gyroscopic term is missing") -> Re
 def test_a_failing_engine_is_which_where_why_and_what_it_costs(record: Record) -> None:
     (found,) = summarise(failing(record)).failures
     assert found.sentence == (
-        "dart fails the equation gate (omega-dot at given states) in 3 of 6 runs, worst on sphere, "
-        "semi-implicit, step 0.02 s: omega-dot residual 0.002, 2e10 times its bound. Its scheme "
-        "and trajectory gates fail as well. Likely cause: the gyroscopic term is missing. Cost: "
-        "its attitude is off by 0.006 rad on sphere (semi-implicit, step 0.005 s); that of "
-        "integrators of its order, 1, that pass by 0.006 rad."
+        "dart fails the equation gate (omega-dot at given states) on sphere, before any step is "
+        "taken, so in all 3 runs there: omega-dot residual 0.002 (0.2 % of the terms of the "
+        "equation), 2e10 times its bound. Its scheme and trajectory gates fail as well. Likely "
+        "cause: the gyroscopic term is missing. Cost: attitude wrong by 3 rad (172 deg) on sphere "
+        "with semi-implicit, step 0.02 s; sound integrators of order 1: 0.024 rad (1.4 deg)."
     )
     assert summarise(record).failures == ()
 
@@ -65,13 +67,13 @@ def test_what_it_costs_is_of_the_scenario_that_is_named(record: Record) -> None:
     rows = [{**row, "verdict": "fail"} for row in (equation, *runs)]
     (found,) = summarise(with_metrics(record, *rows)).failures
     assert (found.scenario, found.run) == ("sphere", "")
-    assert found.cost.startswith("its attitude is off by 0.006 rad on sphere (semi-implicit, ")
+    assert found.cost.startswith("attitude wrong by 3 rad (172 deg) on sphere with semi-implicit")
 
 
 def test_what_fails_in_no_run_costs_nothing_there(record: Record) -> None:
     row = metric("sphere", "dart", None, None, "equation", "torque", "residual", 1.0)
     (found,) = summarise(with_metrics(record, {**row, "verdict": "fail"})).failures
-    assert found.cost == "none in its trajectories, which pass"
+    assert found.cost == "nothing in its trajectories, which pass"
     alone = record.metrics.filter(gate="equation")
     (found,) = summarise(
         with_metrics(replace(record, metrics=alone), {**row, "verdict": "fail"})
@@ -83,7 +85,9 @@ def test_what_fails_in_no_run_costs_nothing_there(record: Record) -> None:
 def test_the_failing_gate_stands_beside_its_engine_with_its_number(record: Record) -> None:
     """Caught: a failing cell that shows a figure which passes, and no other."""
     found = failing(record)
-    text = "equation gate: omega-dot residual 0.002, 2e10 times its bound"
+    text = (
+        "equation gate: omega-dot residual 0.002 (0.2 % of the terms of the equation), 2e10 times"
+    )
     failed = {key: cell.failed.text for key, cell in summarise(found).cells.items() if cell.failed}
     assert [(name, column.engine) for name, column in failed] == [("sphere", "dart")]
     assert next(iter(failed.values())).startswith(text)
@@ -121,7 +125,13 @@ def test_it_stands_wherever_the_run_is_summed_up(
     table = page[page.index("Engine by engine") :]
     assert table.index(">dart ") < table.index(">mujoco ")  # the record has mujoco first
     print_summary(found)
-    assert failure.sentence in " ".join(capsys.readouterr().out.split())
+    lines = capsys.readouterr().out.splitlines()
+    assert f"{failure.head}." in lines
+    # A line each, by the names that the page has.
+    listed = [line.strip() for line in lines if line.startswith("  ")]
+    for name, text in failure.labelled:
+        assert any(line.startswith(name) and line.endswith(text) for line in listed)
+        assert f"<dt>{name}</dt>" in page
     assert "gyroscopic term is missing" in markdown_of(found)
     assert "The errors over time differ more" not in page  # it follows an agreement alone
 
@@ -232,17 +242,118 @@ def test_the_next_command_repeats_how_the_failure_was_run(record: Record) -> Non
 def test_an_attitude_is_compared_with_those_of_its_order(record: Record) -> None:
     """Caught: a first-order engine whose error stands beside a range that begins at RK4's."""
     found = failing(record)
-    assert summarise(found).failures[0].cost.endswith("its order, 1, that pass by 0.006 rad")
+    assert summarise(found).failures[0].cost.endswith("of order 1: 0.024 rad (1.4 deg)")
     for engine in found.run["engines"]:
         for own in engine["integrators"] if engine["name"] == "mujoco" else ():
             own["orders"] = {"attitude": 4}
     cost = summarise(found).failures[0].cost
-    assert cost.endswith("that of integrators of other orders that pass by 7.5e-10 to 0.006 rad")
+    assert cost.endswith("of other orders: 1.9e-7 to 0.024 rad (1.1e-5 to 1.4 deg)")
     for engine in found.run["engines"]:
         for own in engine["integrators"]:
             own["orders"] = {}
     cost = summarise(found).failures[0].cost
-    assert cost.endswith("that of integrators that pass by 7.5e-10 to 0.006 rad")
+    assert cost.endswith("; sound integrators: 1.9e-7 to 0.024 rad (1.1e-5 to 1.4 deg)")
+
+
+def failing_in_a_probe(record: Record, **error: object) -> Record:
+    """DART's steps fail from a state that its run does not reach; the error that it has is this."""
+    where = ("sphere", *FAILING, 0.005)
+    row = metric(*where, "scheme", "omega", "rate_at_no_step", 3e8, bound=1.0, verdict="fail")
+    return with_metrics(edited(record, where, FIGURE, **error), row)
+
+
+def test_an_error_that_sound_integrators_have_as_well_costs_nothing(record: Record) -> None:
+    """Caught: "off by 2 rad" of a run that is a sound engine's to rounding."""
+    (same,) = record.metrics.filter(
+        engine="mujoco", scenario="sphere", integrator="Euler", timestep=0.005, metric="error_max"
+    )["value"]
+    text = (
+        "nothing in the attitude on sphere: semi-implicit, step 0.005 s, has an error of 0.006 rad "
+        "(0.34 deg) there, as sound integrators of order 1 have: 0.006 rad (0.34 deg)"
+    )
+    equal = {"value": same + 1.5e-9, "bound": 1e-9, "verdict": "info"}
+    near = edited(record, ("sphere", "mujoco", "Euler", 0.005), FIGURE, bound=1e-9)
+    for case in (failing_in_a_probe(record), failing_in_a_probe(near, **equal)):
+        (found,) = summarise(case).failures
+        assert found.cost == text
+    beyond = {**equal, "value": same + 3e-9}  # more than both bounds
+    (found,) = summarise(failing_in_a_probe(near, **beyond)).failures
+    assert found.cost.startswith("attitude wrong by 0.006 rad (0.34 deg) on sphere")
+
+
+def test_a_state_that_no_run_comes_near_is_named_as_such(record: Record) -> None:
+    """Caught: a reader sent to a scenario whose every chart is that of a sound engine."""
+    found = failing_in_a_probe(record)
+    for task in found.run["tasks"]:
+        if task["engine"] == "dart" and task["scenario"] == "sphere":
+            task["gates"] = {**task["gates"], "scheme": "fail"}
+    (failure,) = summarise(found).failures
+    assert failure.unseen == (
+        "the runs on sphere do not show it: |omega| is at most 2 rad/s, and their invariants and "
+        "trajectory gates hold"
+    )
+    assert f"{failure.unseen[1:]}" in failure.sentence
+    assert failure.unseen[1:] in draw_page(found).replace("\u2060", "")
+    # Whatever the step of a run, its own steps are not those that fail: none is the worst.
+    assert failure.tail == ", in all 3 runs there, with semi-implicit"
+    for task in found.run["tasks"]:
+        if task["engine"] == "dart":
+            task["gates"] = {**task["gates"], "trajectory": "fail"}
+    assert summarise(found).failures[0].unseen == ""
+
+
+def test_an_equation_that_holds_along_the_motion_is_named_as_such(record: Record) -> None:
+    where = ("sphere", "dart", None, None, "equation", "omega_dot")
+    note = "at a state of |omega| = 31.4 rad/s"
+    off = metric(*where, "residual", 1.0, verdict="fail", note=note)
+    found = with_metrics(record, off, metric(*where, "residual_on_path", 1e-16))
+    (failure,) = summarise(found).failures
+    assert f" {note}, 1e13 times its bound" in failure.measured
+    text = "along the motion of sphere it does not show: |omega| is at most 2 rad/s, and it holds"
+    assert failure.unseen.startswith(text)
+    along = metric(*where, "residual_on_path", 1e-3, verdict="fail")
+    assert summarise(with_metrics(record, off, along)).failures[0].unseen == ""
+
+
+def test_where_and_in_how_many_runs_it_fails(record: Record) -> None:
+    """Caught: "in 6 of 18 runs, worst on" the only scenario, of a gate that takes no step."""
+    (failure,) = summarise(failing(record)).failures
+    assert (failure.lead, failure.tail) == (
+        *("on ", ", before any step is taken, so in all 3 runs there"),
+    )
+    both = failing(record)
+    row = metric("spun-again", "dart", None, None, "equation", "omega_dot", "residual", 1e-3)
+    (failure,) = summarise(with_metrics(both, {**row, "verdict": "fail"})).failures
+    assert failure.lead == "on 2 of 2 scenarios, worst on "
+    rows = [
+        metric("sphere", *FAILING, step, "scheme", "omega", "match", size, verdict="fail")
+        for step, size in ((0.02, 3.0), (0.01, 2.0))
+    ]
+    (failure,) = summarise(with_metrics(record, *rows)).failures
+    assert failure.tail == ", with semi-implicit, step 0.02 s"
+    for task in record.run["tasks"]:
+        if (task["engine"], task["scenario"]) == ("dart", "sphere") and task["timestep"] > 0.005:
+            task["gates"] = {**task["gates"], "scheme": "fail"}
+    (failure,) = summarise(with_metrics(record, *rows)).failures
+    assert failure.tail == ", in 2 of 3 runs there, worst with semi-implicit, step 0.02 s"
+
+
+def test_a_cause_among_several_is_named_as_open(record: Record) -> None:
+    """Caught: one cell, run again by its command, gives another cause than the page, and does not
+    say that more scenarios had excluded it."""
+    (failure,) = summarise(failing(record, "either the mass is halved, or the inertia is")).failures
+    assert failure.cause.endswith("; more scenarios may exclude some)")
+    assert "more scenarios" not in summarise(failing(record)).failures[0].cause
+
+
+def test_an_error_of_its_order_costs_nothing_where_no_other_has_that_order(record: Record) -> None:
+    found = failing_in_a_probe(record)
+    for engine in found.run["engines"]:
+        for own in engine["integrators"] if engine["name"] == "mujoco" else ():
+            own["orders"] = {"attitude": 4}
+    (failure,) = summarise(found).failures
+    assert failure.cost.startswith("nothing in the attitude on sphere")
+    assert failure.cost.endswith("which passes as the truncation error of its order")
 
 
 def test_an_equation_that_every_integrator_shares_names_them_so(record: Record) -> None:
@@ -264,7 +375,7 @@ def test_the_glance_shows_the_residual_that_the_failure_names(record: Record) ->
     ]
     found = with_metrics(record, *({**row, "verdict": "fail"} for row in rows))
     (failure,) = summarise(found).failures
-    assert failure.measured.startswith("omega-dot residual 0.5, ")
+    assert failure.measured.startswith("omega-dot residual 0.5 ")
     rows_shown = glances(summarise(found), found.metrics, Sources())
     (shown,) = (g for g in rows_shown if g["engine"].startswith("dart"))
     assert shown["residual"][0] == "0.5"
@@ -276,7 +387,7 @@ def test_the_glance_shows_the_residual_that_the_failure_names(record: Record) ->
     found = replace(found, run={**record.run, "tasks": tasks})
     rows_shown = glances(summarise(found), found.metrics, Sources())
     (shown,) = (g for g in rows_shown if g["engine"].startswith("dart"))
-    assert (shown["status"], shown["runs"]) == ("fail", "3 of 6 runs; 3 unsupported")
+    assert (shown["status"], shown["runs"]) == ("fail", "3 of 6 runs fail; 3 unsupported")
     assert shown["error_source"][0] == "failed gate: equation"
 
 
@@ -285,3 +396,43 @@ def test_an_engine_that_declares_no_scheme_says_so(record: Record) -> None:
     metrics = record.metrics.filter(pl.col("metric") != "match")
     found = glances(summarise(replace(record, metrics=metrics)), metrics, Sources())
     assert {g["error_source"][0] for g in found} == {"no scheme declared"}
+
+
+def test_the_plain_residual_is_quoted_where_it_fails(record: Record) -> None:
+    """Caught: "after another mass was loaded", which reads as numbers kept from another system, of
+    an engine that is as wrong without any."""
+    after, note = "residual_of_sibling", "after the same system with another mass was loaded"
+    rows = [
+        metric("sphere", "dart", None, None, "equation", channel, name, value, **more)
+        for channel, name, value, more in (
+            ("omega_dot", "residual", 0.12, {}),
+            ("torque", "residual", 0.5, {"bound": 1e-14}),
+            ("omega_dot", after, 0.15, {"note": note}),
+        )
+    ]
+    rows = [{**row, "verdict": "fail"} for row in rows]
+    (found,) = summarise(with_metrics(record, *rows)).failures
+    assert found.measured == (
+        "omega-dot residual 0.12 (12 % of the terms of the equation), 1.2e12 times its bound"
+    )
+    (found,) = summarise(with_metrics(record, rows[1])).failures
+    assert found.measured.startswith("torque residual 0.5 (50 % of the terms of the equation)")
+    (found,) = summarise(with_metrics(record, rows[2])).failures  # it is all that fails
+    assert note in found.measured
+
+
+def test_the_cell_the_table_and_the_headline_have_one_residual(record: Record) -> None:
+    """Caught: 0.5 at the top, 0.69 in the table and the bound of 0.5 in the cell."""
+    rows = [
+        metric("sphere", "dart", None, None, "equation", channel, "residual", value, bound=bound)
+        for channel, value, bound in (("omega_dot", 0.69, 2e-14), ("torque", 0.5, 1.4e-14))
+    ]
+    found = with_metrics(record, *({**row, "verdict": "fail"} for row in rows))
+    summary = summarise(found)
+    assert "residual 0.69 " in summary.failures[0].measured
+    (cell,) = (cell for cell in summary.cells.values() if cell.failed)
+    assert cell.failed.number == "3.4e13 × bound"
+    (table, *_), _ = failures_table(found, summary.columns, sources_for(found.run["engines"]))
+    assert table.size == "3.4e13 × bound (0.69 relative)"
+    (shown,) = (g for g in glances(summary, found.metrics, Sources()) if g["status"] == "fail")
+    assert shown["residual"][0] == "0.69"

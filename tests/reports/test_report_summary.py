@@ -5,14 +5,19 @@ from dataclasses import replace
 import pytest
 from synthetic_record import INTEGRATORS, build, metric, task, with_metrics
 
-from omegadot.reports.page.glance import _spread
+from omegadot.reports.page.glance import _largest, glances
+from omegadot.reports.page.page import draw_page
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import METRICS, OUTCOMES, TRAJECTORIES, empty
 from omegadot.reports.run_record import TaskResult
 from omegadot.reports.summary.figures import Figure
 from omegadot.reports.summary.headline import headline, remarks
+from omegadot.reports.summary.matrix import shown
+from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import STATUSES, summarise, task_status, worst
+from omegadot.reports.text.markdown import markdown_of
 from omegadot.reports.text.numbers import short
+from omegadot.reports.text.terminal import print_summary
 
 
 def cell(record, scenario, engine):
@@ -138,7 +143,7 @@ def test_the_headline_of_a_sound_run(record):
     assert "6.2e-15 (mujoco on spun-again)" in message
     (spread,) = remarks(summarise(record))
     assert "spun-again" in spread
-    assert "1.5e-9 rad (mujoco RK4" in spread
+    assert "1.5e-9 rad (8.6e-8 deg, mujoco RK4, step 0.005 s)" in spread
 
 
 def test_a_body_that_cannot_be_is_named_next_to_the_headline(record):
@@ -178,6 +183,13 @@ def test_the_headline_of_a_failing_run(record):
     assert message == "1 of 2 engines fails: dart, on sphere."
 
 
+def test_the_headline_of_one_engine_counts_nothing() -> None:
+    """Caught: "1 of 1 engine fails"."""
+    one = build(("sphere",), engines={"dart": INTEGRATORS["dart"]})
+    failed = change(one, 0, gates={"equation": "fail"})
+    assert headline(summarise(failed)) == "dart fails on sphere."
+
+
 def test_the_headline_names_which_engine_fails_on_which_scenario(record):
     other = next(t for t in record.run["tasks"] if t["scenario"] != "sphere")
     failed = change(record, first_of(record, "dart"), gates={"equation": "fail"})
@@ -213,12 +225,84 @@ def test_a_headline_pairs_each_failing_engine_with_its_own_scenarios():
     assert "scenario" not in many
 
 
-def test_a_failing_engine_shows_its_largest_error_beside_the_median():
-    """Caught: a failure whose row shows the small error of the scenarios that hold."""
+def large(record, size=2.0):
+    """The record with DART's attitude error on one scenario so large, at its finest step."""
+    where = ["sphere", "dart", "semi-implicit", 0.005, "trajectory", "attitude"]
+    more = {"unit": "rad", "note": "explained by semi-implicit-euler, to 1e-11"}
+    engines = [{**e, "argument": e["name"]} for e in record.run["engines"]]
+    return with_metrics(edited(record, engines=engines), metric(*where, "error_max", size, **more))
+
+
+def test_a_large_error_of_sound_engines_is_said_and_what_to_do(record, capsys):
+    """Caught: a tick, "all engines agree", and an attitude that is upside down."""
+    summary = summarise(large(record))
+    advice = summary.accuracy
+    assert advice.sentence == (
+        "Sound, not necessarily accurate: on sphere dart semi-implicit, step 0.005 s, is off by 2 "
+        "rad (115 deg), mujoco RK4, step 0.005 s, by 7.5e-10 rad (4.3e-8 deg). omegadot choose "
+        "sphere --attitude 1deg finds an engine and a step that suffice."
+    )
+    assert not any("attitude error" in remark for remark in remarks(summary))  # said once
+    page = draw_page(large(record)).replace("\u2060", "")
+    assert page.index("<h1>") < page.index(advice.text) < page.index('id="verdicts"')
+    assert f"<code>{advice.command}</code>" in page
+    print_summary(large(record))
+    assert advice.sentence in " ".join(capsys.readouterr().out.split())
+    assert advice.text in markdown_of(large(record)).replace("\\", "")
+    assert summarise(large(record, 0.017)).accuracy is None  # below a degree
+    failed = change(large(record), first_of(record, "mujoco"), gates={"equation": "fail"})
+    assert summarise(failed).accuracy is None
+
+
+def test_a_large_drift_is_said_where_the_attitude_is_right(record):
+    where = ["sphere", "dart", "semi-implicit", 0.005, "invariants", "angular_momentum"]
+    advice = summarise(with_metrics(record, metric(*where, "drift_full", 0.03))).accuracy
+    assert "has an angular momentum off by 3 %" in advice.text
+    assert advice.command.startswith("omegadot choose sphere --momentum-drift 0.01")
+
+
+def test_an_engine_of_ones_own_is_in_the_command(record):
+    found = large(build(("sphere",), engines={"dart": INTEGRATORS["dart"]}))
+    found.run["engines"][0]["argument"] = "my dart.py:Dart"
+    assert summarise(found).accuracy.command == (
+        "omegadot choose sphere --attitude 1deg --adapter 'my dart.py:Dart' --engine dart"
+    )
+
+
+def test_of_one_step_none_is_the_finest(record):
+    """Caught: "at the finest step" of a run with one, and no word on the orders that it lacks."""
+    one = build(steps=(0.005,))
+    assert summarise(one).one_step
+    assert not summarise(record).one_step
+    (spread,) = remarks(summarise(one))
+    assert "At the one step the attitude error" in spread
+    for found, shown_ in ((one, True), (record, False)):
+        page = draw_page(found)
+        assert ("no order can be observed" in page) is shown_
+        assert ("at the one step, which shows no order" in page) is shown_
+
+
+def test_an_engine_shows_its_largest_error_and_where() -> None:
+    """Caught: a median, which hides the scenario on which the engine fails or is no use."""
     errors = {"a": 1e-7, "b": 1e-7, "c": 3.1}
-    figures = [Figure(v, "rad", s, "dart", "error_max", "RK4") for s, v in errors.items()]
-    assert _spread(figures, failing=True)[2] == "RK4; largest 3.1 rad"
-    assert _spread(figures, failing=False)[2] == "RK4"
+    figures = [Figure(v, "rad", s, "dart", "error_max", "RK4", 0.01) for s, v in errors.items()]
+    assert _largest(figures) == (
+        *("3.1 rad (178 deg)", "step 0.01 s; median of 3 scenarios 1e-7 rad", "RK4, on c"),
+    )
+    assert _largest(figures[:1]) == ("1e-7 rad (5.7e-6 deg)", "step 0.01 s", "RK4, on a")
+
+
+@pytest.mark.parametrize(("gates", "text"), [("fail", "1 of 3 runs fail"), ("info", "2 of 3 runs")])
+def test_runs_are_counted_in_one_sense(record, gates, text):
+    """Caught: "fail 0 of 6 runs pass" beside "fail 6 of 18 runs"."""
+    failed = change(record, first_of(record, "dart"), gates={"equation": gates})
+    found = cell(failed, "sphere", "dart")
+    assert shown(found).part.startswith(text)
+    assert shown(cell(failed, "sphere", "mujoco")).part == ""
+    rows = glances(summarise(failed), failed.metrics, Sources())
+    runs = {row["engine"].split()[0]: row["runs"] for row in rows}
+    if gates == "fail":
+        assert runs == {"dart": "1 of 6 runs fail", "mujoco": "12 of 12 runs pass"}
 
 
 def test_an_accuracy_is_that_of_engines_that_pass(record):

@@ -17,12 +17,8 @@ from omegadot.reports.charts.sweeps import (
     sweeps_of,
 )
 from omegadot.reports.page.why import order_table, scheme_table
-from omegadot.reports.summary.clusters import (
-    clusters_over_scenarios,
-    extent,
-    on_scenario,
-    sentence,
-)
+from omegadot.reports.summary.cluster_sentences import extent, on_scenario, sentence
+from omegadot.reports.summary.clusters import clusters_over_scenarios
 from omegadot.reports.summary.headline import truth
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import summarise
@@ -46,9 +42,9 @@ def test_identical_trajectories_are_not_independent_evidence():
     (found,) = clusters_over_scenarios(clusters)
     assert sentence(found) == (
         "x Euler, y step and z aba+euler produce identical trajectories (all step euler), "
-        "so their agreement is not independent evidence."
+        "so they count as one witness."
     )
-    assert extent(found) == "On 1 scenario that distinguishes schemes."
+    assert extent(found) == "On the one scenario that tells schemes apart."
     assert found.engines == 3
 
 
@@ -57,15 +53,34 @@ def test_an_exception_does_not_split_a_cluster_and_is_named():
     apart = [cluster("four", "x:a", "other"), cluster("four", "y:b")]
     (found,) = clusters_over_scenarios(of(*same, *apart))
     assert found.schemes == ("euler",)
-    assert extent(found) == (
-        "On 3 of 4 scenarios that distinguish schemes; the trajectories differ on four."
-    )
+    assert extent(found) == "On 3 of 4 scenarios that tell schemes apart, not on four."
     many = [cluster(n, m) for n in "pqrst" for m in ("x:a", "y:b")]
     (found,) = clusters_over_scenarios(of(*same, *[cluster(n, "x:a y:b") for n in "klmno"], *many))
     assert extent(found) == (
-        "On 8 of 13 scenarios that distinguish schemes; "
-        "the trajectories differ on p, q, r and 2 more."
+        "On 8 of 13 scenarios that tell schemes apart, not on p, q, r and 2 more."
     )
+
+
+def test_one_that_differs_somewhere_is_named_apart():
+    """Caught: "the trajectories differ on top", where only one of three engines does."""
+    same = [cluster(name, "x:a y:b z:c") for name in ("one", "two")]
+    top = [cluster("top", "x:a z:c"), cluster("top", "y:b")]
+    (found,) = clusters_over_scenarios(of(*same, *top))
+    assert sentence(found).startswith("x a and z c produce identical trajectories")
+    assert extent(found) == (
+        "On all 3 scenarios that tell schemes apart. y b equals them on 2 of these, not on top."
+    )
+    assert found.engines == 3
+
+
+def test_a_failing_engine_among_identical_ones_is_named():
+    """Caught: a fault that no trajectory shows, in a list of engines that confirm each other."""
+    run = of(cluster("one", "x:a y:b"), cluster("one", "x:RK4"))
+    gates = {"engine": "y", "integrator": "b", "gates": {"scheme": "fail"}}
+    (found,) = clusters_over_scenarios({**run, "tasks": [{**gates, "scenario": "one"}]})
+    assert extent(found).endswith("Of these y b fails a gate all the same.")
+    (found,) = clusters_over_scenarios({**run, "tasks": [{**gates, "scenario": "other"}]})
+    assert "fails" not in extent(found)
 
 
 def test_a_motion_on_which_all_schemes_agree_makes_no_cluster():
@@ -83,13 +98,13 @@ def test_agreement_on_the_exact_solution_is_not_counted():
     more = [cluster("top", "x:a y:b"), cluster("top", "x:c", "rk4")]
     (found,) = clusters_over_scenarios(of(sphere, sphere | {"scenario": "spin"}, *more))
     assert (found.members, found.schemes) == (("x:a", "y:b"), ("euler",))
-    assert extent(found) == "On 1 scenario that distinguishes schemes."
+    assert extent(found) == "On the one scenario that tells schemes apart."
 
 
 def test_schemes_that_no_scenario_distinguishes_are_all_named():
     both = [cluster(name, "x:a y:b") | {"also": ["short-turns"]} for name in ("one", "two")]
     (found,) = clusters_over_scenarios(of(*both))
-    expected = "(both step euler or short-turns, which no scenario here distinguishes)"
+    expected = "(both step euler; no scenario here tells it from short-turns)"
     assert expected in sentence(found)
     told = cluster("three", "x:a y:b")
     (found,) = clusters_over_scenarios(of(told, told | {"scenario": "four"}, *both))

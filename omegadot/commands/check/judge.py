@@ -21,7 +21,8 @@ from omegadot.gates.runs import repeats
 from omegadot.gates.runs.exact import exact_rows
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase
-from omegadot.reports.text.numbers import listed, short, times_its_bound
+from omegadot.reports.summary.failed_gate import is_plain
+from omegadot.reports.text.numbers import degrees, listed, short, times_its_bound
 from omegadot.workers.harness_end.process import Answer
 
 CAUSE = "Likely cause: "
@@ -36,15 +37,35 @@ def _excess(row: Row) -> float:
     return 0.0 if row.metric in NOTE_ALONE else times_its_bound(row.value, row.bound)
 
 
+# As a reader would say it; the others are their names without underscores.
+METRICS = {
+    "error_max": "largest error",
+    "drift_quarter": "drift after a quarter of the run",
+    "drift_half": "drift after half of the run",
+    "drift_full": "drift after the whole run",
+    "residual_on_path": "residual along the exact motion",
+    "residual_in_run": "residual along the run",
+    "residual_of_sibling": "residual",  # the note names the sibling
+    "residual_reloaded": "residual",
+    "residual_alone": "residual",
+}
+
+
 def _unit(row: Row) -> str:
     return "" if row.unit == "1" else f" {row.unit}"
+
+
+def _degrees(row: Row) -> str:
+    finite = row.unit == "rad" and math.isfinite(row.value)
+    return f" ({degrees(row.value)} deg)" if finite else ""
 
 
 def sentence(row: Row) -> str:
     """One failing row as text."""
     if row.metric in (*NOTE_ALONE, *NOTE_BEFORE_FIGURE) and row.note:
         return f"{row.channel}: {row.note}"
-    message = f"{row.channel}: {row.metric} is {short(row.value, 3)}{_unit(row)}"
+    metric = METRICS.get(row.metric, row.metric.replace("_", " "))
+    message = f"{row.channel}: {metric} is {short(row.value, 3)}{_unit(row)}{_degrees(row)}"
     if row.bound is not None:
         excess, bound = times_its_bound(row.value, row.bound), f"{short(row.bound)}{_unit(row)}"
         times = f"{short(excess)} times " if math.isfinite(excess) else "above "
@@ -55,7 +76,7 @@ def sentence(row: Row) -> str:
 def failure(rows: Sequence[Row], cause: str = "") -> str:
     """The failing rows of one gate: the worst in full, the other channels by name."""
     failing = [row for row in rows if row.verdict == "fail"]
-    worst = max(failing, key=_excess)
+    worst = max([row for row in failing if is_plain(row.metric)] or failing, key=_excess)
     others = dict.fromkeys(row.channel for row in failing if row.channel != worst.channel)
     message = sentence(worst)
     if others:

@@ -13,12 +13,11 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.commands.check.check import CheckResult
-from omegadot.commands.check.failing_state import state_text
 from omegadot.commands.check.judge import CAUSE
+from omegadot.commands.check.print_failing import print_failing
 from omegadot.commands.check.result import Check, Result, Verdict, coverage
-from omegadot.commands.check.shrink import Failing
 from omegadot.commands.options import exit_code
-from omegadot.reports.text.numbers import listed, times
+from omegadot.reports.text.numbers import first, listed, times
 
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
 STYLES = {"error": "bold magenta", "fail": "bold red", "declared": "yellow", "skip": "dim"}
@@ -82,10 +81,33 @@ def _causes(failures: Mapping[str, Sequence[Check]]) -> list[str]:
     ranked = sorted(explained.items(), key=lambda item: -len(item[1]))
     lines = [f"What explains the {sum(map(len, explained.values()))} failures:"]
     for cause, checks in ranked[:MOST_CAUSES]:
-        names = listed(sorted({check.integrator or check.gate for check in checks}))
-        lines.append(f"    {len(checks):4d}  {cause} ({names})")
+        lines.append(f"    {len(checks):4d}  {cause} ({_where(checks)})")
     rest = [checks for _, checks in ranked[MOST_CAUSES:]]
     return lines + [f"    {sum(map(len, rest)):4d}  others, named below"] * bool(rest)
+
+
+def _where(checks: Sequence[Check]) -> str:
+    """In which gates of the engine, and in the runs of which integrators."""
+    gates = sorted({check.gate for check in checks if not check.integrator})
+    runs = sorted({check.integrator for check in checks if check.integrator})
+    found = [f"{listed(gates)} gate{'s' * (len(gates) > 1)}"] if gates else []
+    return ", ".join([*found, *([f"runs of {listed(runs)}"] if runs else [])])
+
+
+def _skipped(results: Mapping[Check, Result]) -> list[str]:
+    """The reasons for skips, each with its checks: how many, and on which scenarios.
+
+    A reason may end in figures of its run, which make no reason of their own.
+    """
+    found: dict[str, list[Check]] = {}
+    for reason, checks in _grouped(results, "skip").items():
+        found.setdefault(reason.partition(": observed order")[0], []).extend(checks)
+    lines = []
+    for reason, checks in found.items():
+        names = list(dict.fromkeys(check.scenario for check in checks if check.scenario))
+        where = f" (on {first(names, ALIKE)})" if names else ""
+        lines.append(f"skip  {times(len(checks), 'check')}: {reason}{where}")
+    return lines
 
 
 def print_json(found: CheckResult) -> None:
@@ -128,6 +150,8 @@ def print_checks(found: CheckResult, verbose: bool = False) -> None:
         console.print(Text(line, "bold"))
     if any(check.scenario for check in results):
         console.print(_table(found))
+        if found.failing:  # whose files push the last line off the screen
+            console.print(Text(_total(results), "bold"))
     for line in _causes(_grouped(results, "fail")):
         console.print(Text(line))
     shown: tuple[Verdict, ...] = ("error", "fail", "declared")
@@ -136,16 +160,19 @@ def print_checks(found: CheckResult, verbose: bool = False) -> None:
         whole = verbose or sum(map(len, messages.values())) <= FEW
         for own in _by_cause(messages).values():
             _print_listed(console, verdict, own, whole)
-    for reason, checks in _grouped(results, "skip").items():
-        console.print(Text(f"skip  {times(len(checks), 'check')}: {reason}", "dim"))
+    for line in _skipped(results):
+        console.print(Text(line, "dim"))
     for line in (*found.only_skipped, *(f"Baseline written: {path}" for path in found.baselines)):
         console.print(Text(line))
-    for one in found.failing:
-        _print_failing(console, one)
+    causes = {r.message.partition(CAUSE)[2] for r in results.values() if r.verdict == "fail"}
+    print_failing(console, found.failing, of_several=len(causes) > 1)
+    console.print(Text(_total(results), "bold"))
+
+
+def _total(results: Mapping[Check, Result]) -> str:
     counts = Counter(result.verdict for result in results.values())
     parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
-    total = f"{times(len(results), 'check')}: {parts}."
-    console.print(Text(total if parts else "There is nothing to check.", "bold"))
+    return f"{times(len(results), 'check')}: {parts}." if parts else "There is nothing to check."
 
 
 def _by_cause(messages: Mapping[str, list[Check]]) -> dict[str, dict[str, list[Check]]]:
@@ -176,19 +203,3 @@ def _print_listed(
         of = " of this cause" if cause else ""
         more = f"    and {times(left, f'more {NOUNS[verdict]}')}{of}: --verbose lists them."
         console.print(Text(more, "dim"))
-
-
-def _print_failing(console: Console, found: Failing) -> None:
-    """The simplest failing system as a file, what is left in it, and how to run it alone."""
-    left = listed(list(found.has)) if found.has else "a free body on which nothing acts"
-    searched = "" if found.finished else f" (the search ended after {found.trials} systems)"
-    console.print(Text(f"Smallest failing system of {found.check.id}{searched}:", "bold"))
-    console.print(Text(f"    It has {left}. {found.message}"))
-    if found.at:
-        what = "the equation is wrong" if found.check.gate == "equation" else "a single step fails"
-        line = f"Its own motion does not show it: {what} at {state_text(found.at)}."
-        console.print(Text(f"    {line}"))
-    if found.cause:
-        console.print(Text(f"    Likely cause, found on {found.check.scenario}: {found.cause}"))
-    console.print(Text(f"    Save as {found.scenario.name}.toml, then: {found.command}"))
-    console.print(Text(found.toml))

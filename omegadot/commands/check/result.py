@@ -194,6 +194,7 @@ def coverage(subjects: Sequence[Subject], checks: Sequence[Check]) -> list[str]:
         name = f"{subject.name} {subject.version}" + (
             f" ({', '.join(subject.integrators)})" if chosen else ""
         )
-        covered = f"{times(scenarios, 'scenario')} x {times(gates, 'gate')}"
-        lines.append(f"{name}: {covered}, {times(len(own), 'check')}")
+        covered = f"{times(gates, 'gate')} on {times(scenarios, 'scenario')}"
+        each = ", those of runs at every integrator and step" if subject.declared else ""
+        lines.append(f"{name}: {times(len(own), 'check')} ({covered}{each})")
     return lines

@@ -16,8 +16,8 @@ def fit(
         Texts,
         option(
             "ROLE=NAME",
-            "The column that holds a quantity, such as wx=gyro_x, or a group: w=A,B,C. As of "
-            "omegadot score. Repeatable.",
+            "The column that holds a quantity, such as wx=gyro_x, or a group: w=A,B,C; "
+            "repeatable. omegadot score --help lists the quantities.",
         ),
     ] = None,
     map_file: Annotated[Path | None, option("FILE", "Columns and units in TOML.", "--map")] = None,

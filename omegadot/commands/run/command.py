@@ -70,8 +70,8 @@ def run(
     """Run scenarios on engines, judge them, and write a record with its report.
 
     Exit codes: 0 every gate holds, 1 a gate fails, 2 wrong usage or input, 3 an engine crashed,
-    timed out or could not be started, or nothing but its model could be judged (of an engine given
-    by name: on no scenario), or the record could not be written where it was requested.
+    timed out or could not be started, or an engine's model is all of it that could be judged, or
+    nothing of one that was named, or the record could not be written where it was requested.
     """
     arguments = options.given(locals())
     named = [*arguments.pop("scenarios", []), *arguments.pop("scenario", [])]

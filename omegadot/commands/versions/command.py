@@ -45,7 +45,15 @@ def versions(
     timestep: Annotated[
         float | None, option("S", "A time step in s instead of each scenario's middle one.")
     ] = None,
-    bisect: Annotated[Text, option("METRIC", "Find the release in which METRIC changed.")] = None,
+    bisect: Annotated[
+        Text,
+        option(
+            "METRIC",
+            "Find the release in which METRIC changed: words of its name, as 'order attitude RK4'. "
+            "It begins with convention, default, setup, integrator, scheme, order, drift or "
+            "equation.",
+        ),
+    ] = None,
     out: Annotated[Path | None, option("DIR", "Write versions.json and versions.html.")] = None,
     output: options.PageOutput = options.PageFormat.text,
     cache: Annotated[Path | None, option("DIR", "Folder of the environments.")] = None,
@@ -80,9 +88,9 @@ def versions(
 ) -> None:
     """Find what changed between releases of an engine, each in an environment of its own.
 
-    Exit codes: 0 done, whatever changed, 1 some version is not as its adapter declares or failed a
-    query, or the ends of --bisect do not differ, 2 wrong usage, 3 fewer than two versions could be
-    measured.
+    Exit codes: 0 done, with changes or without, 1 a version is not as its adapter declares or
+    failed a query, or the first and the last version have the same METRIC, 2 wrong usage, 3 fewer
+    than two versions could be measured.
     """
     arguments = {"releases": [], **options.given(locals())}
     from omegadot.commands.versions.versions import versions as compare_versions

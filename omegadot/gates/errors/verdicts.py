@@ -131,7 +131,7 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
         return Finding("unresolved", ONE_STEP)
     lowest = min(seen, key=lambda order: order.value)
     least = declared - ORDER_TOLERANCE
-    text = f"observed order {lowest.value:.2f}, declared {declared}"
+    text = f"observed order {lowest.value:z.2f}, declared {declared}"
     if evidence.highest < declared - 0.5:
         limit = f"the order is {evidence.highest:.2f} at most, whatever rounding does"
         return Finding("unexplained", f"{limit}, declared {declared}")

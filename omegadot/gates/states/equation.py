@@ -27,6 +27,7 @@ from omegadot.reference_impl.motion import (
 )
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Acceleration, Array, State, System
+from omegadot.written import written
 
 GATE = "equation"
 BOUND = ROUNDINGS_PER_EVALUATION * EPS  # in double, of a well-conditioned body
@@ -34,7 +35,7 @@ RANDOM_STATES = 200
 PATH_STATES = 200
 SPECIAL = 16
 NOTES = {
-    "residual_alone": "one state by itself",
+    "residual_alone": "at one state by itself",
     "residual_reloaded": "after another system was loaded in between",
 }
 
@@ -118,7 +119,9 @@ def _apart(found: Array, true: Array) -> Array:
 UNITS = {"omega_dot": "rad/s^2", "linear_momentum": "m/s^2", "torque": "N m"}
 
 
-def _row(channel: str, metric: str, residual: Array, size: Array, bound: float) -> Row:
+def _row(
+    channel: str, metric: str, residual: Array, size: Array, bound: float, states: State
+) -> Row:
     """The state with the largest residual, relative to `size`, against its bound.
 
     Where the size is zero there is nothing to be wrong about: any residual there is too large. The
@@ -127,12 +130,20 @@ def _row(channel: str, metric: str, residual: Array, size: Array, bound: float) 
     note = NOTES.get(metric, "")
     if not np.all(np.isfinite(residual)):
         return within(GATE, channel, metric, float("nan"), "1", bound, note)
-    undue = residual[(size == 0.0) & (residual > 0.0)]
-    if len(undue):
+    undue = np.where((size == 0.0) & (residual > 0.0), residual, 0.0)
+    if np.any(undue):
+        note = note or _place(states, int(np.argmax(undue)))
         return within(GATE, channel, metric, float(np.max(undue)), UNITS[channel], 0.0, note)
     with np.errstate(divide="ignore", invalid="ignore"):
         value = np.where(residual == 0.0, 0.0, residual / size)
+    note = note or _place(states, int(np.argmax(value)))
     return within(GATE, channel, metric, float(np.max(value)), "1", bound, note)
+
+
+def _place(states: State, place: int) -> str:
+    """At which state: a motion need not come near those that are drawn."""
+    rate = float(norm(states.angular_velocity[place]))
+    return f"at a state of |omega| = {written(rate, 3)} rad/s"
 
 
 def forward_rows(
@@ -150,7 +161,7 @@ def forward_rows(
     size = linear_size(system, states, in_doubles(true), eps)
     return [
         _omega_dot_row(system, states, found.angular, true, metric, eps),
-        _row("linear_momentum", metric, linear, size, ROUNDINGS_PER_EVALUATION * eps),
+        _row("linear_momentum", metric, linear, size, ROUNDINGS_PER_EVALUATION * eps, states),
     ]
 
 
@@ -161,7 +172,7 @@ def _omega_dot_row(
     size = torque_size(system, states, in_doubles(true)) / scale.largest
     apart = _apart(omega_dot, true.angular)
     bound = ROUNDINGS_PER_EVALUATION * eps * (scale.largest / scale.smallest)
-    return _row("omega_dot", metric, apart, size, bound)
+    return _row("omega_dot", metric, apart, size, bound, states)
 
 
 def reported_rows(system: System, states: State, omega_dot: Array, eps: float = EPS) -> list[Row]:
@@ -197,4 +208,4 @@ def inverse_rows(
     true = inverse_dynamics(extended(system), extended(states), extended(requested))
     size = torque_size(system, states, requested)
     bound = ROUNDINGS_PER_EVALUATION * eps
-    return [_row("torque", metric, _apart(torque, true), size, bound)]
+    return [_row("torque", metric, _apart(torque, true), size, bound, states)]

@@ -99,7 +99,10 @@ class Limit:
         size = float(norm(self.expected[place]))
         if size <= float(np.max(self.bound[:, place])):
             return f"it is {written(apart, 2)} {unit} instead of nothing"
-        return f"the relative error is {written(apart / size, 2)}"
+        nearest = int(np.argmin(norm(self.found - self.expected)[:, place]))
+        rates = (written(norm(self.found[nearest, place]), 2), written(size, 2))
+        instead = f" ({rates[0]} {unit} instead of {rates[1]})" if rates[0] != rates[1] else ""
+        return f"the relative error is {written(apart / size, 2)}{instead}"
 
 
 @dataclass(frozen=True)

@@ -83,10 +83,10 @@ def _held_to(order: ObservedOrder, declared: int | None, explained: bool) -> tup
         limit = order.value + order.rise
         return "info", f"not settled: the slopes are heading for {limit:.2f}"
     if not is_whole(order.value):
-        return "info", f"not settled: observed order {order.value:.2f}, declared {declared}"
+        return "info", f"not settled: observed order {order.value:z.2f}, declared {declared}"
     if explained:
         return "info", "below the declared order, as the scheme itself is on this motion"
-    return "fail", f"observed order {order.value:.2f}, declared {declared}"
+    return "fail", f"observed order {order.value:z.2f}, declared {declared}"
 
 
 def comparison_keys(integrator: Integrator, system: System) -> list[SchemeKey]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from omegadot.gates.bounds.roundings import PLAIN, Roundings
-from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, body_scale
+from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, body_scale, norm
 from omegadot.gates.rows import Row, within
 from omegadot.gates.steps.limits import NOTHING, Limit, Tolerated, limits
 from omegadot.gates.steps.probe import Probe, ladder_of
@@ -53,7 +53,8 @@ def rows(
             worst = max(shares, key=lambda channel: shares[channel])
             return [Row(GATE, worst, METRIC, shares[worst], "1", 1.0, "info", UNDETERMINED)]
         notes = {
-            channel: _note(one, factor, digits, UNITS[channel]) for channel, one in found.items()
+            channel: _note(one, factor, digits, UNITS[channel], probe)
+            for channel, one in found.items()
         }
         return [
             Row(GATE, channel, METRIC, 0.0, "1", 1.0, "info", TOO_LONG)
@@ -63,7 +64,7 @@ def rows(
         ]
 
 
-def _note(limit: Limit, factor: float | None, digits: int, unit: str) -> str:
+def _note(limit: Limit, factor: float | None, digits: int, unit: str, probe: Probe) -> str:
     if not np.all(np.isfinite(limit.found)):
         return "a step leads to numbers that are not finite"
     if factor is not None and abs(factor) < 10.0**-digits:  # it would read 100 % too short
@@ -73,4 +74,17 @@ def _note(limit: Limit, factor: float | None, digits: int, unit: str) -> str:
         return f"steps are {off} too {'long' if factor > 1 else 'short'}"
     if jump := limit.jumps(unit):
         return f"as the step vanishes, it still changes by {jump}"
-    return f"as the step vanishes, its rate is not the equation's: {limit.off(unit)}"
+    off = f"its rate is not the equation's: {limit.off(unit)}"
+    return f"as the step vanishes, {off}, {_place(limit, probe)}"
+
+
+def _place(limit: Limit, probe: Probe) -> str:
+    """From which state the worst limit was looked for, and by how short steps: a run need not come
+    near either.
+    """
+    place = int(np.argmax(limit.shares()))
+    rate = float(norm(probe.states.angular_velocity[place]))
+    step = float(probe.timesteps[place, 0])
+    return (
+        f"from a state of |omega| = {written(rate, 3)} rad/s, in steps up to {written(step, 2)} s"
+    )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from omegadot.reports.charts.sweeps import Sweep
 from omegadot.reports.record.schema import YARDSTICKS
-from omegadot.reports.text.numbers import plain, short
+from omegadot.reports.text.numbers import angle, plain, short
 
 
 @dataclass(frozen=True)
@@ -55,5 +55,5 @@ def named(point: FrontPoint) -> tuple[str, str]:
     setup = "" if point.setup == "physics" else f" ({point.setup})"
     return (
         f"{point.engine} {point.integrator}{setup} at step {plain(point.timestep)} s",
-        f"{short(point.error)} rad for {short(point.cost)} s per simulated second",
+        f"{angle(point.error)} for {short(point.cost)} s per simulated second",
     )

@@ -30,7 +30,7 @@ def step_text(timestep: float) -> str:
     """A step in s, rounded down to three digits, as it is known to 5 %: never above the step."""
     digits = STEP_DIGITS - 1 - math.floor(math.log10(timestep))
     scaled = math.floor(timestep * 10.0**digits * (1.0 + 1e-12))  # 0.002 is no 0.00199
-    return f"{scaled / 10.0**digits:.{max(digits, 0)}f}".rstrip("0").rstrip(".")
+    return written(scaled / 10.0**digits, STEP_DIGITS)
 
 
 def setting_text(found: Row) -> str:
@@ -138,6 +138,8 @@ def missed_text(missed: Row) -> str:
 def variant_lines(case: Row) -> Iterator[str]:
     """How the ranking changes when a requirement is halved or doubled."""
     for variant in case["variants"]:
+        if not (variant["order"] or variant["left"] or variant["joined"]):
+            continue  # nothing qualifies in either case: there is no ranking to be the same
         term = {0.5: "halved", 2.0: "doubled"}.get(variant["factor"], f"x {variant['factor']}")
         limit = shown(variant["limit"], variant)
         start = f"{NAMES[variant['requirement']]} {term} ({limit}): "
@@ -152,7 +154,7 @@ def variant_lines(case: Row) -> Iterator[str]:
         if not changes:
             changes.append("the ranking is the same" if variant["same"] else "the ranking changes")
         steps = [
-            f"rank {o['rank']}{'=' if o['tied'] else ''} {o['candidate']} at {_setting(o)}"
+            f"rank {o['rank']}{' (tied)' * o['tied']} {o['candidate']} at {_setting(o)}"
             for o in order
         ]
         yield start + "; ".join(changes) + (": " + ", ".join(steps) if steps else "") + "."
@@ -181,15 +183,17 @@ def notes(choice: Row) -> Iterator[str]:
             )
 
 
-GUARANTEE = (
+STEPS = (
     "The listed number of steps is the smallest verified one: it and all larger ones tried met "
     "every limit at every sample, and the next smaller one tried failed. It is known to 5 %; the "
     "step is the horizon over it, rounded down to three digits. The margin is the limit over the "
-    "error. Candidates share a rank unless one costs over 5 % more in "
-    "three of four timing rounds. A candidate is Pareto-optimal where no run tried is better in "
-    "cost, error and memory at once. The real-time factor counts stepping alone: median and "
-    "quartiles."
+    "error. Candidates share a rank unless one costs over 5 % more in three of four timing rounds."
 )
+FACTOR = "The real-time factor counts stepping alone: median and quartiles."
+ON_FRONT = (
+    "A candidate is Pareto-optimal where no run tried is better in cost, error and memory at once."
+)
+GUARANTEE = f"{STEPS} {ON_FRONT} {FACTOR}"
 
 
 def verdict_everywhere(choice: Row) -> str:

@@ -24,6 +24,10 @@ Row = Mapping[str, Any]
 MEGABYTE = 1e6
 
 
+# What a terminal has no room for, and the page has.
+WIDE = ("memory in MB", "Pareto-optimal")
+
+
 def ranking(choice: Row, case: Row) -> Grid:
     """Those that qualify, the cheapest first."""
     wanted = choice["requirements"]["accuracy"]
@@ -49,6 +53,14 @@ def ranking(choice: Row, case: Row) -> Grid:
     return Grid(f"{case['name']}: what qualifies, the cheapest first", heads, rows)
 
 
+def narrow(grid: Grid) -> Grid:
+    """A table without the columns that only the page has."""
+    kept = [k for k, head in enumerate(grid.heads) if head not in WIDE]
+    return Grid(
+        grid.title, [grid.heads[k] for k in kept], [[row[k] for k in kept] for row in grid.rows]
+    )
+
+
 def _error(found: Row, requirement: Row) -> str:
     error = found["errors"].get(requirement["requirement"])
     if error is None:
@@ -67,7 +79,7 @@ def _factor(row: Row) -> str:
 
 
 def _rank(row: Row) -> str:
-    return f"{row['rank']}=" if row["tied"] else str(row["rank"])
+    return f"{row['rank']} (tied)" if row["tied"] else str(row["rank"])
 
 
 def _larger(row: Row) -> str:
@@ -132,28 +144,31 @@ def everywhere(choice: Row) -> Grid | None:
 
 
 def print_choice(choice: Mapping[str, Any], console: Console | None = None) -> None:
-    """Print, case by case, what qualifies, what does not and what would change it."""
+    """Print the answer, then case by case what qualifies, what does not and what would change it.
+
+    The answer stands first: on a terminal of few lines the tables push it off the screen.
+    """
     console = console or plain_console(240)
+    overall = everywhere(choice)
+    if overall is not None:
+        console.print(Text(sentences.verdict_everywhere(choice), style="bold"))
+    for case in choice["scenarios"]:
+        console.print(Text(sentences.headline(case), style="bold"))
     console.print(Text(f"Required: {sentences.requested(choice)}."))
     for case in choice["scenarios"]:
         console.print()
         if case["title"] != case["name"]:
             console.print(Text(f"{case['name']}: {case['title']}"))
-        for grid in (ranking(choice, case), refusals(case)):
+        for grid in (narrow(ranking(choice, case)), refusals(case)):
             if grid.rows:
                 console.print(text_grid(*grid))
                 console.print()
         for line in sentences.variant_lines(case):
             console.print(Text(line))
-    overall = everywhere(choice)
     if overall is not None and overall.rows:
         console.print()
         console.print(text_grid(*overall))
     console.print()
     for line in sentences.notes(choice):
         console.print(Text(line, style="yellow"))
-    console.print(Text(sentences.GUARANTEE, style="dim"))
-    for case in choice["scenarios"]:
-        console.print(Text(sentences.headline(case), style="bold"))
-    if overall is not None:
-        console.print(Text(sentences.verdict_everywhere(choice), style="bold"))
+    console.print(Text(f"{sentences.STEPS} {sentences.FACTOR}", style="dim"))

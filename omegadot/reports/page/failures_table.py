@@ -12,7 +12,7 @@ import polars as pl
 from omegadot.reports.page.tables import channel_name, unit_text
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import GATES
-from omegadot.reports.summary.failed_gate import excess, over_bound
+from omegadot.reports.summary.failed_gate import excess, over_bound, worst_row
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.reasons import cause_of
 from omegadot.reports.summary.summary import Column, column_of
@@ -52,7 +52,7 @@ def failures_table(
     Failures come before declared exceptions; then engine by engine in the order of the `columns`;
     of one, the first gate first, as later ones fail for the same reason; then by size over bound.
     """
-    found = [(max(rows, key=excess), rows) for rows in _by_gate(record.metrics)]
+    found = [(worst_row(rows), rows) for rows in _by_gate(record.metrics)]
     places = {(c.engine, c.version, c.setup): place for place, c in enumerate(columns)}
     found.sort(
         key=lambda pair: (

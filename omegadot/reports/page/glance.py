@@ -14,7 +14,7 @@ from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.matrix import MARKS, origin_of
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import Cell, Column, Summary, text_of, worst
-from omegadot.reports.text.numbers import grouped, knob, short, times, times_its_bound
+from omegadot.reports.text.numbers import angle, grouped, knob, short, times, times_its_bound
 
 # A cell: the value, its details, which may be folded away, and what stands beside it in any case.
 Detailed = tuple[str, str] | tuple[str, str, str]
@@ -46,8 +46,8 @@ def _glance(
         "mark": MARKS.get(status, "–"),
         "runs": _runs(cells, status),
         "residual": _residual(cells),
-        "best": _spread([found.best for found in ranges], status == "fail"),
-        "worst": _spread([found.worst for found in ranges], status == "fail"),
+        "best": _largest([found.best for found in ranges]),
+        "worst": _largest([found.worst for found in ranges]),
         "error_source": _error_source(own),
         "cost": _cost(own),
         "source": sources.number(origin_of(column)),
@@ -59,10 +59,10 @@ def _excess(figure: Figure) -> float:
 
 
 def _runs(cells: Iterable[Cell], status: str) -> str:
-    """How many runs have the verdict, or pass where none is given, and how many have neither."""
+    """How many runs fail where the engine does, else how many pass, and how many do neither."""
     runs = sum((cell.runs for cell in cells), Counter[str]())
     own = status if status in ("fail", "pass") else "pass"
-    text = f"{runs[own]} of {times(sum(runs.values()), 'run')}" + (" pass" if own != status else "")
+    text = f"{runs[own]} of {times(sum(runs.values()), 'run')} {own}"
     others = [f"{n} {text_of(s)}" for s, n in runs.items() if n and s not in ("pass", "fail", own)]
     return "; ".join([text, *others])
 
@@ -79,21 +79,19 @@ def _residual(cells: Iterable[Cell]) -> Detailed:
     return short(largest.value), f"on {largest.scenario}{bound}"
 
 
-def _spread(figures: list[Figure], failing: bool) -> Detailed:
-    """The median over the scenarios, and the largest with the run that gave it.
+def _largest(figures: list[Figure]) -> Detailed:
+    """The largest over the scenarios with where it is, and folded away its step and the median.
 
-    The largest is never folded away where the engine fails: few failures do not move the median.
+    The median alone would hide the one scenario on which an engine is no use, or fails.
     """
     if not figures:
         return "–", ""
     largest = max(figures, key=size)
-    usual = Counter(figure.integrator for figure in figures).most_common(1)[0][0]
-    middle = short(median(size(figure) for figure in figures))
-    settings = (largest.integrator, knob(largest.timestep, largest.accuracy), largest.scenario)
-    run = ", ".join(filter(None, settings))
-    most = f"largest {short(largest.value)} rad"
-    beside = [usual, most if failing and len(figures) > 1 else None]
-    return f"{middle} rad", f"usually {usual}; {most} ({run})", "; ".join(filter(None, beside))
+    step = knob(largest.timestep, largest.accuracy)
+    middle = f"median of {len(figures)} scenarios {short(median(map(size, figures)))} rad"
+    details = [step, middle if len(figures) > 1 else ""]
+    beside = [largest.integrator or "", f"on {largest.scenario}"]
+    return angle(largest.value), "; ".join(filter(None, details)), ", ".join(filter(None, beside))
 
 
 def _error_source(own: pl.DataFrame) -> Detailed:

@@ -23,7 +23,8 @@ from omegadot.reports.page.view_3d.view import view_section
 from omegadot.reports.page.why import order_table, scheme_table
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
-from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
+from omegadot.reports.summary.cluster_sentences import extent, sentence
+from omegadot.reports.summary.clusters import clusters_over_scenarios
 from omegadot.reports.summary.headline import headline, remarks, step_notes, truth
 from omegadot.reports.summary.provenance import command_of, provenance_payload, sources_for
 from omegadot.reports.summary.summary import STATUSES, counts, summarise

@@ -22,7 +22,7 @@ from omegadot.reports.charts.sweeps import Sweep, sweeps_of
 from omegadot.reports.page import tables
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
-from omegadot.reports.summary.clusters import on_scenario
+from omegadot.reports.summary.cluster_sentences import on_scenario
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import Summary, worst
 

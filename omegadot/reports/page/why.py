@@ -126,7 +126,7 @@ def _order_cell(rows: list[dict[str, Any]], channel: str) -> Value:
     judged = [r for r in own if r["value"] is not None]
     if not judged:
         return Value("–")
-    low, high = (f"{pick(r['value'] for r in judged):.2f}" for pick in (min, max))
+    low, high = (f"{pick(r['value'] for r in judged):z.2f}" for pick in (min, max))
     bounds = sorted({r["bound"] for r in judged if r["bound"] is not None})
     span = low if low == high else f"{low} … {high}"
     failed = "fail" if any(r["verdict"] == "fail" for r in judged) else ""

@@ -8,17 +8,17 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-from omegadot.reports.text.numbers import first, listed, plain, times
-
-_SCENARIOS_NAMED = 3
+from omegadot.reports.summary.reasons import failing_gates
 
 
 @dataclass(frozen=True)
 class Cluster:
     """Members whose trajectories are identical, to rounding, on most scenarios.
 
-    members: as ``engine:integrator``.  together and apart: the scenarios on which all of them
-    agree, and on which some do not.
+    members: as ``engine:integrator``; where some differ from the rest on some scenarios, the rest.
+    together and apart: the scenarios on which all of these agree, and on which some do not.
+    others: those left out of the members, each with the scenarios on which it equals them and those
+    on which it does not.  failing: of all, those of which a gate fails where it equals the rest.
     schemes: those of the reference that they equal on every scenario of `together` that shows it;
     more than one where no motion tells these apart, none where no scheme is that of all of them.
     by_scheme: with none, the scheme of each scenario, ``(scheme, scenarios)``, that of the most
@@ -30,16 +30,18 @@ class Cluster:
     together: tuple[str, ...]
     apart: tuple[str, ...]
     by_scheme: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    others: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = ()
+    failing: tuple[str, ...] = ()
+
+    @property
+    def all(self) -> tuple[str, ...]:
+        """The members, and those that differ on some scenarios."""
+        return (*self.members, *(other for other, *_ in self.others))
 
     @property
     def engines(self) -> int:
         """How many engines are among them."""
-        return len({member.partition(":")[0] for member in self.members})
-
-
-def label(member: str) -> str:
-    """How a member is written in a sentence."""
-    return member.replace(":", " ", 1)
+        return len({member.partition(":")[0] for member in self.all})
 
 
 def _homes(clusters: Iterable[Mapping[str, Any]]) -> dict[str, dict[str, dict[float, int]]]:
@@ -87,8 +89,33 @@ def clusters_over_scenarios(run: Mapping[str, Any]) -> list[Cluster]:
             groups.append([member])
         else:
             home_group.append(member)
-    found = [_cluster(group, agreed, clusters) for group in groups if len(group) > 1]
-    return sorted(found, key=lambda own: (-own.engines, -len(own.members)))
+    failing = _failing(run)
+    found = [_cluster(group, agreed, clusters, failing) for group in groups if len(group) > 1]
+    return sorted(found, key=lambda own: (-own.engines, -len(own.all)))
+
+
+def _failing(run: Mapping[str, Any]) -> dict[str, set[str]]:
+    """By member the scenarios on which a gate of it fails."""
+    found: dict[str, set[str]] = {}
+    for task in run.get("tasks") or ():
+        if failing_gates(task):
+            member = f"{task['engine']}:{task.get('integrator') or ''}"
+            found.setdefault(member, set()).add(task["scenario"])
+    return found
+
+
+def _core(group: Sequence[str], agreed: Mapping[frozenset[str], dict[str, bool]]) -> list[str]:
+    """Those of a group that agree on every scenario; all where no two do."""
+
+    def differences(one: str) -> int:
+        pairs = (agreed[frozenset((one, other))] for other in group if other != one)
+        return sum(not same for pair in pairs for same in pair.values())
+
+    core: list[str] = []
+    for one in sorted(group, key=differences):
+        if all(all(agreed[frozenset((one, other))].values()) for other in core):
+            core.append(one)
+    return [one for one in group if one in core] if len(core) > 1 else list(group)
 
 
 def _mostly(agreed: Mapping[frozenset[str], dict[str, bool]], one: str, other: str) -> bool:
@@ -100,7 +127,9 @@ def _cluster(
     group: Sequence[str],
     agreed: Mapping[frozenset[str], dict[str, bool]],
     clusters: Iterable[Mapping[str, Any]],
+    failing: Mapping[str, set[str]],
 ) -> Cluster:
+    whole, group = group, _core(group, agreed)
     pairs = [agreed[frozenset(pair)] for pair in combinations(group, 2)]
     scenarios = list(dict.fromkeys(scenario for pair in pairs for scenario in pair))
     apart = tuple(s for s in scenarios if not all(pair.get(s, True) for pair in pairs))
@@ -113,7 +142,15 @@ def _cluster(
             equal[name] = [n for n in equal.get(name, named) if n in named]
     every = [n for n in next(iter(equal.values()), []) if all(n in own for own in equal.values())]
     split = () if every else _by_scheme(equal)
-    return Cluster(tuple(group), tuple(every), together, apart, split)
+    others = []
+    for other in (one for one in whole if one not in group):
+        own = [agreed[frozenset((other, one))] for one in group]
+        seen = [s for s in scenarios if any(s in pair for pair in own)]
+        equals = tuple(s for s in seen if all(pair.get(s, True) for pair in own))
+        others.append((other, equals, tuple(s for s in seen if s not in equals)))
+    shared = dict.fromkeys(group, together) | {other: equals for other, equals, _ in others}
+    hidden = tuple(one for one in whole if failing.get(one, set()) & set(shared[one]))
+    return Cluster(tuple(group), tuple(every), together, apart, split, tuple(others), hidden)
 
 
 def _by_scheme(equal: Mapping[str, Sequence[str]]) -> tuple[tuple[str, tuple[str, ...]], ...]:
@@ -124,62 +161,3 @@ def _by_scheme(equal: Mapping[str, Sequence[str]]) -> tuple[tuple[str, tuple[str
         found.append((scheme, tuple(s for s, own in left.items() if scheme in own)))
         left = {s: own for s, own in left.items() if scheme not in own}
     return (*found, ("", tuple(left))) if left else tuple(found)
-
-
-def sentence(cluster: Cluster) -> str:
-    """Which members are identical, and what follows."""
-    members = listed([label(member) for member in cluster.members])
-    count = "both" if len(cluster.members) == 2 else "all"
-    scheme = f"{count} step {cluster.schemes[0]}" if cluster.schemes else _split(cluster, count)
-    if len(cluster.schemes) > 1:
-        scheme += f" or {' or '.join(cluster.schemes[1:])}, which no scenario here distinguishes"
-    return (
-        f"{members} produce identical trajectories ({scheme}), so their agreement is not "
-        "independent evidence."
-    )
-
-
-def _split(cluster: Cluster, count: str) -> str:
-    """Which scheme they step where, as no scheme is that of all scenarios."""
-    none = "no scheme of the reference"
-    if not any(scheme for scheme, _ in cluster.by_scheme):
-        return none
-    places = [
-        f"{scheme or none} on {_places(scenarios)}" for scheme, scenarios in cluster.by_scheme
-    ]
-    return f"{count} step {listed(places)}"
-
-
-def _places(scenarios: Sequence[str]) -> str:
-    several = len(scenarios) > _SCENARIOS_NAMED
-    return times(len(scenarios), "scenario") if several else listed(scenarios)
-
-
-def extent(cluster: Cluster) -> str:
-    """On how many scenarios that holds, and the first ones on which it does not.
-
-    Scenarios that all members follow exactly distinguish no schemes, and are not counted.
-    """
-    total = len(cluster.together) + len(cluster.apart)
-    if total == 1:
-        return "On 1 scenario that distinguishes schemes."
-    counted = f"{total} scenarios that distinguish schemes"
-    if not cluster.apart:
-        return f"On all {counted}."
-    several = len(cluster.apart) > _SCENARIOS_NAMED
-    shown = first(cluster.apart, _SCENARIOS_NAMED) if several else listed(cluster.apart)
-    return f"On {len(cluster.together)} of {counted}; the trajectories differ on {shown}."
-
-
-def on_scenario(run: Mapping[str, Any], scenario: str) -> str:
-    """One scenario's clusters at its finest step, and how many different trajectories there are."""
-    own = [c for c in run.get("clusters") or [] if c["scenario"] == scenario]
-    if not own:
-        return ""
-    step = min(cluster["timestep"] for cluster in own)
-    finest = [cluster["members"] for cluster in own if cluster["timestep"] == step]
-    equal = [" = ".join(map(label, members)) for members in finest if len(members) > 1]
-    runs = times(sum(map(len, finest)), "run")
-    different = "1 trajectory" if len(finest) == 1 else f"{len(finest)} different trajectories"
-    message = f"{runs} at step {plain(step)} s produce {different}"
-    return f"{message}: {'; '.join(equal)}." if equal else f"{message}."

@@ -12,8 +12,10 @@ import polars as pl
 from omegadot.reports.record.schema import GATES
 from omegadot.reports.text.numbers import knob, quantity, short, times_its_bound
 
-# Of a metric that is measured after another system was loaded, which its note names.
-OF_SIBLING = " of sibling"
+RESIDUAL = "residual"
+# Of the states as they are given, at random and along the exact motion.
+PLAIN = (RESIDUAL, "residual_on_path")
+SHARE = 1e-3  # from which on a residual is told in percent as well
 Row = Mapping[str, Any]
 
 
@@ -46,9 +48,27 @@ def _failed_gate(row: Row) -> FailedGate:
 
 
 def worst_row(rows: Sequence[Row]) -> Row:
-    """Of rows that fail, the worst measure of the first gate."""
+    """Of rows that fail, the worst of the plain measures of the first gate.
+
+    Where it is a residual, that of omega-dot, if it fails there, as in every table of residuals.
+    """
     gate = min((row["gate"] for row in rows), key=GATES.index)
-    return max((row for row in rows if row["gate"] == gate), key=excess)
+    own = [row for row in rows if row["gate"] == gate]
+    plain = [row for row in own if is_plain(row["metric"])] or own
+    worst = max(plain, key=excess)
+    if worst["metric"] not in PLAIN:
+        return worst
+    here = [row for row in plain if row["scenario"] == worst["scenario"]]
+    return max((row for row in here if row["channel"] == "omega_dot"), key=excess, default=worst)
+
+
+def is_plain(metric: str) -> bool:
+    """Whether a measure says something by itself.
+
+    A residual after another system was loaded, or at one state by itself, does so only where the
+    plain one passes.
+    """
+    return metric in PLAIN or not metric.startswith(RESIDUAL)
 
 
 def excess(row: Row) -> float:
@@ -62,9 +82,16 @@ def over_bound(row: Row) -> str:
     if value is None or not isfinite(value):
         return "no number"
     if row["metric"] == "observed_order" and bound is not None:
-        return f"{value:.2f} of order {bound:.0f}"
+        return f"{value:z.2f} of order {bound:.0f}"
     own = excess(row)
     return f"{short(own)} × bound" if isfinite(own) else quantity(value, row["unit"])
+
+
+def _percent(row: Row) -> str:
+    """A residual of the equation in words: it is relative to the equation's terms by size."""
+    if row["gate"] != "equation" or row["unit"] != "1" or not (row["value"] or 0.0) >= SHARE:
+        return ""
+    return f" ({short(100.0 * row['value'])} % of the terms of the equation)"
 
 
 def measure(row: Row) -> str:
@@ -74,9 +101,10 @@ def measure(row: Row) -> str:
     if row["note"] and (row["bound"] == 1.0 or not isfinite(row["value"] or 0.0)):
         return f"{channel}: {row['note']}"
     metric, after = row["metric"].replace("_", " "), ""
-    if metric.endswith(OF_SIBLING):
-        metric, after = metric.removesuffix(OF_SIBLING), f" {row['note']}".rstrip()
-    text = f"{channel} {metric} {quantity(row['value'], row['unit'])}{after}"
+    if row["metric"].startswith(RESIDUAL) and row["gate"] == "equation" and row["note"]:
+        metric = metric if row["metric"] in PLAIN else RESIDUAL
+        after = f" {row['note']}"
+    text = f"{channel} {metric} {quantity(row['value'], row['unit'])}{_percent(row)}{after}"
     times = excess(row)
     if row["bound"] is not None and 1.0 < times < float("inf"):
         text += f", {short(times)} times its bound"

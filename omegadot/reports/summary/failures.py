@@ -1,89 +1,29 @@
-"""The failing engines: which gate, where, by how much, the likeliest cause, and what it costs."""
+"""The failing engines of a record, each with what is to be told of it."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
 import polars as pl
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.record.schema import GATES, YARDSTICKS
+from omegadot.reports.record.schema import GATES
+from omegadot.reports.summary.cost import WHO, cost_of
+from omegadot.reports.summary.engine_failure import EngineFailure
 from omegadot.reports.summary.failed_gate import measure, worst_row
-from omegadot.reports.summary.next_command import CHECK, next_command
+from omegadot.reports.summary.next_command import next_command
 from omegadot.reports.summary.reasons import cause_of, failing_gates
-from omegadot.reports.text.numbers import engine_name, knob, listed, plain, quantity, short, times
+from omegadot.reports.summary.unseen import OF_STEPS, unseen
+from omegadot.reports.text.numbers import engine_name, knob, listed, times
 
 UNKNOWN = "none is known"
-# What each gate looks at, for readers who do not know their names.
-LOOKS_AT = {
-    "model": "the body that it holds",
-    "equation": "omega-dot at given states",
-    "scheme": "how it steps",
-    "invariants": "what must stay constant",
-    "trajectory": "the motion over time",
-    "cost": "what a step costs",
-}
-WHO = ("engine", "engine_version", "setup")
+STEPLESS = ("model", "equation")
+EITHER = "either "  # begins a cause that is one of several
+# One cell run alone may leave open what all scenarios together decide.
+UNDECIDED = " (each of these fits all that failed here; more scenarios may exclude some)"
 Row = Mapping[str, Any]
-
-
-@dataclass(frozen=True)
-class EngineFailure:
-    """An engine that fails: the first gate that does, and its worst measure there.
-
-    run: the integrator and step that gave it, or whose runs fail where all share it.  extent: in
-    how many of its runs this gate fails.  later: the gates after it that fail as well.
-    cause: the likeliest, "" where none is known, and then seen: what is known in its place.
-    cost: what the failure means for the attitude, next to integrators that pass; "" where it is not
-    known.  command: shrinks the failure and looks for its cause, or repeats it; "" without any.
-    """
-
-    engine: str
-    gate: str
-    scenario: str
-    run: str
-    measured: str
-    extent: str
-    cause: str
-    cost: str
-    later: tuple[str, ...] = ()
-    seen: str = ""
-    command: str = ""
-
-    @property
-    def looks_at(self) -> str:
-        """What the gate looks at."""
-        return LOOKS_AT[self.gate]
-
-    @property
-    def purpose(self) -> str:
-        """What the command is for."""
-        shrinks = self.command.startswith(CHECK)
-        return "shrinks it and looks for its cause" if shrinks else "runs it alone"
-
-    @property
-    def sentence(self) -> str:
-        """All of it in a few sentences."""
-        by = f", {self.run}" if self.run else ""
-        head = f"{self.engine} fails the {self.gate} gate ({self.looks_at}) in {self.extent}"
-        parts = [f"{head}, worst on {self.scenario}{by}: {self.measured}"]
-        parts += [f"{self.later_gates} as well"] if self.later else []
-        parts += [f"Likely cause: {self.cause}"] if self.cause else []
-        parts += [f"No cause was found: {self.seen}"] if self.seen else []
-        parts += [f"Cost: {self.cost}"] if self.cost else []
-        text = ". ".join(parts) + "."
-        return f"{text} Next: {self.command}" if self.command else text
-
-    @property
-    def later_gates(self) -> str:
-        """The gates after the first that fail, as a clause."""
-        one = len(self.later) == 1
-        named = f"{listed(self.later)} {'gate fails' if one else 'gates fail'}"
-        return f"Its {named}" if self.later else ""
 
 
 def failures_of(record: Record) -> tuple[EngineFailure, ...]:
@@ -99,6 +39,9 @@ def failures_of(record: Record) -> tuple[EngineFailure, ...]:
         tasks = [task for task in record.run["tasks"] if task["engine"] == engine]
         failing, worst = list(filter(failing_gates, tasks)), worst_row(own)
         at_gate = [task for task in failing if worst["gate"] in failing_gates(task)]
+        places = {row["scenario"] for row in own if row["gate"] == worst["gate"]}
+        places |= {task["scenario"] for task in at_gate}
+        every = _rows_of(record, who).to_dicts() if worst["gate"] == "equation" else []
         others = {row["gate"] for row in own} | {g for t in failing for g in failing_gates(t)}
         failures.append(
             EngineFailure(
@@ -107,9 +50,12 @@ def failures_of(record: Record) -> tuple[EngineFailure, ...]:
                 worst["scenario"],
                 _run(worst, tasks, at_gate),
                 measure(worst),
-                f"{len(at_gate)} of {times(len(tasks), 'run')}",
+                worst["gate"] in STEPLESS,
+                (len(places), len({task["scenario"] for task in tasks})),
+                (_count(at_gate, worst), _count(tasks, worst)),
                 _likeliest(failing),
-                _cost(record, who, own),
+                cost_of(record, who, own),
+                unseen(record, worst, every, at_gate),
                 tuple(g for g in GATES if g in others and GATES.index(g) > _place(worst)),
                 _seen(failing),
                 next_command(record.run, worst, {task["integrator"] for task in failing}),
@@ -118,77 +64,29 @@ def failures_of(record: Record) -> tuple[EngineFailure, ...]:
     return tuple(failures)
 
 
+def _count(tasks: Sequence[Row], worst: Row) -> int:
+    return sum(1 for task in tasks if task["scenario"] == worst["scenario"] and task["integrator"])
+
+
+def _rows_of(record: Record, who: tuple[str, ...]) -> pl.DataFrame:
+    """The rows of the equation gate of an engine, whatever their verdict."""
+    same = (pl.col(key).eq_missing(value) for key, value in zip(WHO, who, strict=True))
+    return record.metrics.filter(pl.col("gate") == "equation", *same)
+
+
 def _place(row: Row) -> int:
     return GATES.index(row["gate"])
 
 
 def _run(worst: Row, tasks: Sequence[Row], failing: Sequence[Row]) -> str:
     """The run of the worst measure; where integrators share it, those whose runs fail."""
-    if worst["integrator"]:
+    if worst["integrator"] and worst["metric"] != OF_STEPS:  # which has steps of its own
         return ", ".join(filter(None, (worst["integrator"], knob(worst["timestep"], None))))
     here = [task for task in tasks if task["scenario"] == worst["scenario"] and task["integrator"]]
     names = dict.fromkeys(task["integrator"] for task in failing if task in here)
     if len(names) > 1 and len(names) == len({task["integrator"] for task in here}):
         return "every integrator"
     return listed(list(names)) if names else ""
-
-
-def _cost(record: Record, who: tuple[str, ...], rows: Sequence[Row]) -> str:
-    """The attitude's error at the finest step, next to that of integrators that pass.
-
-    On the scenario of the worst measure where a run fails there, else of the worst run. Those of
-    its own order stand beside it, or the others where there are none.
-    """
-    metrics = record.metrics
-    stepped = [row for row in rows if row["integrator"] is not None]
-    if not stepped:
-        judged = metrics.filter(pl.col("gate") == "trajectory").filter(
-            pl.col(key).eq_missing(value) for key, value in zip(WHO, who, strict=True)
-        )
-        return "none in its trajectories, which pass" if "pass" in judged["verdict"] else ""
-    where = worst_row(rows)["scenario"]
-    here = [row for row in stepped if row["scenario"] == where] or stepped
-    scenario = worst_row(here)["scenario"]
-    failing = {row["integrator"] for row in here if row["scenario"] == scenario}
-    errors = _finest_errors(metrics, scenario)
-    own = [r for r in errors if tuple(map(r.get, WHO)) == who and r["integrator"] in failing]
-    if not own:
-        return ""
-    worst = max(own, key=lambda row: row["value"])
-    at = f"on {scenario} ({worst['integrator']}, {knob(worst['timestep'], None)})"
-    text = f"its attitude is off by {quantity(worst['value'], 'rad')} {at}"
-    others = [r for r in errors if tuple(map(r.get, WHO)) != who and r["verdict"] == "pass"]
-    if not others:
-        return text
-    order = _order(record, worst)
-    same = [row for row in others if order is not None and _order(record, row) == order]
-    values = [row["value"] for row in same or others]
-    ends = [short(end) for end in dict.fromkeys((min(values), max(values)))]
-    whose = "integrators that pass"
-    if same:
-        whose = f"integrators of its order, {plain(order)}, that pass"
-    elif order is not None:
-        whose = "integrators of other orders that pass"
-    return f"{text}; that of {whose} by {' to '.join(ends)} rad"
-
-
-def _order(record: Record, row: Row) -> float | None:
-    """The order in attitude that a row's integrator declares; None without any."""
-    for engine in record.run["engines"]:
-        for integrator in engine.get("integrators") or ():
-            if (engine["name"], integrator["name"]) == (row["engine"], row["integrator"]):
-                return (integrator.get("orders") or {}).get("attitude")
-    return None
-
-
-def _finest_errors(metrics: pl.DataFrame, scenario: str) -> list[dict[str, Any]]:
-    """The attitude's largest errors of every engine on a scenario, at the finest step there."""
-    of_attitude = (pl.col("channel") == "attitude") & (pl.col("metric") == "error_max")
-    judged = metrics.filter((pl.col("gate") == "trajectory") & (pl.col("scenario") == scenario))
-    rows = judged.filter(of_attitude & ~pl.col("engine").is_in(YARDSTICKS)).to_dicts()
-    known = [r for r in rows if r["timestep"] and r["value"] is not None and isfinite(r["value"])]
-    finest = min((row["timestep"] for row in known), default=None)
-    return [row for row in known if row["timestep"] == finest]
 
 
 def _likeliest(failing: Sequence[Row]) -> str:
@@ -198,7 +96,8 @@ def _likeliest(failing: Sequence[Row]) -> str:
     if not known:
         return ""
     more = f"; {times(len(known) - 1, 'other cause')} elsewhere" if len(known) > 1 else ""
-    return f"{known[0][0].rstrip('.')}{more}"
+    cause = known[0][0].rstrip(".")
+    return f"{cause}{UNDECIDED if cause.startswith(EITHER) else ''}{more}"
 
 
 def _seen(failing: Sequence[Row]) -> str:

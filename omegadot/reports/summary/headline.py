@@ -8,7 +8,7 @@ from typing import Any
 from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.summary import Cell, Summary
-from omegadot.reports.text.numbers import knob, listed, quantity, times
+from omegadot.reports.text.numbers import degrees, knob, listed, quantity, short, times
 
 _FEW = 3  # names in one sentence
 _MORE = "The errors over time differ more. "
@@ -22,7 +22,8 @@ def headline(summary: Summary) -> str:
 def remarks(summary: Summary) -> list[str]:
     """What belongs with the headline: what is missing, and the range of the attitude errors."""
     message = [] if summary.complete else ["Partial record: the run was interrupted."]
-    spread = _spread(_judged_engines(summary))
+    # A large error of sound engines has a sentence of its own.
+    spread = "" if summary.accuracy else _spread(summary)
     return [*message, *summary.notes, *([spread] if spread else []), *_remainder(summary)]
 
 
@@ -40,7 +41,7 @@ def step_notes(engines: Iterable[Mapping[str, Any]]) -> list[str]:
     for engine in engines:
         kinds = {integrator.get("note") for integrator in engine.get("integrators") or ()}
         if engine["name"] not in YARDSTICKS and len(kinds) == 1 and (note := kinds.pop()):
-            found.append(f"{engine['name']}: a step is {note}")
+            found.append(f"{engine['name']}: the time of a step is that of {note}")
     return found
 
 
@@ -58,8 +59,11 @@ def _verdict(summary: Summary, engines: dict[str, list[Cell]]) -> str:
     failing = [name for name, cells in engines.items() if any(c.status == "fail" for c in cells)]
     if failing:
         verb = "fails" if len(failing) == 1 else "fail"
+        named = _failing(summary, failing)
+        if len(engines) == 1:
+            return f"{named.replace(', on ', ' fails on ', 1)}."
         count = f"{len(failing)} of {times(len(engines), 'engine')}"
-        return f"{count} {verb}: {_failing(summary, failing)}.{_open(engines, failing)}"
+        return f"{count} {verb}: {named}.{_open(engines, failing)}"
     measured = {name: worst for name, cells in engines.items() if (worst := _residual(cells))}
     passed = {n for n, cells in engines.items() if any(map(_holds, cells))}
     # A declared exception is a known failure: such an engine is not reported as agreeing.
@@ -129,7 +133,13 @@ def _residual(cells: list[Cell]) -> Figure | None:
     return max((c.residual for c in cells if c.residual), key=size, default=None)
 
 
-def _spread(engines: dict[str, list[Cell]]) -> str:
+def which_step(summary: Summary) -> str:
+    """At which step the errors of a summary are."""
+    return "at the one step" if summary.one_step else "at the finest step"
+
+
+def _spread(summary: Summary) -> str:
+    engines = _judged_engines(summary)
     failing = {name for name, cells in engines.items() if any(c.status == "fail" for c in cells)}
     sound = [cells for name, cells in engines.items() if name not in failing]
     measured = sound or list(engines.values())
@@ -141,9 +151,10 @@ def _spread(engines: dict[str, list[Cell]]) -> str:
     if best.value == largest.value:
         return ""
     more = "" if failing else _MORE
-    whose = "Of the engines that pass, at" if failing and sound else "At"
+    step = which_step(summary)
+    whose = f"Of the engines that pass, {step}" if failing and sound else step.capitalize()
     return (
-        f"{more}{whose} the finest step the attitude error on "
+        f"{more}{whose} the attitude error on "
         f"{largest.scenario} ranges from {_run(best)} to {_run(largest)}."
     )
 
@@ -151,7 +162,7 @@ def _spread(engines: dict[str, list[Cell]]) -> str:
 def _run(figure: Figure) -> str:
     name = " ".join(filter(None, (figure.engine, figure.integrator)))
     run = ", ".join(filter(None, (name, knob(figure.timestep, figure.accuracy))))
-    return f"{quantity(figure.value, figure.unit)} ({run})"
+    return f"{short(figure.value)} rad ({degrees(figure.value)} deg, {run})"
 
 
 def _remainder(summary: Summary) -> list[str]:

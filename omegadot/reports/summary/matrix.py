@@ -10,7 +10,7 @@ from typing import Any
 from omegadot.reports.summary.figures import Figure, Range
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import STATUSES, Cell, Column, Summary, text_of
-from omegadot.reports.text.numbers import knob, quantity, short
+from omegadot.reports.text.numbers import knob, quantity, short, times
 
 MARKS = {"pass": "✓", "fail": "✗", "declared": "!", "absent": ""}
 # The numbers that the matrix can show, one at a time: the key of `Shown.numbers`, its name.
@@ -26,7 +26,8 @@ FAILED = "failed"
 class Shown:
     """One cell as text.
 
-    mark and status: a sign and its name.  part: how many of its runs passed, where not all did.
+    mark and status: a sign and its name.  part: how many of its runs fail, or pass, where not all
+    do.
     numbers: text by the keys of NUMBERS; where a gate fails, by FAILED its worst measure alone: no
     number that passes stands beside a failure.  card: the number of its card among `cards`.  rank:
     for sorting, the worst first.  gate: the first that fails, if one does.
@@ -50,7 +51,9 @@ def origin_of(column: Column, figure: Figure | None = None) -> dict[str, Any]:
 def shown(cell: Cell, card: int = 0) -> Shown:
     """A cell as the matrix shows it."""
     total, passed = sum(cell.runs.values()), cell.runs.get("pass", 0)
-    part = f"{passed} of {total} runs pass" if total and passed != total else ""
+    failed = cell.runs.get("fail", 0)
+    part = f"{passed} of {times(total, 'run')} pass" if total and passed != total else ""
+    part = f"{failed} of {times(total, 'run')} fail" if cell.status == "fail" and failed else part
     numbers = {
         "residual": "" if cell.residual is None else short(cell.residual.value),
         "drift": _span(cell.drift),

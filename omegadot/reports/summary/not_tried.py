@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from omegadot.reports.record.schema import YARDSTICKS
-from omegadot.reports.text.numbers import listed, times
+from omegadot.reports.summary.advice import Advice
+from omegadot.reports.text.numbers import times
 
 MOST_NAMED = 4
 LEAST_TURN = 1e-12  # of a quaternion's scalar part, below one
@@ -54,10 +55,10 @@ def pairs_of(parts: Iterable[str]) -> list[tuple[str, str]]:
     return [pair for pair in combinations(parts, 2) if pair not in NO_PAIRS]
 
 
-def not_tried(run: Mapping[str, Any], passed: Sequence[str]) -> str:
+def not_tried(run: Mapping[str, Any], passed: Sequence[str]) -> Advice | None:
     """What none of the scenarios that an engine passed has in it, and what to do about it.
 
-    "" where they have everything, or no engine can be checked.  passed: scenarios, by name.
+    None where they have everything, or no engine can be checked.  passed: scenarios, by name.
     """
     ours = [e for e in run["engines"] if e["name"] not in YARDSTICKS and e.get("argument")]
     found = [
@@ -66,24 +67,22 @@ def not_tried(run: Mapping[str, Any], passed: Sequence[str]) -> str:
         if entry["name"] in passed and entry.get("system")
     ]
     if not found or not ours:
-        return ""
+        return None
     absent = [name for name in found[0] if not any(parts[name] for parts in found)]
     pairs = pairs_of(name for name in found[0] if name not in absent)
     apart = [
-        f"{one} with {other}"
-        for one, other in pairs
-        if not any(parts[one] and parts[other] for parts in found)
+        pair for pair in pairs if not any(parts[pair[0]] and parts[pair[1]] for parts in found)
     ]
     texts = [*absent[:MOST_NAMED]]
     if len(absent) > MOST_NAMED:
         texts.append(f"{len(absent) - MOST_NAMED} more")
     if apart:
-        count = f"{len(apart)} of {times(len(pairs), 'pair')}"
-        texts.append(f"{count} of the others together, such as {apart[0]}")
+        texts.append(f"{len(apart)} of the {times(len(pairs), 'combination')} of two of the others")
     if not texts:
-        return ""
+        return None
     engine = ours[0]["argument"] if len(ours) == 1 else "ENGINE"
-    return (
-        f"In none of these scenarios: {listed(texts)}. omegadot check {shlex.quote(engine)} draws "
-        "random systems with all of them."
+    return Advice(
+        f"Not tested here: {'; '.join(texts)}.",
+        f"omegadot check {shlex.quote(engine)}",
+        "draws random systems with all of them",
     )

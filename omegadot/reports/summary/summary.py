@@ -16,8 +16,11 @@ import polars as pl
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.run_json import impossible_bodies
 from omegadot.reports.record.schema import YARDSTICKS
+from omegadot.reports.summary.accuracy import inaccurate
+from omegadot.reports.summary.advice import Advice
+from omegadot.reports.summary.engine_failure import EngineFailure
 from omegadot.reports.summary.failed_gate import FailedGate, failed_gates
-from omegadot.reports.summary.failures import EngineFailure, failures_of
+from omegadot.reports.summary.failures import failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
 from omegadot.reports.summary.not_tried import not_tried
 from omegadot.reports.summary.reasons import MODEL_ALONE, failing_gates, tests_motion
@@ -100,6 +103,8 @@ class Summary:
     failures: what fails of each engine that does.
     truths: by kind of exact solution, the number of scenarios.  notes: a sentence on each body
     whose inertia is impossible, each process that ended by itself, each engine without integrators.
+    one_step: whether every integrator ran with one step or accuracy alone on each scenario.
+    accuracy: where no gate fails, that an error is large all the same, if one is.
     untried: where no gate fails, what the scenarios do not have in them and random systems do.
     """
 
@@ -113,7 +118,9 @@ class Summary:
     failures: tuple[EngineFailure, ...]
     truths: Counter[str]
     notes: tuple[str, ...]
-    untried: str = ""
+    one_step: bool = False
+    accuracy: Advice | None = None
+    untried: Advice | None = None
 
 
 def worst(statuses: Iterable[str]) -> str:
@@ -169,8 +176,27 @@ def summarise(record: Record) -> Summary:
         failures_of(record),
         _truths(record.trajectories),
         (*impossible_bodies(record.run["scenarios"]), *_ended(record.run), *_unstepped(record.run)),
-        not_tried(record.run, held) if not failing else "",
+        _one_step(tasks),
+        None if failing else _accuracy(record.run, cells),
+        None if failing else not_tried(record.run, held),
     )
+
+
+def _one_step(tasks: Iterable[Mapping[str, Any]]) -> bool:
+    steps: dict[tuple[Any, ...], set[tuple[float | None, float | None]]] = {}
+    for task in tasks:
+        step = task.get("timestep"), task.get("accuracy")
+        if any(step):
+            key = (task["scenario"], *column_of(task), task.get("integrator"))
+            steps.setdefault(key, set()).add(step)
+    return bool(steps) and all(len(own) == 1 for own in steps.values())
+
+
+def _accuracy(run: Mapping[str, Any], cells: Mapping[tuple[str, Column], Cell]) -> Advice | None:
+    """Of the engines, or of the yardsticks where these alone ran."""
+    ours = [cell for (_, column), cell in cells.items() if column.engine not in YARDSTICKS]
+    own = ours or list(cells.values())
+    return inaccurate(run, (cell.attitude for cell in own), (cell.drift for cell in own))
 
 
 def _counted(tasks: Iterable[Mapping[str, Any]]) -> tuple[Counter[str], Counter[str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from omegadot.reports.record.record import Record
 from omegadot.reports.summary import matrix
+from omegadot.reports.summary.advice import Advice
 from omegadot.reports.summary.headline import headline, remarks, truth
 from omegadot.reports.summary.provenance import command_of
 from omegadot.reports.summary.reasons import reason_of
@@ -23,7 +24,8 @@ def markdown_of(record: Record) -> str:
     lines += [escape(notes, 1000), ""] if notes else []
     lines += [f"- {escape(one.sentence, 1000)}" for one in summary.failures]
     lines += [""] * bool(summary.failures)
-    lines += [escape(summary.untried, 1000), ""] if summary.untried else []
+    for advice in (summary.accuracy, summary.untried):
+        lines += [_advice(advice), ""] if advice else []
     lines += [_counts(summary), ""]
     lines += _matrix(summary, COMMENT // 4)
     lines += _failures(record, COMMENT // 4)
@@ -32,6 +34,10 @@ def markdown_of(record: Record) -> str:
     command = code(command_of(record.run))
     lines += ["", command] if command else []
     return "\n".join(lines) + "\n"
+
+
+def _advice(advice: Advice) -> str:
+    return f"{escape(advice.text, 1000)} {code(advice.command)} {escape(advice.purpose)}."
 
 
 def _counts(summary: Summary) -> str:

@@ -59,6 +59,29 @@ def quantity(value: float | None, unit: str, digits: int = 2) -> str:
     return short(value, digits) + ("" if unit == "1" else f" {unit}")
 
 
+def angle(radians: float | None) -> str:
+    """An angle in rad and in degrees: 2 rad (114 deg)."""
+    return angles([] if radians is None else [radians])
+
+
+def angles(radians: Sequence[float]) -> str:
+    """The range of some angles in rad and in degrees: 1.9 to 2 rad (106 to 114 deg)."""
+    if not radians:
+        return "–"
+    ends = sorted({min(radians), max(radians)})
+    if not all(map(math.isfinite, ends)):
+        return "not finite"
+    both = (list(dict.fromkeys(map(text, ends))) for text in (short, degrees))
+    in_rad, in_degrees = (" to ".join(texts) for texts in both)
+    return f"{in_rad} rad ({in_degrees} deg)"
+
+
+def degrees(radians: float) -> str:
+    """An angle in degrees, without its unit: two digits, or three from 100 on."""
+    value = math.degrees(radians)
+    return short(value, 3 if abs(value) >= 100.0 else 2)
+
+
 def engine_name(engine: str, version: str = "", setup: str | None = None) -> str:
     """An engine, its version where that is given, and its setup where it is not the usual one."""
     return " ".join(filter(None, (engine, version, "" if setup == "physics" else setup)))

@@ -8,12 +8,14 @@ from rich.table import Table
 from rich.text import Text
 
 from omegadot.reports.record.record import Record
-from omegadot.reports.summary.clusters import clusters_over_scenarios, extent, sentence
+from omegadot.reports.summary.cluster_sentences import extent, sentence
+from omegadot.reports.summary.clusters import clusters_over_scenarios
+from omegadot.reports.summary.engine_failure import EngineFailure
 from omegadot.reports.summary.failed_gate import FailedGate
 from omegadot.reports.summary.figures import Figure, size
-from omegadot.reports.summary.headline import headline, remarks, truth
+from omegadot.reports.summary.headline import headline, remarks, truth, which_step
 from omegadot.reports.summary.summary import Cell, Missing, Summary, counts, summarise
-from omegadot.reports.text.numbers import first, short, times
+from omegadot.reports.text.numbers import angle, first, short, times
 from omegadot.reports.text.text_grid import plain_console
 
 _STYLES = {"pass": "green", "fail": "bold red", "declared": "yellow", "absent": "dim"}
@@ -56,10 +58,23 @@ def print_summary(record: Record, console: Console | None = None) -> None:
     console.print(Text("; ".join(counts(summary)) or "No run was made."))
     console.print(Text(headline(summary), style="bold"))
     for failure in summary.failures:
-        console.print(Text(failure.sentence, _STYLES["fail"]))
+        _print_failure(failure, console)
+    if summary.accuracy:
+        console.print(Text(summary.accuracy.sentence, "yellow"))
     console.print(Text(" ".join(remarks(summary) + truth(summary))))
     if summary.untried:
-        console.print(Text(summary.untried))
+        console.print(Text(summary.untried.sentence))
+
+
+def _print_failure(failure: EngineFailure, console: Console) -> None:
+    """Which gate where, then a line each of cause, measure, cost and what to type next."""
+    console.print(Text(f"{failure.head}.", _STYLES["fail"]))
+    lines = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    lines.add_column(no_wrap=True, style="bold")
+    lines.add_column(overflow="fold")
+    for name, text in failure.labelled:
+        lines.add_row(f"  {name}", Text(text))
+    console.print(lines)
 
 
 def _fitting_table(summary: Summary, console: Console) -> tuple[int, Table]:
@@ -150,7 +165,7 @@ def _legend(summary: Summary, shown: int, console: Console) -> str:
     sentences += [text for _, text in _NUMBERS[:shown]]
     if shown > 1:
         names = " and ".join(name for name, _ in _NUMBERS[1:shown])
-        sentences.append(f"{names}: of the worst integrator at its finest step.")
+        sentences.append(f"{names}: of the worst integrator, {which_step(summary)}.")
         sentences.append("An error that the declared scheme explains passes, whatever its size.")
     return " ".join(sentences)
 
@@ -167,14 +182,14 @@ def _extremes(summary: Summary) -> list[str]:
         worst, best = widest.worst, widest.best
         span = _named(worst) if best is worst else f"{_named(best)} to {_named(worst)}"
         lines.append(
-            f"{column.label}: attitude error {span} on {worst.scenario}, at the finest step."
+            f"{column.label}: attitude error {span} on {worst.scenario}, {which_step(summary)}."
         )
     return lines
 
 
 def _named(figure: Figure) -> str:
     source = f" ({figure.integrator})" if figure.integrator else ""
-    return f"{short(figure.value)} {figure.unit}{source}"
+    return f"{angle(figure.value)}{source}"
 
 
 def _missing_line(missing: Missing) -> str:

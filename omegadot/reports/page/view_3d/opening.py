@@ -1,4 +1,4 @@
-"""What the 3-D view opens with: runs that fail beside the best engine, else a spread of engines."""
+"""What the 3-D view opens with: runs that fail beside a sound one, else a spread of engines."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ PLACES = 3  # runs that the view shows beside the exact solution
 _OF_A_RUN = {"scheme", "invariants", "trajectory"}
 Ranks = Mapping[tuple[float | None, float | None], int]
 Key = tuple[str, str, str, float | None, float | None]
+Orders = Mapping[tuple[str, str], float | None]
 
 
 @dataclass(frozen=True)
@@ -41,13 +42,25 @@ def failing_runs(tasks: Iterable[Mapping[str, Any]]) -> dict[str, dict[Key, list
     return found
 
 
+def declared_orders(engines: Iterable[Mapping[str, Any]]) -> Orders:
+    """The order in attitude that each integrator declares, by engine and integrator."""
+    return {
+        (engine["name"], own["name"]): (own.get("orders") or {}).get("attitude")
+        for engine in engines
+        for own in engine.get("integrators") or ()
+    }
+
+
 def opening(
-    runs: Sequence[RunAttitudes], ranks: Ranks, failing: Mapping[Key, list[str]]
+    runs: Sequence[RunAttitudes], ranks: Ranks, failing: Mapping[Key, list[str]], orders: Orders
 ) -> Opening:
     """What to open with on a scenario. runs: in the order of the page's lines.
 
-    Where engines fail: of two of them, the integrator whose failing run errs the most, then the
-    most exact of the engines that do not fail; at the finest step at which the first of them fails.
+    orders: declared in attitude, by engine and integrator.
+    Where engines fail: of two of them, the integrator whose failing run errs the most, then of the
+    engines that do not fail the most exact run of the order of the first, so that what is seen
+    apart is the fault and not the order, or the most exact where none has that order; at the finest
+    step at which the first of them fails.
     Else of three engines in turn the least and the most exact integrator, at the coarsest step.
     """
     failed = [run for run in runs if key_of(run) in failing]
@@ -64,7 +77,12 @@ def opening(
     rank = min(_rank(run, ranks) for run in failed if lane_of(run) == lanes[0])
     engines_failing = {engine for engine, *_ in failing}
     sound = [run for run in runs if run.engine not in engines_failing and _rank(run, ranks) == 0]
-    best = sorted(sound, key=lambda run: (run.engine in YARDSTICKS, run.largest))
+    order = orders.get((worst[0].engine, worst[0].integrator))
+
+    def other_order(run: RunAttitudes) -> bool:
+        return order is not None and orders.get((run.engine, run.integrator)) != order
+
+    best = sorted(sound, key=lambda run: (other_order(run), run.engine in YARDSTICKS, run.largest))
     return Opening([*lanes, *map(lane_of, best[:1])], rank)
 
 

@@ -22,7 +22,15 @@ from omegadot.reports.charts.payload import rank_of
 from omegadot.reports.page.templating import script
 from omegadot.reports.page.view_3d.attitudes import DIVERGED, Attitudes, attitudes_of
 from omegadot.reports.page.view_3d.bodies import look_of
-from omegadot.reports.page.view_3d.opening import Key, failing_runs, key_of, lane_of, opening
+from omegadot.reports.page.view_3d.opening import (
+    Key,
+    Orders,
+    declared_orders,
+    failing_runs,
+    key_of,
+    lane_of,
+    opening,
+)
 from omegadot.reports.record.record import Record
 from omegadot.reports.text.numbers import knob
 
@@ -85,6 +93,7 @@ def view_payload(
     """
     places = {(line.engine, line.setup, line.integrator): k for k, line in enumerate(lines)}
     attitudes, failing = attitudes_of(record.trajectories), failing_runs(record.run["tasks"])
+    orders = declared_orders(record.run["engines"])
     scenarios: list[dict[str, Any]] = []
     codes = Codes()
     for entry in record.run["scenarios"]:
@@ -109,7 +118,7 @@ def view_payload(
         codes.add(normalize(own.orientation), 1.0)
         codes.add(own.angular_velocity, fastest)
         failed = failing.get(entry["name"], {})
-        scenario.update(_runs(own, chart, places, codes, fastest, failed))
+        scenario.update(_runs(own, chart, places, codes, fastest, failed, orders))
         scenarios.append(scenario)
     description = {
         "lines": [
@@ -129,6 +138,7 @@ def _runs(
     codes: Codes,
     fastest: float,
     failing: Mapping[Key, list[str]],
+    orders: Orders,
 ) -> dict[str, Any]:
     ranks = rank_of(chart)
     clocks: dict[bytes, int] = {}
@@ -137,7 +147,7 @@ def _runs(
         run for run in own.runs if lane_of(run) in places and (run.timestep, run.accuracy) in ranks
     ]
     shown.sort(key=lambda run: places[lane_of(run)])
-    opened = opening(shown, ranks, failing)
+    opened = opening(shown, ranks, failing, orders)
     for run in shown:
         line, rank = places[lane_of(run)], ranks[run.timestep, run.accuracy]
         clock = clocks.setdefault(run.frames.tobytes(), len(clocks))
