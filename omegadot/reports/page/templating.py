@@ -35,17 +35,21 @@ def _cell(text: str) -> str:
     return str(escape(without_scheme(text)))
 
 
-def table_body(table: Table) -> Markup:
-    """The rows of a table of many cells, escaped as the templates do it, in a tenth of the time."""
+def table_body(table: Table, named: bool = False) -> Markup:
+    """The rows of a table of many cells, escaped as the templates do it, in a tenth of the time.
+
+    named: each cell bears the head of its column, for a narrow screen without a row of heads.
+    """
+    names = [f' data-head="{_cell(title)}"' if named else "" for title in table.columns]
     lines = []
     for row in table.rows:
         source = "" if row.source is None else f' data-source="{row.source}"'
         heads = [f'<th scope="row">{_cell(head)}' for head in row.heads]
         cells = [
-            f'<td class="v-{_cell(value.mark)}">{_cell(value.text)}'
+            f'<td{name} class="v-{_cell(value.mark)}">{_cell(value.text)}'
             if value.mark
-            else f"<td>{_cell(value.text)}"
-            for value in row.values
+            else f"<td{name}>{_cell(value.text)}"
+            for name, value in zip(names, row.values, strict=True)
         ]
         lines.append(f"<tr{source}>{''.join(heads)}{''.join(cells)}\n")
     return Markup("".join(lines))

@@ -1,0 +1,95 @@
+"""What stands on a narrow screen, or in a narrow table, can be read there."""
+
+import pytest
+from chromium import Chromium
+from synthetic_record import build
+
+from omegadot.reports.page.page import draw_page
+
+READY = "document.querySelector('#why table')?.dataset.ready === 'yes'"
+PHONE = {"width": 390, "height": 844}
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
+        yield chromium
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("page")
+    single = build(engines={"dart": {"semi-implicit": 1}})
+    for name, record in (("all", build()), ("single", single)):
+        (folder / f"{name}.html").write_text(draw_page(record), encoding="utf-8")
+    return folder
+
+
+def opened(browser, path, **size):
+    browser.open(path, **size)
+    browser.wait(READY)
+    return browser
+
+
+def test_step_and_lines_are_named_and_wide_enough_on_a_phone(browser, pages):
+    page = opened(browser, pages / "all.html", **PHONE)
+    widths = """[...document.querySelectorAll('.controls select')].map((s) => [
+        s.offsetWidth, s.parentNode.querySelector('span').offsetWidth])"""
+    # What a choice needs, with the arrow of the list: 15 letters of 6 px and 24 px.
+    for select, label in page.evaluate(widths):
+        assert select >= 15 * 6 + 24
+        assert label > 0
+    assert page.evaluate("document.querySelector('.controls').offsetHeight") < 0.15 * 844
+
+
+# How many lines a caption takes; how many it would take over the whole width.
+CAPTIONS = """[...document.querySelectorAll('main caption')].filter((c) => c.offsetWidth)
+    .map((c) => {
+    const range = document.createRange();
+    range.selectNodeContents(c);
+    const words = [...range.getClientRects()].filter((r) => r.width > 1);
+    return [c.textContent, c.closest('.scroll').clientWidth, c.offsetWidth,
+        Math.max(...words.map((r) => r.right)) - c.closest('.scroll').getBoundingClientRect().left,
+        new Set(words.map((r) => Math.round(r.top / 8))).size]; })"""
+
+
+@pytest.mark.parametrize("name", ["all", "single"])
+@pytest.mark.parametrize("width", [390, 768, 1280])
+def test_a_caption_is_as_wide_as_the_page_and_not_as_its_table(browser, pages, name, width):
+    page = opened(browser, pages / f"{name}.html", width=width, height=900)
+    found = page.evaluate(CAPTIONS)
+    assert found
+    for text, room, own, right, lines in found:
+        assert right <= room + 1, text  # and not cut off
+        # A letter takes 8 px at most, and the table's tools 19 rem beside it.
+        needed = len(text) * 8 / max(room - 19 * 16, 0.5 * room)
+        assert lines <= needed + 2, (text, own)
+
+
+def test_the_sources_of_error_are_cards_on_a_phone(browser, pages):
+    page = opened(browser, pages / "all.html", **PHONE)
+    cut = """[...document.querySelectorAll('main .scroll')].filter((b) =>
+        b.clientWidth && b.scrollWidth > b.clientWidth + 1).map((b) => b.ariaLabel)"""
+    assert page.evaluate(cut) == []
+    labels = """[...document.querySelectorAll('#why td')].map((cell) =>
+        getComputedStyle(cell, '::before').content)"""
+    assert "attitude" in " ".join(page.evaluate(labels))
+    assert '""' not in page.evaluate(labels)
+
+
+def test_a_table_that_is_cut_says_so_at_its_edge(browser, pages):
+    page = opened(browser, pages / "all.html", **PHONE)
+    fold = "document.querySelectorAll('.scenario:not([hidden]) details')[2]"
+    box = f"{fold}.querySelector('.scroll')"
+    page.evaluate(f"{fold}.open = true")
+    page.wait(f"{box}?.classList.contains('cut')")
+    assert page.evaluate(f"getComputedStyle({box}).maskImage") != "none"
+    page.evaluate(f"{box}.scrollLeft = 1e6")
+    page.wait(f"!{box}.classList.contains('cut')")
+
+
+def test_the_parts_of_the_page_are_named_whole_on_a_phone(browser, pages):
+    page = opened(browser, pages / "all.html", **PHONE)
+    right = """Math.max(...[...document.querySelectorAll('header nav a')].map((a) =>
+        a.getBoundingClientRect().right))"""
+    assert page.evaluate(right) <= PHONE["width"]
