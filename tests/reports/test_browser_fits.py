@@ -93,3 +93,51 @@ def test_the_parts_of_the_page_are_named_whole_on_a_phone(browser, pages):
     right = """Math.max(...[...document.querySelectorAll('header nav a')].map((a) =>
         a.getBoundingClientRect().right))"""
     assert page.evaluate(right) <= PHONE["width"]
+
+
+def test_grey_lines_are_named_below_their_chart(browser, pages):
+    page = opened(browser, pages / "all.html", width=1280, height=900)
+    looks = """[...document.querySelectorAll('figure')].map((figure) =>
+        ['still', 'greys'].map((own) => [...figure.querySelectorAll(`.${own} path`)]
+            .map((p) => p.getAttribute('class'))))"""
+    found = page.evaluate(looks)
+    greys = {"b", "d", "f", "p"}
+    for drawn, named in found:
+        assert greys & set(drawn) <= set(named)
+    assert {look for _, named in found for look in named} >= {"b", "d", "p"}
+
+
+BROKEN = """(own) => {
+    const walker = document.createTreeWalker(own, NodeFilter.SHOW_TEXT);
+    const range = document.createRange(), found = [];
+    for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+        for (const part of node.data.matchAll(WORDS)) {
+            range.setStart(node, part.index);
+            range.setEnd(node, part.index + part[0].length);
+            const tops = [...range.getClientRects()].filter((r) => r.width > 1)
+                .map((r) => r.bottom);
+            if (tops.length && Math.max(...tops) - Math.min(...tops) > 6) found.push(part[0]);
+        }
+    }
+    return found; }"""
+NUMBER = r"/[\d.]+e[-\u2060\d]+|[\d.]+(?=[\s\u00a0](?:s|rad)\b)[\s\u00a0]\w+/g"
+
+
+@pytest.mark.parametrize("width", [340, 390, 450, 700, 900])
+def test_no_number_is_broken_between_two_lines(browser, pages, width):
+    page = opened(browser, pages / "all.html", width=width, height=900)
+    page.evaluate("document.querySelectorAll('.scenario details').forEach((d) => (d.open = true))")
+    script = BROKEN.replace("WORDS", NUMBER)
+    assert page.evaluate(f"({script})(document.querySelector('main'))") == []
+
+
+@pytest.mark.parametrize("width", [340, 390, 420, 450])
+def test_no_option_of_a_command_is_broken(browser, pages, width):
+    page = opened(browser, pages / "all.html", width=width, height=900)
+    page.evaluate("document.querySelector('.matrix a[data-card]').click()")
+    page.wait("document.getElementById('card').open")
+    script = BROKEN.replace("WORDS", r"/(?<=^|\s)--?\w[\w-]*/g")
+    for place in ("header", "#card"):
+        assert page.evaluate(f"({script})(document.querySelector('{place}'))") == []
+    text = "document.querySelector('#card .command code').textContent"
+    assert page.evaluate(text).startswith("omegadot run sphere --engine ")

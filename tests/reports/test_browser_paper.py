@@ -19,7 +19,8 @@ def browser(tmp_path_factory):
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     file = tmp_path_factory.mktemp("page") / "report.html"
-    file.write_text(draw_page(build()), encoding="utf-8")
+    record = build(steps=(0.00125, 0.0015, 0.002, 0.0025, 0.003, 0.004, 0.005, 0.00625))
+    file.write_text(draw_page(record), encoding="utf-8")
     return file
 
 
@@ -86,3 +87,20 @@ def test_columns_of_the_pareto_list_stand_apart(page):
     for inside, em in printed(page, gap):
         assert inside == "avoid"
         assert em >= 3.0  # a number and its dot hang in the gap
+
+
+def test_labels_of_an_axis_do_not_touch_on_paper(page):
+    """Texts of one line of one picture, from left to right."""
+    touching = """[...document.querySelectorAll('.still')].flatMap((s) => {
+        const lines = new Map();
+        for (const text of s.querySelectorAll(':scope > text:not(.e)')) {
+            const key = text.getAttribute('y');
+            lines.set(key, [...(lines.get(key) ?? []), text]);
+        }
+        return [...lines.values()].flatMap((own) => {
+            const boxes = own.map((t) => [t.getBoundingClientRect(), t.textContent]);
+            boxes.sort((a, b) => a[0].left - b[0].left);
+            return boxes.slice(1).filter(([b], k) => b.left < boxes[k][0].right).map((b) => b[1]);
+        }); })"""
+    page.resize(718, 900)
+    assert printed(page, touching) == []

@@ -72,7 +72,7 @@ def test_a_row_is_a_gate_with_its_worst_measure_and_run(record: Record) -> None:
     (equation,) = (row for row in rows if row.gate == "equation")
     assert equation.run == ""  # all share it
     page = draw_page(failing(record))
-    assert "9e9 ✗ fail, bound 1e-13" in page
+    assert "9e9 ✗ fail, bound 1e-\u206013" in page
 
 
 @pytest.mark.parametrize(

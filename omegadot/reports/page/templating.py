@@ -35,6 +35,11 @@ def _cell(text: str) -> str:
     return str(escape(without_scheme(text)))
 
 
+@lru_cache(maxsize=65536)
+def _figure(text: str) -> str:
+    return _cell(kept(text))
+
+
 def table_body(table: Table, named: bool = False) -> Markup:
     """The rows of a table of many cells, escaped as the templates do it, in a tenth of the time.
 
@@ -46,9 +51,9 @@ def table_body(table: Table, named: bool = False) -> Markup:
         source = "" if row.source is None else f' data-source="{row.source}"'
         heads = [f'<th scope="row">{_cell(head)}' for head in row.heads]
         cells = [
-            f'<td{name} class="v-{_cell(value.mark)}">{_cell(value.text)}'
+            f'<td{name} class="v-{_cell(value.mark)}">{_figure(value.text)}'
             if value.mark
-            else f"<td{name}>{_cell(value.text)}"
+            else f"<td{name}>{_figure(value.text)}"
             for name, value in zip(names, row.values, strict=True)
         ]
         lines.append(f"<tr{source}>{''.join(heads)}{''.join(cells)}\n")
@@ -58,6 +63,18 @@ def table_body(table: Table, named: bool = False) -> Markup:
 def unbroken(text: str) -> str:
     """The text with its exponents kept on one line: ``1e-10`` could break at the hyphen."""
     return re.sub(r"(?<=\de)-(?=\d)", "-\u2060", text)
+
+
+def kept(text: str) -> str:
+    """The text with each number on one line, its exponent and its unit included."""
+    return re.sub(r"(?<=\d) (?=(?:s|rad|m|µs|×)(?![\w-]))", "\u00a0", unbroken(text))
+
+
+def arguments(command: str) -> Markup:
+    """A command that breaks between its arguments and not within, at the hyphens of an option."""
+    whole = Markup('<span class="argument">{}</span>')
+    parts = (whole.format(part) if "-" in part else escape(part) for part in command.split(" "))
+    return Markup(" ").join(parts)
 
 
 def _knob_of(row: Mapping[str, Any]) -> str:
@@ -74,7 +91,8 @@ def environment() -> Environment:
         lstrip_blocks=True,
         finalize=without_scheme,
     )
-    found.filters |= {"short": short, "unit": unit_text, "unbroken": unbroken}
+    found.filters |= {"short": short, "unit": unit_text, "unbroken": unbroken, "kept": kept}
+    found.filters["arguments"] = arguments
     found.filters |= {"written": written, "body": table_body, "linked": linked, "knob": _knob_of}
     return found
 

@@ -38,9 +38,12 @@ function facts(origins, source) {
   return list;
 }
 
+// It breaks between its arguments, not within, at the hyphens of an option.
+const argumentsOf = (command) => command.split(" ").flatMap((text, k) => [...(k ? [" "] : []), text.includes("-") ? made("span", { className: "argument", textContent: text }) : text]);
+
 function block(origins, anchor, number, numbers) {
   const source = sourceOf(origins, number), command = commandFor(origins, source, anchor);
-  const pre = made("pre", { tabIndex: 0, className: "command" }, made("code", { textContent: command }));
+  const pre = made("pre", { tabIndex: 0, className: "command" }, made("code", {}, ...argumentsOf(command)));
   const figures = numbers.map(([what, value]) => made("p", {}, made("b", { textContent: value }), ` ${what}`));
   return made("section", {}, ...figures, facts(origins, source), pre, made("p", {}, ...copyButton("Copy the command", () => command)));
 }
