@@ -141,3 +141,32 @@ def test_no_option_of_a_command_is_broken(browser, pages, width):
         assert page.evaluate(f"({script})(document.querySelector('{place}'))") == []
     text = "document.querySelector('#card .command code').textContent"
     assert page.evaluate(text).startswith("omegadot run sphere --engine ")
+
+
+def test_a_term_is_explained_where_it_is_asked_for(browser, pages):
+    page = opened(browser, pages / "all.html", width=1280, height=900)
+    link = "document.querySelector('#verdicts-title a.term')"
+    page.evaluate(f"{link}.focus()")
+    page.press("Enter", 13, "\r")
+    page.wait("document.getElementById('card').open")
+    assert page.evaluate("[scrollY, location.hash]") == [0, ""]
+    text = page.evaluate("document.getElementById('card').textContent")
+    assert "The result of a gate" in text
+    assert "Values: " in text
+    page.press("Escape", 27)
+    assert page.evaluate(f"document.activeElement === {link}")
+    # The way into the glossary, where the term stands out.
+    page.evaluate(f"{link}.click()")
+    page.evaluate("document.querySelector('#card .body a').click()")
+    page.wait("location.hash === '#term-verdict'")
+    assert not page.evaluate("document.getElementById('card').open")
+    back = "getComputedStyle(document.getElementById('term-{}')).backgroundColor"
+    assert page.evaluate(back.format("verdict")) != page.evaluate(back.format("setup"))
+
+
+def test_a_phone_explains_no_numbers_that_it_does_not_show(browser, pages):
+    shown = """['.matrix .n', '.of-numbers'].map((name) =>
+        [...document.querySelectorAll(name)].some((e) => e.offsetWidth > 0))"""
+    for width, there in ((390, False), (1280, True)):
+        page = opened(browser, pages / "all.html", width=width, height=900)
+        assert page.evaluate(shown) == [there, there]

@@ -13,6 +13,7 @@ from markupsafe import Markup, escape
 
 from omegadot.reports.page.glossary import linked
 from omegadot.reports.page.tables import Table, unit_text
+from omegadot.reports.text.engine_version import version_text
 from omegadot.reports.text.numbers import knob, short
 from omegadot.written import written
 
@@ -23,16 +24,21 @@ SCRIPTS = (
 )
 
 
-def without_scheme(value: Any) -> Any:
-    """A text without the ``https`` of its addresses: they are named, and nothing is fetched."""
-    if isinstance(value, str) and "://" in value and not isinstance(value, Markup):
-        return re.sub(r"https?://", "", value, flags=re.IGNORECASE)
-    return value
+def shown(value: Any) -> Any:
+    """A text without the ``https`` of its addresses: they are named, and nothing is fetched.
+
+    Units are written as the page writes them: rad/s² for rad/s^2.
+    """
+    if not isinstance(value, str) or isinstance(value, Markup):
+        return value
+    if "://" in value:
+        value = re.sub(r"https?://", "", value, flags=re.IGNORECASE)
+    return re.sub(r"(?<=/s)\^2(?!\w)", "²", value) if "/s^2" in value else value
 
 
 @lru_cache(maxsize=65536)
 def _cell(text: str) -> str:
-    return str(escape(without_scheme(text)))
+    return str(escape(shown(text)))
 
 
 @lru_cache(maxsize=65536)
@@ -77,6 +83,13 @@ def arguments(command: str) -> Markup:
     return Markup(" ").join(parts)
 
 
+def coded(text: str) -> Markup:
+    """A text in which names stand in backticks, as code."""
+    parts = text.split("`")
+    code = Markup("<code>{}</code>")
+    return Markup("").join(code.format(p) if k % 2 else escape(p) for k, p in enumerate(parts))
+
+
 def _knob_of(row: Mapping[str, Any]) -> str:
     return knob(row["timestep"], row["accuracy"])
 
@@ -89,10 +102,10 @@ def environment() -> Environment:
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
-        finalize=without_scheme,
+        finalize=shown,
     )
     found.filters |= {"short": short, "unit": unit_text, "unbroken": unbroken, "kept": kept}
-    found.filters["arguments"] = arguments
+    found.filters |= {"arguments": arguments, "coded": coded, "version": version_text}
     found.filters |= {"written": written, "body": table_body, "linked": linked, "knob": _knob_of}
     return found
 
