@@ -8,7 +8,8 @@ import zlib
 from unicodedata import normalize
 
 _OBJECT = re.compile(rb"(?:^|\n)(\d+) 0 obj\r?\n?(.*?)endobj", re.DOTALL)
-_STREAM = re.compile(rb"stream\r?\n(.*?)\r?\nendstream", re.DOTALL)
+# A last \r belongs to the data.
+_STREAM = re.compile(rb"stream\n(.*?)\nendstream", re.DOTALL)
 _SHOWN = re.compile(
     rb"/(\S+) [\d.]+ Tf|<([0-9A-Fa-f]+)> ?Tj|\[(.*?)\] ?TJ|\((?:[^()\\]|\\.)*\) ?Tj", re.DOTALL
 )

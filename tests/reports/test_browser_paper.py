@@ -104,3 +104,16 @@ def test_labels_of_an_axis_do_not_touch_on_paper(page):
         }); })"""
     page.resize(718, 900)
     assert printed(page, touching) == []
+
+
+@pytest.mark.parametrize("above", [0, 150, 300, 450, 600, 750])
+def test_the_title_of_a_scenario_stands_above_its_table(page, above):
+    """Pushed down by so many px, a title comes to the foot of a sheet."""
+    page.evaluate(
+        "document.querySelector('main').style.setProperty('padding-top', 0);"
+        f"document.getElementById('scenarios').style.paddingTop = '{above}px'"
+    )
+    titled = [text for text in printed_pages(page) if "Asphere,spun" in text]
+    assert titled
+    for text in titled:
+        assert text.count("worstomega-dotresidual,relative") >= text.count("Asphere,spun")
