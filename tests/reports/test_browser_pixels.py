@@ -194,7 +194,7 @@ def test_bodies_and_arrows_stand_where_attitude_and_vector_put_them(page):
     found = run(
         page,
         f"""const geometry = geometryOf([["box", [2, 1, 0.2], [0, 0, 0], [1, 0, 0, 0]]]);
-        const theme = {{ mark: "#00ff00", rule: "#ffffff" }};
+        const theme = {{ mark: "#00ff00", stand: "#ffffff" }};
         const own = sceneOf({{ geometry, pivot: false }}, "#00ff00", theme, "#0000ff");
         const cell = {{ x: 0, y: 0, width: {SIZE}, height: {SIZE} }};
         const camera = cameraOf(35, 22, cell);

@@ -388,7 +388,7 @@ def test_the_glance_shows_the_residual_that_the_failure_names(record: Record) ->
     rows_shown = glances(summarise(found), found.metrics, Sources())
     (shown,) = (g for g in rows_shown if g["engine"].startswith("dart"))
     assert (shown["status"], shown["runs"]) == ("fail", "3 of 6 runs fail; 3 unsupported")
-    assert shown["error_source"][0] == "failed gate: equation"
+    assert shown["error_source"][0] == "a fault: equation gate fails"
 
 
 def test_an_engine_that_declares_no_scheme_says_so(record: Record) -> None:

@@ -72,7 +72,7 @@ def test_a_row_is_a_gate_with_its_worst_measure_and_run(record: Record) -> None:
     (equation,) = (row for row in rows if row.gate == "equation")
     assert equation.run == ""  # all share it
     page = draw_page(failing(record))
-    assert "9e9 ✗ fail, bound 1e-13" in page
+    assert "9e9 ✗ fail, bound 1e-\u206013" in page
 
 
 @pytest.mark.parametrize(
@@ -114,7 +114,10 @@ def test_what_is_no_number_is_the_worst(record: Record, value: float | None) -> 
         metric(*RUN, 0.02, "scheme", "attitude", "match", value, bound=1.0, verdict="fail"),
     )
     (first,), _ = shown(with_metrics(record, *rows))
-    assert (first.measure, first.size) == ("attitude match and 1 more", "no number")
+    assert (first.measure, first.size) == (
+        "attitude distance from the scheme and 1 more",
+        "no number",
+    )
 
 
 def test_an_engine_of_many_failures_hides_no_other(record: Record) -> None:

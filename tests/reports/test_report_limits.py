@@ -138,5 +138,5 @@ def test_a_default_record_has_a_line_of_the_front_as_text():
     from omegadot.reports.page.page import draw_page
 
     page = draw_page(build(("sphere",)))
-    assert "mujoco RK4 at step 0.02 s" in page
+    assert "mujoco RK4 at step 0.02\u00a0s" in page  # on one line
     assert "at random states" in page

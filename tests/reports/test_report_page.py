@@ -84,7 +84,7 @@ def test_the_matrix_needs_no_script(sound):
 
 def test_every_run_has_a_row_in_every_table(sound):
     assert sound.count('<th scope="row">Euler, step 0.005 s') == 2 * 2
-    assert sound.count("explained by semi-implicit-euler, to 1.7e-11") == 30
+    assert sound.count("explained by semi-implicit-euler, to 1.7e-\u206011") == 30
 
 
 def test_all_head_cells_have_a_scope_and_no_heading_is_skipped(sound):

@@ -103,7 +103,7 @@ def test_a_failed_gate_is_the_source_of_error_though_every_scheme_matches(record
     broken = with_metrics(record, metric(*add, 0.1, bound=1e-13, verdict="fail"))
     found = {g["engine"]: g for g in glances(summarise(broken), broken.metrics, Sources())}
     assert found["dart 1.0"]["error_source"] == (
-        "failed gate: equation",
+        "a fault: equation gate fails",
         "equals the declared scheme in all 6 runs",
     )
 
@@ -120,6 +120,6 @@ def test_an_engine_that_does_not_step_its_scheme_is_not_excused():
     )
     found = {g["engine"]: g for g in glances(summarise(record), metrics, Sources())}
     assert found["dart 1.0"]["error_source"] == (
-        "failed gate: scheme",
+        "a fault: scheme gate fails",
         "equals the declared scheme in 1 of 2 runs",
     )

@@ -71,7 +71,7 @@ def omega_dot_rows(system: System, state: State, omega_dot: Array, eps: float = 
     """The omega-dot reported along a run, held to the equation's bound at the states it reports."""
     rows_of = equation.reported_rows(system, state, omega_dot, eps)
     found = [replace(row, gate=GATE) for row in rows_of]
-    note = "the omega-dot reported along the run is not that of its states"
+    note = "the run reports another omega-dot than the equation gives at its states"
     return [replace(row, note=note) if row.verdict == "fail" else row for row in found]
 
 

@@ -28,21 +28,29 @@ from omegadot.reports.charts.svg import (
     line_path,
     linear,
     path_of,
+    spaced,
     text_at,
     upwards,
     whole,
 )
-from omegadot.reports.text.numbers import plain
+from omegadot.reports.text.numbers import listed, plain
 
 _MOST_STEPS = 8
+_FLOOR = ("f", "floor")
+_BOUND = ("b", "round-off bound")
+_FRONT = ("p", "Pareto front")
 
 
 @dataclass(frozen=True)
 class Still:
-    """A picture, and the lines in it: each with the numbers of all that it stands for."""
+    """A picture, and the lines in it: each with the numbers of all that it stands for.
+
+    greys: the lines of no engine, by the class of their look, with their names.
+    """
 
     svg: Markup
     lines: list[list[int]]
+    greys: tuple[tuple[str, str], ...] = ()
 
 
 def stills(chart: Chart, drawn: Mapping[str, Any]) -> dict[str | int, Still]:
@@ -80,7 +88,14 @@ def over_time(chart: Chart, drawn: Mapping[str, Any], place: int) -> Still:
         run = chart.deviations[leader]
         path = path_of(x.at(run.time), _heights(run, channel, y))
         parts.append(line_path(number, path))
-    return Still(whole(parts), list(groups.values()))
+    bounded = any(run[5][place] for run in drawn["deviations"])
+    greys = ((_BOUND, bounded), (_FLOOR, axis["resolvable"]))
+    return Still(whole(parts), list(groups.values()), _there(greys))
+
+
+def _there(greys: Iterable[tuple[tuple[str, str], Any]]) -> tuple[tuple[str, str], ...]:
+    """Those of which there is something."""
+    return tuple(grey for grey, known in greys if known)
 
 
 def _last(stairs: list[float]) -> float:
@@ -113,7 +128,7 @@ def over_sweep(drawn: Mapping[str, Any], kind: str) -> Still:
     else:
         steps = [(float(x.at(h)), plain(h)) for h in every] if len(every) <= _MOST_STEPS else []
         ticks, title = steps or decades(x, 6), "time step, s"
-        below = _below("b", sweeps["rounding"], x, y)
+        below = [*_below("b", sweeps["rounding"], x, y), *_guides(sweeps["guides"], x, y)]
     parts = [*grid(ticks, decades(y, 7), title), *_floor(sweeps["resolvable"], y), *below]
     shown = [(n, n if kind == "cost" else leader) for n, _, leader in sweeps["lines"]]
     groups = _together((n, leader) for n, leader in shown if n in drawn["first"] and known[n])
@@ -121,7 +136,21 @@ def over_sweep(drawn: Mapping[str, Any], kind: str) -> Still:
         xs, ys = _places(known[number], at, x, y)
         dots = "".join(f"M{a:.0f} {b:.0f}h0" for a, b in zip(xs, ys, strict=True))
         parts += [line_path(number, path_of(xs, ys)), line_path(number, dots, "o")]
-    return Still(whole(parts), list(groups.values()))
+    guides = (
+        "d",
+        f"declared order {listed([plain(guide[0]) for guide in sweeps['guides']] or [''])}",
+    )
+    of_step = ((guides, sweeps["guides"]), (_BOUND, sweeps["rounding"]))
+    own = ((_FRONT, drawn["front"]),) if kind == "cost" else of_step
+    return Still(
+        whole(parts), list(groups.values()), _there((*own, (_FLOOR, sweeps["resolvable"])))
+    )
+
+
+def _guides(guides: Iterable[Sequence[float]], x: Scale, y: Scale) -> list[str]:
+    """A line of each declared order, from its first step to its last."""
+    ends = ((np.array(guide[1::2]), np.array(guide[2::2])) for guide in guides)
+    return [f'<path class="d" d="{path_of(x.at(steps), y.at(errors))}"/>' for steps, errors in ends]
 
 
 def _drawable(point: Sequence[Any], at: int) -> bool:
@@ -156,9 +185,10 @@ def at_states(rows: Sequence[Sequence[Any]]) -> Markup:
     # Zeros stand apart, left of the decades.
     zero, x = left + 10, Scale(low, high, left + 24, WIDTH - RIGHT)
     parts = [text_at((left + WIDTH) / 2, floor + 30, "residual, relative")]
-    for place, label in [*decades(x, 6), *([(zero, "0")] if any(0 in r[4:] for r in rows) else [])]:
-        parts.append(f'<path class="g" d="M{place:.0f} {TOP}V{floor}"/>')
-        parts.append(text_at(place, floor + 14, label))
+    zeros = [(zero, "0")] if any(0 in row[4:] for row in rows) else []
+    ticks = [*zeros, *decades(x, 6)]
+    parts += [f'<path class="g" d="M{place:.0f} {TOP}V{floor}"/>' for place, _ in ticks]
+    parts += [text_at(place, floor + 14, label) for place, label in spaced(ticks)]
     for number, (_, label, colour, _, *figures) in enumerate(rows):
         y = TOP + (floor - TOP) * (number + 0.5) / len(rows)
         parts.append(text_at(left - 6, y + 4, label if len(label) < 15 else label[:14] + "…", "e"))

@@ -17,6 +17,8 @@ from omegadot.reports.text.numbers import plain
 # To the right there is room for half of the last label.
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 440, 240, 46, 16, 8, 34
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+# How wide a letter of a label is on paper, where it is 15 px high.
+_LETTER = 8.5
 # Half a px: a point that is no farther from the line between its neighbours is left out.
 _FLAT = 0.5
 
@@ -115,8 +117,20 @@ def grid(
     rules += "".join(f"M{x:.0f} {TOP}V{bottom}" for x, _ in xs)
     yield f'<path class="g" d="{rules}"/>'
     yield from (text_at(LEFT - 5, y + 4, label, "e") for y, label in ys)
-    yield from (text_at(x, bottom + 14, label) for x, label in xs)
+    yield from (text_at(x, bottom + 14, label) for x, label in spaced(xs))
     yield text_at((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 4, title)
+
+
+def spaced(ticks: Sequence[tuple[float, str]]) -> list[tuple[float, str]]:
+    """Of labels from left to right those that no label before them touches, on paper neither."""
+    found: list[tuple[float, str]] = []
+    free = -math.inf
+    for place, label in ticks:
+        half = 0.5 * _LETTER * len(label)
+        if place - half >= free:
+            found.append((place, label))
+            free = place + half + _LETTER
+    return found
 
 
 def whole(parts: Iterable[str], height: float = HEIGHT) -> Markup:

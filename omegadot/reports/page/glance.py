@@ -14,7 +14,15 @@ from omegadot.reports.summary.figures import Figure, size
 from omegadot.reports.summary.matrix import MARKS, origin_of
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import Cell, Column, Summary, text_of, worst
-from omegadot.reports.text.numbers import angle, grouped, knob, short, times, times_its_bound
+from omegadot.reports.text.numbers import (
+    angle,
+    grouped,
+    knob,
+    listed,
+    short,
+    times,
+    times_its_bound,
+)
 
 # A cell: the value, its details, which may be folded away, and what stands beside it in any case.
 Detailed = tuple[str, str] | tuple[str, str, str]
@@ -99,13 +107,13 @@ def _error_source(own: pl.DataFrame) -> Detailed:
     judged = own.filter((pl.col("metric") == "match") & pl.col("verdict").is_in(["pass", "fail"]))
     failed = set(own.filter(pl.col("verdict") == "fail").get_column("gate"))
     gates = [gate for gate in GATES if gate in failed]
-    source = f"failed gate{'s' * (len(gates) > 1)}: {', '.join(gates)}"
+    fails = "gates fail" if len(gates) > 1 else "gate fails"
+    source = f"a fault: {listed(gates)} {fails}" if gates else "truncation error of the scheme"
     if judged.is_empty():
         return source if gates else "no scheme declared", "no scheme declared" if gates else ""
     equal, total = int((judged.get_column("verdict") == "pass").sum()), len(judged)
     runs = f"{equal} of {times(total, 'run')}" if equal < total else f"all {total} runs"
     runs = "1 run" if equal == total == 1 else runs
-    source = source if gates else "truncation error of the scheme"
     return source, f"equals the declared scheme in {runs}"
 
 

@@ -11,7 +11,7 @@ from markupsafe import Markup, escape
 
 INTRODUCTION = (
     "The report's headings link to these terms. Omega is the angular velocity and omega-dot the "
-    "angular acceleration. `h` is the time step, `n` the number of steps, `eps` is 2^-52."
+    "angular acceleration. `h` is the time step, `n` the number of steps, `eps` is 2⁻⁵²."
 )
 
 
@@ -39,122 +39,122 @@ _TEXT = """
 cluster (clusters, identical trajectories)
 Runs of one scenario and step whose omega and attitude are the same within the round-off bound,
 whatever scheme they declare. Their agreement is not independent evidence that they are right.
-= |difference| ≤ round-off bound, in omega and in attitude
+= Formula: |difference| ≤ round-off bound, in omega and in attitude
 
 companion
 The run of the reference with the scheme that an engine declares, from the same start and with the
 same steps. What is left between the engine and its companion is not explained by the scheme.
-= same units as the state
+= Unit: that of the state
 
 consistent
 An error is consistent where it shrinks with the step at the declared order or faster, and the
 difference from the companion does too. It is then a discretisation error and passes.
-= observed order ≥ declared order − 0.15
+= Formula: observed order ≥ declared order − 0.15
 
 declared exception (declared exceptions)
 A failure that is known and listed in a file, with its reason and a link. It is counted apart from
 passes and failures.
-= verdict `declared`
+= Value: the verdict `declared`
 
 defect (defects)
 The error of a single step from an exact state (local truncation error). Its order is one more than
 that of the error that accumulates over a run.
-= |x₁ − x(h)| ∝ h^(p+1), for a scheme of order p
+= Formula: |x₁ − x(h)| ∝ hᵖ⁺¹, for a scheme of order p
 
 divergence (diverges)
 A run diverges at the first sample whose attitude is more than 1° from the exact one. The outcome
 diverged is different: the state is no longer finite.
-= s, or outcome `diverged`
+= Unit: s
 
 exact solution (exact solutions)
 The motion that every run is compared with: a closed form where one is known, otherwise a Taylor
 series of the same equations in extended precision. It never comes from another engine.
-= closed-form or series
+= Values: closed-form, series
 
 explained (source of error)
 An error is explained where the engine and its companion reach the same states within the round-off
 bound. The error is then the truncation error of the declared scheme, and passes.
-= |engine − companion| ≤ round-off bound
+= Formula: |engine − companion| ≤ round-off bound
 
 flip (flips, flip time)
 The body turns over: omega along the axis of middle inertia changes its sign. The error of a flip is
 the difference of its time from the exact one.
-= s
+= Unit: s
 
 floor
 How far a perfect answer in double precision may be from the exact solution (in single precision
-2^29 times as far), because the inputs are rounded and the motion magnifies that. An error below the
+2²⁹ times as far), because the inputs are rounded and the motion magnifies that. An error below the
 floor is not judged.
-= same unit as the error: rad, rad/s, m, or relative
+= Unit: that of the error, so rad, rad/s, m, or relative
 
 gate (gates)
-One of the six questions that an engine is judged by: model, equation, scheme, invariants,
-trajectory and cost. Each bound follows from physics and floating point; cost is measured and not
-judged.
-= value ≤ bound
+One of the five questions that an engine is judged by: model, equation, scheme, invariants and
+trajectory. Each bound follows from physics and floating point; the cost of a step is measured as
+well, and not judged.
+= Formula: value ≤ bound
 
 growth
 The largest factor by which the motion magnifies a small deviation before time t. It is about 1 for
 simple motions and very large near a separatrix.
-= growth(t) = max over s ≤ t of |M(t) M(s)⁻¹|, with M the state-transition
+= Formula: growth(t) = max over s ≤ t of |M(t) M(s)⁻¹|, with M the state-transition
   matrix of the linearised motion
 
 invariants (drift)
 Energy, angular momentum and linear momentum. Where a load acts they change, and their exact values
 over time are what a run must follow; the difference is the drift.
-= relative to the largest value of the exact motion
+= Unit: none, relative to the largest value of the exact motion
 
 order (orders, convergence)
 The power of the step with which the error of a scheme shrinks. The observed order is the slope of
 log error over log step between the finest steps.
-= error ∝ h^p
+= Formula: error ∝ hᵖ
 
 outcome (what ran)
 How a run ended: ok, unsupported, not-installed, diverged, raised, crashed, timeout or interrupted.
 Every outcome except ok has its reason and is never counted as a pass.
-= one per run
+= Values: those named above, one a run
 
 Pareto front
 The runs that no other run beats in both cost and error. A user who wants a given accuracy at the
 lowest cost picks one of them.
-= s of wall time per simulated second, against rad
+= Units: s of wall time per simulated second, and rad
 
 reference
 The project's own code of the Newton–Euler equations and of every scheme. It also runs as the engine
 `reference`; the engine `exact` is the exact solution.
-= ω̇ = I⁻¹ (τ − ω × I ω)
+= Formula: ω̇ = I⁻¹ (τ − ω × I ω)
 
 residual
 The difference between the engine's omega-dot and that of the Newton–Euler equations at one
 identical state. No time stepping is involved, so a sound engine stays within a few roundings.
-= J |ω̇ − ω̇_ref| / S ≤ 64 eps J / λ; S: sizes of the terms of equation (8), J and λ: largest and
-  smallest inertia
+= Formula: J |ω̇ − ω̇_ref| / S ≤ 64 eps J / λ; S: sizes of the terms of equation (8), J and λ: largest
+  and smallest inertia
 
 round-off bound
 How far rounding alone can take a run away from what its scheme gives in exact arithmetic. It counts
 the roundings of each step and multiplies them by the growth.
-= 16 eps (n + 1) (1 + h A / rate) growth(t), with A the largest |ω̇| and rate the largest |ω|; rad
-  in attitude, relative to the rate in omega; eps is 2^-52, in single precision 2^-23
+= Formula: 16 eps (n + 1) (1 + h A / rate) growth(t), with A the largest |ω̇| and rate the largest
+  |ω|; rad in attitude, relative to the rate in omega; eps is 2⁻⁵², in single precision 2⁻²³
 
 scheme (schemes)
 The formula by which an integrator computes the next state from the present one. The reference has
 each scheme in plain code, and the scheme gate compares an engine with it step by step.
-= for example ω ← ω + h ω̇, then q ← q exp(h ω)
+= Formula: for example ω ← ω + h ω̇, then q ← q exp(h ω)
 
 separatrix
 The motions that tend to a spin about the axis of middle inertia, or to an upright top. Close to
 them a small deviation grows exponentially, and so do rounding errors.
-= growth ≫ 1
+= Formula: growth ≫ 1
 
 setup (settings, switched off)
 How an engine is configured for a run. In physics, defaults that disturb the motion (sleeping,
 contacts, implicit damping) are switched off; as-shipped leaves all defaults.
-= physics or as-shipped
+= Values: physics, as-shipped
 
 verdict (verdicts)
 The result of a gate: pass, fail, declared (a declared exception) or info (measured and not judged).
 The verdict of a scenario is the worst one of its runs.
-= one per gate and run
+= Values: those named above, one a gate and run
 """
 
 

@@ -15,6 +15,7 @@ from omegadot.reports.record.schema import GATES
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.reasons import failing_gates, reason_of
 from omegadot.reports.summary.summary import task_status
+from omegadot.reports.text.metric_names import metric_name
 from omegadot.reports.text.numbers import engine_name, knob, short
 
 # One value an engine, whatever it is stepped with; the others are one value a run.
@@ -158,7 +159,7 @@ def _pivot(metrics: pl.DataFrame, heads: list[str], name: Any, sources: Sources)
         ("engine",),
         tuple((title, len(list(group))) for title, group in groupby(titles)),
         tuple(
-            ", ".join(filter(None, (metric.replace("_", " "), unit_text(unit, gate))))
+            ", ".join(filter(None, (metric_name(metric), unit_text(unit, gate))))
             for gate, _, metric, unit in columns
         ),
         tuple(

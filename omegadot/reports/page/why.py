@@ -52,8 +52,8 @@ def scheme_table(record: Record, sources: Sources) -> Table:
         (
             "runs that match, of those judged",
             "fraction of round-off bound",
-            "omega, relative",
-            "attitude, rad",
+            "deviation in omega, relative",
+            "deviation in attitude, rad",
         ),
         tuple(rows),
     )

@@ -24,6 +24,7 @@ from omegadot.reports.summary.failures import failures_of
 from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
 from omegadot.reports.summary.not_tried import not_tried
 from omegadot.reports.summary.reasons import MODEL_ALONE, failing_gates, tests_motion
+from omegadot.reports.text.engine_version import version_text, with_version
 from omegadot.reports.text.numbers import times
 
 # From the worst to the best. A skip is never a pass, and neither is a run that was not judged.
@@ -59,7 +60,8 @@ class Column:
     @property
     def name(self) -> str:
         """The label, with the version in any case."""
-        return self.label if self.version in self.label else f"{self.label} {self.version}"
+        named = self.version and version_text(self.version) in self.label
+        return self.label if named else with_version(self.label, self.version)
 
 
 @dataclass(frozen=True)
@@ -270,7 +272,7 @@ def _columns(
     columns = []
     for engine, version, setup in keys:
         several = len({v for e, v, _ in keys if e == engine}) > 1
-        label = f"{engine} {version}" if several else engine
+        label = with_version(engine, version) if several else engine
         label += (setup != "physics") * f" {setup}"
         columns.append(Column(engine, version, setup, label, engine in singles))
     return tuple(columns)

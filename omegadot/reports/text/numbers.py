@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from omegadot.reports.text.engine_version import with_version
 from omegadot.written import written
 
 
@@ -84,7 +85,8 @@ def degrees(radians: float) -> str:
 
 def engine_name(engine: str, version: str = "", setup: str | None = None) -> str:
     """An engine, its version where that is given, and its setup where it is not the usual one."""
-    return " ".join(filter(None, (engine, version, "" if setup == "physics" else setup)))
+    own = "" if setup == "physics" else setup
+    return " ".join(filter(None, (with_version(engine, version), own)))
 
 
 def knob(timestep: float | None, accuracy: float | None) -> str:

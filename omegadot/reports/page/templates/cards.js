@@ -25,7 +25,7 @@ function commandFor(origins, source, anchor) {
 function facts(origins, source) {
   const list = made("dl");
   const named = [
-    ["engine", `${source.engine} ${source.version}`.trim()],
+    ["engine", `${source.engine} ${/^\d+$/.test(source.version) ? `(version ${source.version})` : source.version}`.trim()],
     ["setup", source.setup],
     ["integrator", source.integrator ?? "not applicable (no time stepping)"],
     ["step", source.timestep === null ? null : `${written(source.timestep)} s`],
@@ -38,9 +38,12 @@ function facts(origins, source) {
   return list;
 }
 
+// It breaks between its arguments, not within, at the hyphens of an option.
+const argumentsOf = (command) => command.split(" ").flatMap((text, k) => [...(k ? [" "] : []), text.includes("-") ? made("span", { className: "argument", textContent: text }) : text]);
+
 function block(origins, anchor, number, numbers) {
   const source = sourceOf(origins, number), command = commandFor(origins, source, anchor);
-  const pre = made("pre", { tabIndex: 0, className: "command" }, made("code", { textContent: command }));
+  const pre = made("pre", { tabIndex: 0, className: "command" }, made("code", {}, ...argumentsOf(command)));
   const figures = numbers.map(([what, value]) => made("p", {}, made("b", { textContent: value }), ` ${what}`));
   return made("section", {}, ...figures, facts(origins, source), pre, made("p", {}, ...copyButton("Copy the command", () => command)));
 }
@@ -77,14 +80,26 @@ async function cellCard(link) {
   openCard(origins, nameOf(sourceOf(origins, own)), anchor, shown, [`Worst verdict: ${status}`, part].filter(Boolean).join("; ") + ".");
 }
 
+// A term is explained where it is asked for; its place in the glossary is a link from there.
+function termCard(link) {
+  const card = element("card"), name = element(link.hash.slice(1)), place = made("a", { href: link.hash, textContent: "In the glossary" });
+  element("card-title").textContent = name.textContent;
+  place.addEventListener("click", () => card.close());
+  card.querySelector(".body").replaceChildren(made("p", {}, ...name.nextElementSibling.cloneNode(true).childNodes), made("p", {}, place));
+  card.showModal();
+}
+
 for (const link of document.querySelectorAll("a[data-card]")) {
   link.setAttribute("role", "button");
   link.setAttribute("aria-haspopup", "dialog");
   link.title = "Where these numbers come from, and the command that reproduces them";
 }
 document.addEventListener("click", (event) => {
-  const link = event.target.closest?.("a[data-card]"), source = event.target.closest?.("button.source");
-  if (link) {
+  const link = event.target.closest?.("a[data-card]"), source = event.target.closest?.("button.source"), term = event.target.closest?.("a.term");
+  if (term) {
+    event.preventDefault();
+    termCard(term);
+  } else if (link) {
     event.preventDefault();
     cellCard(link);
   } else if (source) rowCard(source.closest("tr"));

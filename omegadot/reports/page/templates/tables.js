@@ -70,6 +70,14 @@ function toolbar(table, columns) {
   return made("div", { className: "tools" }, filter, count, copy, feedback);
 }
 
+// A table that is cut fades at the edge behind which there is more.
+const widths = new ResizeObserver((entries) => entries.forEach(({ target }) => fade(target)));
+const fade = (box) => box.classList.toggle("cut", box.scrollWidth - box.clientWidth - box.scrollLeft > 1);
+function fadeAtEdge(box) {
+  box.addEventListener("scroll", () => fade(box), { passive: true });
+  widths.observe(box);
+}
+
 function enhance(table) {
   if (table.dataset.ready || !table.tHead || !table.tBodies.length) return;
   table.dataset.ready = "yes";
@@ -86,7 +94,9 @@ function enhance(table) {
     source.setAttribute("aria-haspopup", "dialog");
     cell.append(source);
   }
-  (table.closest(".scroll") ?? table).before(toolbar(table, columns));
+  const scrolled = table.closest(".scroll");
+  (scrolled ?? table).before(toolbar(table, columns));
+  if (scrolled) fadeAtEdge(scrolled);
 }
 
 for (const table of document.querySelectorAll("main table")) if (!table.closest("details:not([open])")) enhance(table);

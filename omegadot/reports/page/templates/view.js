@@ -53,10 +53,13 @@ function offer(scenario) {
 }
 
 function tabulate(scenario) {
+  const heads = [...element("view-table").tHead.rows[0].cells].slice(1).map((cell) => cell.textContent);
   const rows = scenario.runs.map(([line, , knob, , , , diverges, largest, end]) => {
     const cells = [knob, diverges === null ? "does not" : seconds(diverges), exactly(largest), seconds(end)];
     const head = made("th", { scope: "row", textContent: loaded.data.lines[line].name });
-    return made("tr", {}, head, ...cells.map((text) => made("td", { textContent: text })));
+    const row = made("tr", {}, head, ...cells.map((text) => made("td", { textContent: text })));
+    [...row.cells].slice(1).forEach((cell, k) => { cell.dataset.head = heads[k]; });
+    return row;
   });
   element("view-table").tBodies[0].replaceChildren(...rows);
 }

@@ -8,7 +8,7 @@ let loaded = null, exact = null;
 let theme = null;
 function measure() {
   const style = getComputedStyle(root), read = (name) => style.getPropertyValue(`--${name}`).trim();
-  const names = ["ink", "soft", "rule", "panel", "shade", "sans"];
+  const names = ["ink", "soft", "rule", "stand", "panel", "shade", "sans"];
   theme = { ...Object.fromEntries(names.map((name) => [name, read(name)])), mark: night.matches ? "#15181b" : "#ffffff" };
   show.widths = { stage: element("view-stage").clientWidth, errors: element("view-errors").clientWidth };
   clearScenes(show);

@@ -16,10 +16,6 @@ function seenThrough(geometry, colour, faint = 0.25) {
   for (const more of [{}, behind]) group.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: colour, ...more })));
   return group;
 }
-function reshape(group, geometry) {
-  group.children[0].geometry.dispose();
-  for (const mesh of group.children) mesh.geometry = geometry;
-}
 
 // An arrow from the origin. A dashed one needs no colour to be distinguished.
 const HEAD = 0.13;
@@ -55,15 +51,19 @@ const surface = (more) => new THREE.MeshPhongMaterial({ specular: "#202020", shi
 function sceneOf(scenario, colour, theme, arrowColour) {
   const { scene, sun } = litScene();
   const body = new THREE.Mesh(colouredGeometry(scenario.geometry, colour, theme.mark), surface({ vertexColors: true }));
-  const trace = seenThrough(new THREE.BufferGeometry(), colour);
+  // No solid is seen through: a trace behind one would seem to be drawn on its face.
+  const trace = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ color: colour }));
   const arrows = { H: arrow(arrowColour, false), ω: arrow(arrowColour, true) };
   scene.add(body, trace, arrows.H.group, arrows.ω.group);
-  scene.add(new THREE.Mesh(tube(ring((x, y) => [0.55 * x, 0.55 * y, -1]), 0.006, true), new THREE.MeshBasicMaterial({ color: theme.rule })));
-  if (scenario.pivot) scene.add(new THREE.Mesh(tube([[0, 0, -1], [0, 0, -0.5], [0, 0, 0]], 0.016), new THREE.MeshBasicMaterial({ color: theme.rule })));
+  scene.add(new THREE.Mesh(tube(ring((x, y) => [0.55 * x, 0.55 * y, -1]), 0.006, true), new THREE.MeshBasicMaterial({ color: theme.stand })));
+  if (scenario.pivot) scene.add(new THREE.Mesh(tube([[0, 0, -1], [0, 0, -0.5], [0, 0, 0]], 0.016), new THREE.MeshBasicMaterial({ color: theme.stand })));
   const set = ({ q: [w, x, y, z], points, vectors }) => {
     body.quaternion.set(x, y, z, w);
     trace.visible = points.length > 0;
-    if (points.length) reshape(trace, tube(points, 0.008));
+    if (points.length) {
+      trace.geometry.dispose();
+      trace.geometry = tube(points, 0.008);
+    }
     for (const own of Object.values(arrows)) own.group.visible = false;
     for (const [end, label] of vectors) arrows[label].pointTo(end);
   };

@@ -32,7 +32,11 @@ function fitted(context, text, width) {
 function title(context, cell, text, colour, theme, below = "") {
   context.textAlign = "center";
   context.textBaseline = "alphabetic";
-  [[text, `600 13px ${theme.sans}`, 17, colour], [below, `12px ${theme.sans}`, 33, theme.ink]].forEach(([line, font, y, ink]) => {
+  context.font = `12px ${theme.sans}`;
+  // No number is cut off: where a line is too long it goes on in the next.
+  const lines = context.measureText(below).width > cell.width - 12 ? below.split(", ") : [below];
+  const parts = lines.map((line, k) => [line, `12px ${theme.sans}`, 33 + 14 * k, theme.ink]);
+  [[text, `600 13px ${theme.sans}`, 17, colour], ...parts].forEach(([line, font, y, ink]) => {
     [context.font, context.fillStyle] = [font, ink];
     context.fillText(fitted(context, line, cell.width - 12), cell.x + cell.width / 2, cell.y + y);
   });

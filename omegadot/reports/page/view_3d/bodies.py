@@ -110,7 +110,8 @@ def _of_inertia(system: System) -> tuple[tuple[Solid, ...], str]:
     towards = solid.height(-axis) + distance
     scale = min(1.0, 0.6 * distance / towards)
     description += (
-        f", at {written(scale, 2)} of its size," * (scale < 1.0) + " on a rod from the pivot"
+        f", {written(scale, 2)} times as large, so that the pivot stays in sight," * (scale < 1.0)
+        + " on a rod from the pivot"
     )
     shrunk = Solid(shape, scale * size, centre, turned)
     return (shrunk, _rod(axis, distance - scale * towards, 0.05 * distance)), description

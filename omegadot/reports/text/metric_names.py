@@ -1,0 +1,18 @@
+"""What a metric of the record is called where people read it."""
+
+from __future__ import annotations
+
+_NAMES = {
+    "match": "distance from the scheme",
+    "rate_at_no_step": "rate as the step vanishes",
+    "residual_alone": "residual at one state by itself",
+    "residual_in_run": "residual along the run",
+    "residual_of_sibling": "residual after a similar system was loaded",
+    "residual_on_path": "residual along the exact motion",
+    "residual_reloaded": "residual after another system was loaded",
+}
+
+
+def metric_name(metric: str) -> str:
+    """A metric in plain English; one without a name of its own loses its underscores."""
+    return _NAMES.get(metric, metric.replace("_", " "))
