@@ -17,6 +17,7 @@ from omegadot.diagnosis.equations.left_over import LeftOver
 from omegadot.diagnosis.equations.near_inertia import near_inertia
 from omegadot.diagnosis.equations.pivot_inertia import pivot_inertia
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
+from omegadot.diagnosis.equations.solve_matrix import solve_matrix
 from omegadot.diagnosis.equations.worded import Named, named, on_some
 
 Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
@@ -179,6 +180,9 @@ class Across:
         named_weak = self._carried.weak(scene, source, weak)
         if named_weak.text:
             return named_weak
+        solved = self._rule(solve_matrix, source)
+        if solved:
+            return Named(solved)
         where = where_wrong(scene.evidence[source], self._all.evidence(source))
         if where:
             return Named(f"the equation holds at some states, and is wrong only where {where}")
