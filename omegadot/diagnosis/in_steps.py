@@ -11,7 +11,7 @@ from omegadot.diagnosis.equations.wrong_equation import known_difference
 from omegadot.diagnosis.kept_case import KeptCase
 from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.stepping.follows import Followed
-from omegadot.diagnosis.stepping.jumps import jump_cause, jumps
+from omegadot.diagnosis.stepping.jumps import STOPPED, jump_cause, jumps
 from omegadot.diagnosis.stepping.kinematics import (
     kinematic_causes,
     moves_by_cause,
@@ -19,6 +19,7 @@ from omegadot.diagnosis.stepping.kinematics import (
     omega_still_cause,
     velocity_share_cause,
 )
+from omegadot.diagnosis.stepping.outrun import outruns
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import either
 
@@ -60,13 +61,31 @@ class StepCauses:
             seen = [one for one in self._of_trajectories() if not one.startswith(FIRST_ALONE)]
             return seen or [f"{IN_THE_FIRST}: {common}"]
         if jumps(steps):
-            return [] if self._kept.declares else either([jump_cause(steps, self._kept.beginning)])
+            return [] if self._kept.declares else self.jumped(steps)
         if steps.still:
             return []
         moved = moves_by_cause(steps)
         if moved:  # where it is either of two, a whole run may show which
             return (self._of_trajectories() if moved.startswith("either") else []) or [moved]
         return either(kinematic_causes(steps)) or self._of_omega(steps)
+
+    def jumped(self, steps: VanishingSteps) -> list[str]:
+        """What a step does to a state however short it is.
+
+        Where a damping that is wrong on other scenarios stops the body within such steps, it is
+        that damping; where what is wrong with it is not known, nothing is named.
+        """
+        found, load = jump_cause(steps, self._kept.beginning), steps.system.load
+        if found not in ("", STOPPED) or not np.any(load.damping) or not np.any(steps.jumps):
+            return either([found])
+        source = self._kept.source
+        every = ((n, s) for n, s in self._across.scenes.items() if source in s.evidence)
+        damped = [n for n, s in every if np.any(s.system.load.damping) and s.evidence[source].clear]
+        for name in damped:
+            text, one = self._across.cause(name, source), self._across.chosen(name, source)
+            if one is not None and outruns(one, steps):
+                return [f"in the steps, {text}"]
+        return [] if damped else either([found])
 
     def _of_omega(self, steps: VanishingSteps) -> list[str]:
         """Omega is of another time than the rest, or the equation that it follows is another."""

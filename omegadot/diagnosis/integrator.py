@@ -12,7 +12,7 @@ from omegadot.diagnosis.kept_case import kept_case
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
-from omegadot.diagnosis.stepping.jumps import jump_cause, jumps, slight_jump_cause
+from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
@@ -119,7 +119,7 @@ class IntegratorCauses:
         if self._case.name in self._over.turned and all(map(is_fact, found)):
             begins = self._over.begins
             found = [begins] if begins else found
-        jumped = either([jump_cause(steps, self._kept.beginning)])
+        jumped = self._in_steps.jumped(steps)
         if any(OF_ONE_FIELD in text for text in found):
             found = jumped or found
         last = found or jumped or either(kinematic_causes(steps))

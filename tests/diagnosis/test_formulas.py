@@ -90,12 +90,29 @@ def world_torque_turned_twice(s: System, x: State) -> Array:
     return rotate_inverse(x.orientation, once) - once
 
 
+def damping_over_the_mass(s: System, x: State) -> Array:
+    """The rate of the damping is -(d / m) omega, whatever the inertia."""
+    w, d = x.angular_velocity, float(s.load.damping)
+    return d * w - apply(moving_inertia(s), d / float(s.body.mass) * w)
+
+
+def weight_at_the_place(s: System, x: State) -> Array:
+    """A torque of gravity without the mass, at the centre of mass from the origin."""
+    arm, down = _arm(s, x.angular_velocity), _down(s, x)
+    if s.load.pivot is None:
+        return 0.0 * arm
+    center = np.asarray(s.body.center_of_mass)
+    return cross(center + 0.0 * arm, down) - float(s.body.mass) * cross(arm, down)
+
+
 TORQUES: dict[str, tuple[Torque, str]] = {
     "lever": (on_lever, "a torque k d r x v is added, with k = -0.3 1/m^2, r the lever"),
     "gradient": (gradient, "a torque k (g x I_c g) / |g| is added, with k = 1e-6 1/m"),
     "friction": (friction, "a torque -0.001 m|g||r| omega / |omega| is added"),
     "each": (each_axis, "a torque k d |omega_i| omega_i is added, with k = -0.02 s"),
     "momentum": (of_momentum, "omega x I_c I_c omega is added, with k = 0.1 1/(kg m^2)"),
+    "damping": (damping_over_the_mass, "the damping is -d omega / m, where -I^-1 d omega is right"),
+    "weight": (weight_at_the_place, "in place of the torque of gravity stands -g x c"),
     "twice": (world_torque_turned_twice, "in place of the torque in world axes stands R^T tau_w"),
 }
 
@@ -151,6 +168,21 @@ def test_a_force_is_found_with_the_mass_that_it_is_divided_by() -> None:
 
     found = text_of(by_formula(scenes_of(magnus, EVERY), FORWARD))
     assert "has k (omega x v) / m in it, with k = 0.02 kg" in found
+
+
+def test_a_product_in_place_of_a_term_of_the_linear_acceleration_is_found() -> None:
+    """Caught: two terms of which one is too much, where one stands in place of the other."""
+
+    def wrong_order(s: System, x: State) -> Acceleration:
+        true, w = forward_dynamics(s, x), x.angular_velocity
+        if s.load.pivot is None:
+            return true
+        arm = lever(s) + 0.0 * w
+        off = cross(true.angular, cross(true.angular, arm)) - cross(w, cross(w, arm))
+        return Acceleration(true.angular, true.linear + rotate(x.orientation, off))
+
+    found = text_of(by_formula(scenes_of(wrong_order, EVERY), FORWARD))
+    assert "has -omega-dot x (r x omega-dot) in place of omega x (omega x r), with r" in found
 
 
 def test_products_of_the_parallel_axis_theorem_are_found_in_the_inertia() -> None:

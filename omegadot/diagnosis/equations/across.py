@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 
 from omegadot.diagnosis.equations.at_states import AtSomeStates, where_wrong
 from omegadot.diagnosis.equations.by_formula import Formulas
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.carried import Carried
-from omegadot.diagnosis.equations.evidence import INVERSE
+from omegadot.diagnosis.equations.evidence import INVERSE, Evidence
 from omegadot.diagnosis.equations.held import Scene, Scenes
 from omegadot.diagnosis.equations.known import kinds_off, known_over
 from omegadot.diagnosis.equations.left_over import LeftOver
 from omegadot.diagnosis.equations.near_inertia import near_inertia
+from omegadot.diagnosis.equations.pivot_inertia import pivot_inertia
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
+from omegadot.diagnosis.equations.solve_matrix import solve_matrix
 from omegadot.diagnosis.equations.worded import Named, named, on_some
+
+Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
 
 
 class Across:
@@ -27,7 +33,7 @@ class Across:
         self._left_over = LeftOver()
         self._named: dict[tuple[str, str], Named] = {}
         self._known: dict[tuple[str, tuple[str, ...]], str] = {}
-        self._near: dict[str, str] = {}
+        self._rules: dict[tuple[Rule, str], str] = {}
 
     @property
     def scenes(self) -> dict[str, Scene]:
@@ -41,7 +47,7 @@ class Across:
         self._at_states.add(scene)
         self._left_over.add(scene)
         self._carried = Carried(self._all)
-        self._named, self._known, self._near = {}, {}, {}
+        self._named, self._known, self._rules = {}, {}, {}
 
     def cause(self, name: str, source: str) -> str:
         """The cause on one scenario; "" where nothing fits, or nothing that holds elsewhere."""
@@ -105,7 +111,7 @@ class Across:
         found = self._shared(scene, source, PLAIN)
         if found.text and self._wrong(source) <= found.names:
             return found
-        near = Named(self._near_inertia(source))  # one rule of all that is wrong
+        near = Named(self._rule(near_inertia, source))  # one rule of all that is wrong
         if near.text or found.text:
             return near if near.text else found
         found = on_some(self._searched.quick(scene, source, PLAIN).partial)
@@ -114,6 +120,7 @@ class Across:
             return found
         found = self._shared(scene, source, QUICK)
         found = found if found.text else self._by_formula(scene, source)
+        found = found if found.text else Named(self._rule(pivot_inertia, source))
         if found.text:
             return found
         self._search_elsewhere(scene.name, source)
@@ -133,11 +140,11 @@ class Across:
         every = ((s.name, s.evidence.get(source)) for s in self.scenes.values())
         return {name for name, evidence in every if evidence is not None and evidence.clear}
 
-    def _near_inertia(self, source: str) -> str:
+    def _rule(self, rule: Rule, source: str) -> str:
         """A rule of the inertia's numbers that makes all that is wrong."""
-        if source not in self._near:
-            self._near[source] = near_inertia(self._all.evidence(source))
-        return self._near[source]
+        if (rule, source) not in self._rules:
+            self._rules[rule, source] = rule(self._all.evidence(source))
+        return self._rules[rule, source]
 
     def _by_formula(self, scene: Scene, source: str) -> Named:
         """A product of known vectors that explains the whole run."""
@@ -173,6 +180,9 @@ class Across:
         named_weak = self._carried.weak(scene, source, weak)
         if named_weak.text:
             return named_weak
+        solved = self._rule(solve_matrix, source)
+        if solved:
+            return Named(solved)
         where = where_wrong(scene.evidence[source], self._all.evidence(source))
         if where:
             return Named(f"the equation holds at some states, and is wrong only where {where}")

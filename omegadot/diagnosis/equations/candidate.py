@@ -48,7 +48,8 @@ class Candidate:
         if isinstance(self.terms, FORMULAS) and self.numbers is not None:
             return evidence.fits(made, self.terms.slack(evidence, self.numbers))
         if self.family is None or self.numbers is None:
-            return evidence.fits(made)
+            form = self.form(evidence.system) if self.fixed and not evidence.fits(made) else None
+            return evidence.fits(made) if form is None else evidence.is_of(form)
         return evidence.fits(made, self.family.slack(evidence.system, self.numbers))
 
     @property

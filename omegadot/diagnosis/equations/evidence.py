@@ -127,9 +127,30 @@ class Evidence:
         for begin in range(0, len(known), LANES):
             lanes = known[begin : begin + LANES]
             tried = accelerations(stacked([f for k in lanes if (f := forms[k])]), few.states)
-            close = np.all(few.shares(tried) <= SLACK, axis=-1)
-            kept += [k for k, one in zip(lanes, close, strict=True) if one]
-        return [k for k in kept if (f := forms[k]) and self.fits(accelerations(f, self.states))]
+            close = np.max(few.shares(tried), axis=-1)
+            kept += [
+                k
+                for k, off in zip(lanes, close, strict=True)
+                if off <= SLACK
+                or (off <= self._decisive and (f := forms[k]) and off <= self.slack_of(f))
+            ]
+        return [k for k in kept if (f := forms[k]) and self.is_of(f)]
+
+    def is_of(self, form: Form) -> bool:
+        """Whether a form is the engine's equation at every state."""
+        made = accelerations(form, self.states)
+        return self.fits(made) or (self._decisive > SLACK and self.fits(made, self.slack_of(form)))
+
+    def slack_of(self, form: Form) -> float:
+        """In bounds: an inertia of a larger condition than the right one rounds more."""
+        right = np.linalg.cond(np.asarray(moving_inertia(self.system), dtype=float))
+        more = float(np.linalg.cond(form.solve) / right) if np.all(np.isfinite(form.solve)) else 1.0
+        return float(np.clip(SLACK * more, SLACK, max(SLACK, self._decisive)))
+
+    @cached_property
+    def _decisive(self) -> float:
+        """In bounds, within which a fit has three digits of all that the engine is off by."""
+        return float(np.quantile(self.shares(self.true), 0.25)) / 10.0**DIGITS
 
     def few(self, count: int) -> Evidence:
         """The evidence of so many states, spread over all."""

@@ -28,6 +28,7 @@ QUANTITIES = (
     ("orientation", "the quaternion", ""),
     ("position", "the position", "m"),
 )
+STOPPED = "omega is set to zero"
 NEARER = 0.5  # of what a misread run is off by: a coarse scheme leaves something too
 
 

@@ -67,10 +67,18 @@ class VanishingSteps:
         # A wrong rate rounds as well; the bound of the right one, which may be zero, leaves it out.
         own = AMPLIFIED * ROUNDINGS_PER_EVALUATION * self.eps
         angular_bound = angular_bound + own * norm(angular)
+        angular_bound = np.where(self.jumps, np.inf, angular_bound)
         linear_bound = linear_bound + own * norm(linear)
         found = Acceleration(angular, linear)
         bounds = (angular_bound, linear_bound)
         return Evidence("steps", self.system, self.states, found, *bounds, self.eps)
+
+    @property
+    def jumps(self) -> NDArray[np.bool_]:
+        """(m,): whether omega changes by steps that vanish, so that it has no rate."""
+        jump = self.rates["omega"].jump
+        none = np.zeros(len(self.rates["omega"].expected), dtype=bool)
+        return none if jump is None else jump > 0.0
 
     @property
     def sound(self) -> bool:

@@ -99,6 +99,27 @@ def _of_momentum_balance(evidence: Evidence) -> Array | None:
     return found if good else None
 
 
+def tensor_of_balance(evidence: Evidence, parts: tuple[str, ...]) -> Array | None:
+    """The tensor that moves a body under a torque, (3, 3); None where nothing shows it.
+
+    parts: where it stands: in ``J omega-dot`` ("solve") alone, or in ``omega x J omega`` as well.
+    """
+    system, states = evidence.system, evidence.states
+    w, rate = states.angular_velocity, evidence.found.angular
+    due = torque(system, states)
+    if not np.any(due):
+        return None  # known up to a factor alone
+    if "spin" in parts:
+        lines = np.stack([apply(b, rate) + cross(w, apply(b, w)) for b in BASIS], axis=-1)
+    else:
+        lines = np.stack([apply(b, rate) for b in BASIS], axis=-1)
+        due = due - cross(w, apply(moving_inertia(system), w))
+    size = norm(rate) + norm(w) ** 2
+    size = np.where(size > 0.0, size, np.inf)[:, None]
+    found = np.linalg.lstsq((lines / size[..., None]).reshape(-1, 6), np.ravel(due / size), None)[0]
+    return tensor_of(found) if np.all(np.isfinite(found)) else None
+
+
 def scale_of_inertia(evidence: Evidence) -> Array | None:
     """The factor of the inertia about the centre of mass, (1,), from the momentum balance.
 

@@ -126,16 +126,31 @@ def _parts(inertia: Array) -> tuple[Array, Array]:
     return diagonal, inertia - diagonal
 
 
+DAMPING, WEIGHT = "the damping torque -d omega", "the torque of gravity"
+
+
 def terms_of(facts: Facts) -> dict[str, Array]:
     """The torques of the right equation, (n, 3), which another may stand in place of."""
     own, w = facts.vectors, facts.vectors["omega"]
     weight = facts.sizes["m"][:, None] * cross(own["r"], own["g"])
     return {
         "the gyroscopic term -omega x I omega": -cross(w, own[MOMENTUM]),
-        "the damping torque -d omega": -facts.sizes["d"][:, None] * w,
+        DAMPING: -facts.sizes["d"][:, None] * w,
         "the torque in body axes": own["tau_b"],
         "the torque in world axes": own["tau_w"],
-        "the torque of gravity": weight,
+        WEIGHT: weight,
+    }
+
+
+def rates_of(facts: Facts, pivoted: bool) -> dict[str, Array]:
+    """The terms of the right linear acceleration, (n, 3) in body axes."""
+    own = facts.vectors
+    if not pivoted:
+        return {"gravity": own["g"]}
+    return {
+        "omega-dot x r": cross(own["omega-dot"], own["r"]),
+        "omega x (omega x r)": cross(own["omega"], cross(own["omega"], own["r"])),
+        "(omega-dot x r + omega x (omega x r))": own["a"],
     }
 
 

@@ -11,11 +11,14 @@ import numpy as np
 from omegadot.diagnosis.equations.evidence import SLACK, Evidence
 from omegadot.diagnosis.equations.formula.factored import Factored, legend_of, with_angular
 from omegadot.diagnosis.equations.formula.facts import (
+    DAMPING,
     TORQUE,
+    WEIGHT,
     Facts,
     Unit,
     facts_of,
     product,
+    rates_of,
     terms_of,
 )
 from omegadot.diagnosis.equations.formula.law import NO_LAW, Law
@@ -32,7 +35,7 @@ UNITS: dict[Kind, Unit] = {"torque": TORQUE, "rate": (0, 0, -2), "linear": (0, 1
 
 @dataclass(frozen=True)
 class Formula(Factored):
-    """``found = right + k law(sizes) vector``, or this in place of one of the right torques.
+    """``found = right + k law(sizes) vector``, or this in place of one of the right terms.
 
     kind: a torque, through the inertia; a rate; or a linear acceleration, of a free body, a
     pivoted one or any.
@@ -62,9 +65,6 @@ class Formula(Factored):
     def accelerations(self, facts: Facts) -> Array:
         """What a factor of one adds, (n, 3) in body axes, and whatever it stands in place of."""
         more = self.law.of(facts)[:, None] * self.vector.of(facts)
-        return self._solved(facts, more)
-
-    def _solved(self, facts: Facts, more: Array) -> Array:
         return product(facts.matrices["I^-1"], more) if self.kind == "torque" else more
 
     def sizes(self, facts: Facts) -> Array:
@@ -78,7 +78,9 @@ class Formula(Factored):
         """What it stands in place of, as an acceleration; nothing where it is added."""
         if not self.instead:
             return 0.0 * facts.vectors["omega"]
-        return self._solved(facts, terms_of(facts)[self.instead])
+        if self.kind == "linear":
+            return rates_of(facts, self.where == "pivoted")[self.instead]
+        return product(facts.matrices["I^-1"], terms_of(facts)[self.instead])
 
     def rows(self, every: Sequence[Evidence]) -> Rows:
         """What is added, with what it stands in place of."""
@@ -98,6 +100,8 @@ class Formula(Factored):
             turned = rotate(evidence.states.orientation, more)
             acts = self.where in (here, "any")
             return Acceleration(true.angular, true.linear + (turned if acts else 0.0 * turned))
+        if self.instead == WEIGHT and evidence.system.load.pivot is None:
+            return true  # where no such torque is worked out
         return with_angular(evidence, true.angular + more)
 
     def slack(self, evidence: Evidence, p: Array) -> Array:
@@ -115,14 +119,23 @@ class Formula(Factored):
         shown, factor = with_factor(float(p[0]), self.law.text, self.vector.text, left)
         legend = ", ".join([*factor, *self._legend()])
         held = f", with {legend}" if legend else ""
-        if self.instead:
-            return f"in place of {self.instead} stands {shown}{held}"
-        if self.kind == "torque":
-            return f"a torque {shown} is added{held}"
         of = " of a pivoted body" if self.where == "pivoted" else ""
         linear = f"the linear acceleration{of}, in body axes,"
+        if self.instead:
+            return f"{self._in_place(shown, linear)}{held}"
+        if self.kind == "torque":
+            return f"a torque {shown} is added{held}"
         what = "omega-dot" if self.kind == "rate" else linear
         return f"{what} has {shown} in it{held}"
+
+    def _in_place(self, shown: str, linear: str) -> str:
+        if self.kind == "linear":
+            return f"{linear} has {shown} in place of {self.instead}"
+        if self.kind == "torque":
+            return f"in place of {self.instead} stands {shown}"
+        if self.instead == DAMPING:
+            return f"the damping is {shown}, where -I^-1 d omega is right"
+        return f"omega-dot has {shown} in place of I^-1 times {self.instead}"
 
     @property
     def direction(self) -> str:

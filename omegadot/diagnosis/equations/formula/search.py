@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import INVERSE, SLACK, Evidence
-from omegadot.diagnosis.equations.formula.facts import product, terms_of
+from omegadot.diagnosis.equations.formula.facts import product, rates_of, terms_of
 from omegadot.diagnosis.equations.formula.formula import Formula, Kind, Where
 from omegadot.diagnosis.equations.formula.law_search import laws
 from omegadot.diagnosis.equations.formula.rows import Rows, across, rows_of
@@ -51,12 +51,11 @@ def formulas(
         rows = rows_of([e.at(p) for e, p in chosen], linear)
         few = np.unique(rows.system, return_index=True)[1]
         few = np.unique([*few[:FEW], *np.linspace(0, len(rows.bound) - 1, FEW).astype(int)])
-        near = sorted(_along(rows, few, linear), key=lambda one: one.cost)
-        more = [e for e in others if _shows(e, linear)]
-        seen = _visible([*every, *more], linear)
         held = {e.system.load.pivot is not None for e in every}
         where: Where = "any" if len(held) > 1 else "pivoted" if held == {True} else "free"
-        near = [replace(one, where=where) if linear else one for one in near]
+        near = sorted(_along(rows, few, linear, where), key=lambda one: one.cost)
+        more = [e for e in others if _shows(e, linear)]
+        seen = _visible([*every, *more], linear)
         found: list[AnyFormula] = [x for v in near[:MOST_TRIED] for x in _with_law(v, seen)]
         if not linear and every[0].source != INVERSE:
             found += [x for one in other_inertias(rows) for x in with_law(one, seen)]
@@ -99,19 +98,24 @@ def _spread(every: Sequence[Evidence], linear: bool) -> list[tuple[Evidence, NDA
     return found
 
 
-def _targets(rows: Rows, linear: bool) -> dict[str, Array]:
-    """What a vector must be along: what is added, or what stands in place of a right torque."""
-    found = {"": rows.due}
-    for name, term in {} if linear else terms_of(rows.facts).items():
+def _targets(rows: Rows, linear: bool, where: Where) -> dict[str, Array]:
+    """What a vector must be along: what is added, or what stands in place of a right term."""
+    facts, found = rows.facts, {"": rows.due}
+    if linear:
+        terms = rates_of(facts, where == "pivoted") if where != "any" else {}
+    else:
+        inverse = facts.matrices["I^-1"]
+        terms = {name: product(inverse, term) for name, term in terms_of(facts).items()}
+    for name, term in terms.items():
         if np.any(term):
-            found[name] = rows.due + product(rows.facts.matrices["I^-1"], term)
+            found[name] = rows.due + term
     return found
 
 
-def _along(rows: Rows, few: NDArray[np.intp], linear: bool) -> Iterator[Formula]:
+def _along(rows: Rows, few: NDArray[np.intp], linear: bool, where: Where) -> Iterator[Formula]:
     """The vectors that are along a target at all of these states."""
     kinds: tuple[Kind, ...] = ("linear",) if linear else ("torque", "rate")
-    first, targets = rows.at(few), _targets(rows, linear)
+    first, targets = rows.at(few), _targets(rows, linear, where)
     inverse = first.facts.matrices["I^-1"]
     for values, named in blocks(rows.facts, few):
         for kind in kinds:
@@ -122,7 +126,7 @@ def _along(rows: Rows, few: NDArray[np.intp], linear: bool) -> Iterator[Formula]
                 allowed = SLACK * first.bound + SCREENED * norm(due[few])
                 left = norm(due[few] - np.sum(due[few] * unit, -1, keepdims=True) * unit)
                 for k in np.flatnonzero(np.all(left <= allowed, axis=-1)):
-                    one = Formula(kind, named(int(k)), instead=instead)
+                    one = Formula(kind, named(int(k)), instead=instead, where=where)
                     if _holds(one, rows, due) and not _is_scaled(one, rows):
                         yield one
 

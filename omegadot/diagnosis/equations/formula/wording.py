@@ -10,19 +10,19 @@ WHOLE = 1e-6  # relative: a fitted number is the plain one that is meant
 
 
 def with_factor(k: float, law: str, what: str, left: Array) -> tuple[str, list[str]]:
-    """``-0.3 d omega``, or ``k d omega`` and what k is, where the factor has a unit.
+    """``-0.3 d omega``, or ``k d omega`` and what k is, where the factor has a unit and is not one.
 
     left: (3,), the powers of kg, m and s that the factor has.
     """
     unit = unit_text(left)
     above, _, below = law.partition(" / ")
     own = number(float(f"{k:.6g}"))
-    plain = not unit and abs(abs(k) - 1.0) < WHOLE
-    lead = "k " if unit else ("-" if k < 0.0 else "") if plain else f"{own} "
+    plain = abs(abs(k) - 1.0) < WHOLE  # as where a size is left out, or is another
+    lead = ("-" if k < 0.0 else "") if plain else "k " if unit else f"{own} "
     above = f"{above} " if above.strip() else ""
     inner = f"({what})" if below and " x " in what else what
     shown = f"{lead}{above}{inner}{f' / {below}' if below else ''}"
-    return shown, [f"k = {own} {unit}"] if unit else []
+    return shown, [f"k = {own} {unit}"] if unit and not plain else []
 
 
 def unit_text(left: Array) -> str:
