@@ -111,7 +111,7 @@ def test_the_pareto_front_is_of_engines_without_the_reference():
     assert [(p.engine, p.timestep) for p in front] == [("x", 0.1), ("y", 0.01), ("x", 0.01)]
     assert named(front[1]) == (
         "y a at step 0.01 s",
-        "0.001 rad for 5 s per simulated second",
+        "0.001 rad (0.057 deg) for 5 s per simulated second",
     )
 
 

@@ -86,7 +86,7 @@ def test_each_engine_in_one_row(record):
     found = {g["engine"]: g for g in glances(summarise(record), record.metrics, Sources())}
     assert list(found) == ["mujoco 1.0", "dart 1.0"]
     mujoco = found["mujoco 1.0"]
-    assert (mujoco["status"], mujoco["runs"]) == ("pass", "12 of 12 runs")
+    assert (mujoco["status"], mujoco["runs"]) == ("pass", "12 of 12 runs pass")
     assert mujoco["residual"] == ("6.2e-15", "on spun-again; bound 1e-13")
     # Of the two scenarios the errors are 1.2 h^4 and twice that.
     assert mujoco["best"][0] == f"{1.5 * 1.2 * 0.005**4:.1e}".replace("e-0", "e-") + " rad"
