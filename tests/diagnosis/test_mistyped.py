@@ -95,21 +95,22 @@ ZZ = with_entry(2, 2, lambda s, x, y, z: 1 - 2 * (x * x - y * y))
 Z = with_component(2, lambda a, b: a[0] * b[1] - a[1] * b[1])
 X = with_component(0, lambda a, b: a[1] * b[2] + a[2] * b[1])
 Y = with_component(1, lambda a, b: a[2] * b[0])
-INTO = "the torque in world axes is taken into body axes by v - 2 s (u x v) + 2 u x (u x v) with"
+INTO = "the torque in world axes is taken into body axes by v"
+DUE = "where v - 2 s (u x v) + 2 u x (u x v) is right, q = (s, u): the factor of"
 XZ_TEXT = "R_xz is 2 (q_x q_z - q_w q_y), where 2 (q_x q_z + q_w q_y) is right, in the matrix by "
 SLIPS = {
     "b": (
         engine(by_vector(2, 1)),
-        f"{INTO} the factor of u x (u x v) is 1, not 2: it is scaled by 0.5 (q = (s, u))",
+        f"{INTO} - 2 s (u x v) + u x (u x v), {DUE} u x (u x v) is scaled by 0.5",
     ),
     "a": (
         engine(by_vector(1, 2)),
-        f"{INTO} the factor of s (u x v) is -1, not -2: it is scaled by 0.5 (q = (s, u))",
+        f"{INTO} - s (u x v) + 2 u x (u x v), {DUE} s (u x v) is scaled by 0.5",
     ),
     "a and b": (
         engine(by_vector(1, 1)),
-        f"{INTO} the factor of s (u x v) is -1, not -2: it is scaled by 0.5 and the factor of "
-        "u x (u x v) is 1, not 2: it is scaled by 0.5 (q = (s, u))",
+        f"{INTO} - s (u x v) + u x (u x v), {DUE} s (u x v) is scaled by 0.5 and the factor of "
+        "u x (u x v) is scaled by 0.5",
     ),
     "of the weight": (engine(of_weight=by_vector(2, 1.5)), "the weight is taken into body axes by"),
     "of both": (
@@ -118,8 +119,8 @@ SLIPS = {
     ),
     "out": (
         engine(out=by_vector(2, 1)),
-        "the linear acceleration is taken to world axes by v + 2 s (u x v) + 2 u x (u x v) with the "
-        "factor of u x (u x v) is 1, not 2",
+        "the linear acceleration is taken to world axes by v + 2 s (u x v) + u x (u x v), where "
+        "v + 2 s (u x v) + 2 u x (u x v) is right",
     ),
     "xz": (engine(XZ), f"{XZ_TEXT}which the torque in world axes is taken into body axes"),
     "xz of the weight": (
@@ -132,7 +133,8 @@ SLIPS = {
     ),
     "xz everywhere": (
         engine(XZ, XZ, XZ),
-        f"{XZ_TEXT}which the torque in world axes, the weight and the linear acceleration are turned",
+        f"{XZ_TEXT}which the torque in world axes, the weight and the linear acceleration are "
+        "turned",
     ),
     "yy": (
         engine(YY),
@@ -144,30 +146,30 @@ SLIPS = {
     ),
     "z of the weight": (
         engine(weight=Z),
-        "of the weight's torque r x f the z component is r_x f_y - r_y f_y, where "
+        "the z component of the weight's torque r x f is r_x f_y - r_y f_y, where "
         "r_x f_y - r_y f_x is right",
     ),
     "x of the spin": (
         engine(spin=X),
-        "of the gyroscopic term omega x L, L = I omega, the x component is "
+        "the x component of the gyroscopic term omega x L, L = I omega, is "
         "omega_y L_z + omega_z L_y, where omega_y L_z - omega_z L_y is right",
     ),
     "y of omega-dot x r": (
         engine(dot=Y),
-        "of omega-dot x r in the linear acceleration the y component is omega-dot_z r_x, where "
+        "the y component of omega-dot x r in the linear acceleration is omega-dot_z r_x, where "
         "omega-dot_z r_x - omega-dot_x r_z is right",
     ),
     "z of the outer": (
         engine(outer=Z),
-        "of omega x c, c = omega x r, in the linear acceleration the z component is",
+        "the z component of omega x c, c = omega x r, in the linear acceleration is",
     ),
     "z of the inner": (
         engine(inner=Z),
-        "of omega x r, the inner product of the linear acceleration, the z component is",
+        "the z component of omega x r, the inner product of the linear acceleration, is",
     ),
     "z of every one": (
         engine(every=Z),
-        "in every cross product a x b, the z component is a_x b_y - a_y b_y, where "
+        "the z component of every cross product a x b is a_x b_y - a_y b_y, where "
         "a_x b_y - a_y b_x is right",
     ),
 }

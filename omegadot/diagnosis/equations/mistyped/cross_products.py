@@ -81,11 +81,11 @@ class _Typed:
     def text(self, uses: tuple[str, ...]) -> str:
         """As it is typed in each place, and as it is right."""
         if set(uses) == set(EVERY):
-            return f"in every cross product a x b, {self._typed('a', 'b')}"
-        parts = [f"of {USES[use][0]} {self._typed(*USES[use][1:])}" for use in uses]
+            return self._typed("every cross product a x b", "a", "b")
+        parts = [self._typed(*USES[use]) for use in uses]
         return listed(parts)
 
-    def _typed(self, a: str, b: str) -> str:
+    def _typed(self, what: str, a: str, b: str) -> str:
         i, j = (self.k + 1) % 3, (self.k + 2) % 3
         factors = {3 * i + j: 1.0, 3 * j + i: -1.0}
         right = dict(factors)
@@ -95,7 +95,7 @@ class _Typed:
             sum_text({f"{a}_{AXES[p // 3]} {b}_{AXES[p % 3]}": c for p, c in of.items()})
             for of in (factors, right)
         )
-        return f"the {AXES[self.k]} component is {typed}, where {due} is right"
+        return f"the {AXES[self.k]} component of {what} is {typed}, where {due} is right"
 
 
 def _vectors(e: Evidence, use: str) -> tuple[Array, Array]:

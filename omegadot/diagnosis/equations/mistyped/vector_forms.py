@@ -41,13 +41,12 @@ def form_text(what: str, more: Few, into_body: bool) -> str:
     if not 0 < len(off[best]) <= MOST_OFF:
         return ""
     wrong = [f"the factor of {p} is {_against(typed[p], due[p])}" for p in off[best]]
-    return f"{what} by {sum_text(due)} with {listed(wrong)} (q = (s, u))"
+    where = f"where {sum_text(due)} is right, q = (s, u)"
+    return f"{what} by {sum_text(typed)}, {where}: {listed(wrong)}"
 
 
 def _against(typed: float, due: float) -> str:
-    if typed == 0.0:
-        return f"zero, not {number(due)}"
-    return f"{number(typed, due)}, not {number(due)}: it is scaled by {factor(typed / due)}"
+    return f"scaled by {factor(typed / due)}" if due else f"{number(typed)}, not zero"
 
 
 def _factors(more: Few, into_body: bool) -> list[tuple[dict[str, float], dict[str, float]]]:
