@@ -21,7 +21,7 @@ from omegadot.reference_impl.system import Array
 # Those of yaw, pitch and roll first.
 ORDERS = sorted(
     ("".join(one) for one in product("XYZ", repeat=3) if one[0] != one[1] != one[2]),
-    key=lambda order: (order != "ZYX", order != "XYZ", len(set(order)) < 3, order),
+    key=lambda one: (one != "ZYX", one != "XYZ", len(set(one)) < 3, one[0] != "Z", one),
 )
 # Which angle stands where, and its sign: first to last, last to first, exchanged, one negative.
 PLACES = [(0, 1, 2), (2, 1, 0), *(p for p in permutations(range(3)) if p[1] != 1)]
