@@ -16,7 +16,7 @@ from wrong_equations import CASES, WORLD_TORQUE, case
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import damping_torque, weight
-from omegadot.reference_impl.rotations import rotation_matrix
+from omegadot.reference_impl.rotations import normalize, rotation_matrix
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
@@ -181,3 +181,23 @@ def test_a_slip_is_named_with_its_formula(name: str) -> None:
     causes = causes_over(found, MORE)
     assert causes
     assert all(text in cause for cause in causes.values()), causes
+
+
+def half_way(q: Array) -> Array:
+    """Half of the turn."""
+    return rotation_matrix(normalize(q + np.array([1.0, 0.0, 0.0, 0.0])))
+
+
+NEIGHBOURS = {
+    "another rotation": engine(half_way),
+    "a factor that no slip has": engine(
+        weight=with_component(2, lambda a, b: a[0] * b[1] - 1.23 * a[1] * b[0])
+    ),
+}
+
+
+@pytest.mark.parametrize("name", NEIGHBOURS)
+def test_what_is_no_slip_of_the_hand_is_not_named_as_one(name: str) -> None:
+    causes = causes_over(NEIGHBOURS[name], MORE)
+    assert causes
+    assert not any("is right" in text for text in causes.values()), causes
