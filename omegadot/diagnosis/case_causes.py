@@ -18,6 +18,7 @@ from omegadot.diagnosis.equations.wrong_equation import (
 from omegadot.diagnosis.equations.wrong_torque import torque_causes
 from omegadot.diagnosis.integrator import IntegratorCauses
 from omegadot.diagnosis.kept_case import opposite_steps, source_of
+from omegadot.diagnosis.models.misread_state import known_state
 from omegadot.diagnosis.models.wrong_lever import lever_causes
 from omegadot.diagnosis.models.wrong_model import model_causes
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
@@ -97,10 +98,15 @@ class CaseCauses:
     def _shared(self) -> list[str]:
         """Of the model, then of forward dynamics, then of inverse dynamics."""
         failed = {(row.gate, row.metric) for row in self._shared_rows}
-        if any(gate == "model" for gate, _ in failed):
-            found = self._of_model(failed)
-            if found:
-                return found
+        found = self._of_model(failed) if any(gate == "model" for gate, _ in failed) else []
+        found = found or self._of_answers(failed)
+        if not found and ("model", "state") in failed:
+            eps = eps_of(self._answers.precision)
+            found = [text for text in (known_state(self._across, self._case, eps),) if text]
+        return found
+
+    def _of_answers(self, failed: set[tuple[str, str]]) -> list[str]:
+        """Of forward dynamics, then of inverse dynamics. failed: gates and metrics."""
         alone = batch_cause(failed)
         if alone:
             return [alone]

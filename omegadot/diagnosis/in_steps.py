@@ -121,7 +121,9 @@ class StepCauses:
         followed = set[Followed | None]()
         if one is not None and not one.is_limit:
             followed = self._over.followed(one, evidence, steps.eps)
-        if "between" in followed or {"right", "wrong"} <= followed:
+        # a run that follows the wrong equation to its end is nowhere nearer to the right one
+        between = "between" in followed and "wrong" not in followed
+        if between or {"right", "wrong"} <= followed:
             later = "later steps come nearer to the right equation"
             return [f"at the start of a run, {text}; {later}"]
         if "right" in followed:

@@ -14,6 +14,7 @@ from omegadot.diagnosis.equations.evidence import INVERSE, Evidence
 from omegadot.diagnosis.equations.held import Scene, Scenes
 from omegadot.diagnosis.equations.known import kinds_off, known_over
 from omegadot.diagnosis.equations.left_over import LeftOver
+from omegadot.diagnosis.equations.mistyped import Mistyped
 from omegadot.diagnosis.equations.near_inertia import near_inertia
 from omegadot.diagnosis.equations.pivot_inertia import pivot_inertia
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
@@ -30,7 +31,7 @@ class Across:
         self._all = Scenes()
         self._searched, self._formulas = Searched(self._all), Formulas(self._all)
         self._at_states, self._carried = AtSomeStates(self._all), Carried(self._all)
-        self._left_over = LeftOver()
+        self._left_over, self._mistyped = LeftOver(), Mistyped(self._all)
         self._named: dict[tuple[str, str], Named] = {}
         self._known: dict[tuple[str, tuple[str, ...]], str] = {}
         self._rules: dict[tuple[Rule, str], str] = {}
@@ -46,7 +47,7 @@ class Across:
         self._formulas.add()
         self._at_states.add(scene)
         self._left_over.add(scene)
-        self._carried = Carried(self._all)
+        self._carried, self._mistyped = Carried(self._all), Mistyped(self._all)
         self._named, self._known, self._rules = {}, {}, {}
 
     def cause(self, name: str, source: str) -> str:
@@ -119,6 +120,7 @@ class Across:
         if found.text:
             return found
         found = self._shared(scene, source, QUICK)
+        found = found if found.text else self._mistyped.of(scene, source)
         found = found if found.text else self._by_formula(scene, source)
         found = found if found.text else Named(self._rule(pivot_inertia, source))
         if found.text:

@@ -9,7 +9,10 @@ from math import comb
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.known import scenarios_in_common
+from omegadot.diagnosis.models.attitude_misread import attitude_misread
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
+from omegadot.diagnosis.models.known_state import known_of_states
 from omegadot.diagnosis.models.misreadings import Misreading, losses, misreadings, settings
 from omegadot.diagnosis.wording.features import SORTED_BY_KIND, Features, in_common
 from omegadot.diagnosis.wording.laws import law_of
@@ -17,7 +20,7 @@ from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Case
 from omegadot.gates.states.model import state_rows
 from omegadot.reference_impl.kinematics import place_on_pivot
-from omegadot.reference_impl.system import State, System
+from omegadot.reference_impl.system import Array, State, System
 
 SIGN = "without its sign"
 NEGATIVE = "the scalar part of the quaternion that is set is negative"
@@ -53,11 +56,7 @@ def state_causes(
     here = _Round(case, scene.features, requested, back, eps)
     if not here.fails(back):
         return []
-    every = [
-        _Round(replace(case, system=one.system), one.features, *one.states, eps)
-        for one in across.scenes.values()
-        if one.states is not None
-    ]
+    every = _every(across, case, eps)
     lost = [
         text
         for text, left in losses().items()
@@ -83,11 +82,49 @@ def state_causes(
             found = _where(way.statement, every, fits)
             if found:
                 return [found]
+    attitude = _attitude(every)
+    if attitude:
+        return [attitude]
     single = State(*(f.astype(np.float32).astype(float) for f in vars(requested).values()))
     pairs = zip(vars(single).values(), vars(back).values(), strict=True)
     if eps <= EPS and all(np.array_equal(a, b) for a, b in pairs):
         return ["the state is kept in single precision"]
     return []
+
+
+def known_state(across: Across, case: Case, eps: float) -> str:
+    """What is seen of all states that do not read back, where no cause fits; "" where all do."""
+    every = _every(across, case, eps)
+    rows = [state_rows(one.case, one.requested, one.back, one.eps) for one in every]
+    requested, back = _attitudes(every)
+    text = known_of_states(rows, requested, back)
+    wrong, right = (
+        [_features(one) for one in every if one.fails(one.back) is off] for off in (True, False)
+    )
+    where = scenarios_in_common(wrong, right, "it is so")
+    return "; ".join(part for part in (text, where) if part)
+
+
+def _attitudes(every: Sequence[_Round]) -> tuple[Array, Array]:
+    """Those set, and those that read back, (n, 4)."""
+    requested = np.array([one.requested.orientation for one in every])
+    return requested, np.array([one.back.orientation for one in every])
+
+
+def _every(across: Across, case: Case, eps: float) -> list[_Round]:
+    return [
+        _Round(replace(case, system=one.system), one.features, *one.states, eps)
+        for one in across.scenes.values()
+        if one.states is not None
+    ]
+
+
+def _attitude(every: Sequence[_Round]) -> str:
+    """A rule by which all attitudes come back; the rest of each state is that of these."""
+    text = attitude_misread(*_attitudes(every), every[0].eps)
+    if text and not any(_differs(one, _with(one, "orientation")) for one in every):
+        return f"{text}, as a state is set or read back"
+    return ""
 
 
 def _law(every: Sequence[_Round]) -> str:
