@@ -21,9 +21,9 @@ from omegadot.workers.engine_end.checked import (
     checked_native,
     checked_seconds,
     checked_trajectory,
-    description_of,
     numbers,
 )
+from omegadot.workers.engine_end.described import description_of
 from omegadot.workers.engine_end.memory import peak_memory
 from omegadot.workers.wire import system_from
 
