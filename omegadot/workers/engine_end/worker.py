@@ -29,6 +29,7 @@ from omegadot.workers.engine_end.command import (
     end_with_parent,
 )
 from omegadot.workers.engine_end.described import description_of
+from omegadot.workers.engine_end.keeper import keep_family
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
@@ -154,6 +155,7 @@ def main() -> None:
 
     The module of an engine of one's own may stand in the current folder, which comes last.
     """
+    keep_family()
     _end_with_harness()
     if sys.argv[1] not in OURS.values():
         with contextlib.suppress(FileNotFoundError):  # a folder that was removed holds no module

@@ -13,6 +13,7 @@ import numpy as np
 
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.engine_end.checked import (
+    AnswerError,
     checked,
     checked_bodies,
     checked_native,
@@ -45,6 +46,8 @@ def answer_in(frame: Any, operation: str, fields: Fields) -> dict[str, Any]:
         expect("its reason", frame.get("reason", ""), str)
         if frame["outcome"] == "ok":
             _RESULTS[operation](frame.get("result"), fields)
+    except AnswerError as error:
+        raise FrameError(str(error)) from error
     except FrameError:
         raise
     except (TypeError, ValueError, KeyError, AttributeError, IndexError) as error:
