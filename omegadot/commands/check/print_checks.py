@@ -138,7 +138,10 @@ def print_checks(found: CheckResult, verbose: bool = False) -> None:
             _print_listed(console, verdict, own, whole)
     for reason, checks in _grouped(results, "skip").items():
         console.print(Text(f"skip  {times(len(checks), 'check')}: {reason}", "dim"))
-    for line in (*found.only_skipped, *(f"Baseline written: {path}" for path in found.baselines)):
+    for line in (
+        *found.only_skipped,
+        *(f"Baseline written: {on_one_line(path)}" for path in found.baselines),
+    ):
         console.print(Text(line))
     for one in found.failing:
         _print_failing(console, one)
