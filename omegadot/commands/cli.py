@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import errno
 import re
-import signal
 import sys
+import warnings
 from typing import Annotated
 
 import typer
@@ -22,13 +22,12 @@ from omegadot.commands.run.command import run
 from omegadot.commands.scenarios.command import scenarios
 from omegadot.commands.schemes.command import schemes
 from omegadot.commands.score.command import score
-from omegadot.commands.streams import discard, prepare_streams
+from omegadot.commands.signals import as_before, code_of, end_like_ctrl_c
+from omegadot.commands.streams import discard, on_one_line, prepare_streams
 from omegadot.commands.versions.command import versions
 
 # Of a longer word half of this is printed: an argument may be a file's whole content.
 LONGEST_WORD = 400
-# Windows has no SIGHUP.
-_ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 EXIT_CODES = (
     "Exit codes: 0 done, and what was held to something holds; 1 something does not; 2 wrong usage "
@@ -82,10 +81,15 @@ def _root(
     pass
 
 
-def main() -> None:
-    """Entry point: wrong input is one sentence on standard error and exit code 2."""
+def main(received: list[int] | None = None) -> None:
+    """Entry point: wrong input is one sentence on standard error and exit code 2.
+
+    received: what `end_like_ctrl_c` has given, where signals are taken already.
+    """
     prepare_streams()
-    received = _end_like_ctrl_c()
+    if not sys.warnoptions:  # of sums over a wrong engine's numbers; gates judge what comes of them
+        warnings.simplefilter("ignore", RuntimeWarning)
+    received = end_like_ctrl_c() if received is None else received
     try:
         code = app(standalone_mode=False)
         sys.stdout.flush()
@@ -102,52 +106,25 @@ def main() -> None:
         _print_error(sentence)
         sys.exit(3 if _is_our_own(error) else 2)
     finally:
-        ended_by = received[0] if received else signal.SIGINT
-        _as_before(received)
+        ended = code_of(received)
+        as_before(received)
     if code == INTERRUPTED:  # the parser makes this number of Ctrl-C, and prints nothing
         _print_error("interrupted.")
-        code = 128 + ended_by
+        code = ended
     sys.exit(code if isinstance(code, int) else 0)
 
 
 def _print_error(sentence: str) -> None:
     try:
-        print(f"omegadot: {_on_one_line(sentence)}", file=sys.stderr, flush=True)
+        print(f"omegadot: {_short(sentence)}", file=sys.stderr, flush=True)
     except OSError:  # of a full disk the exit code is all that can be reported
         discard(2)
 
 
-def _on_one_line(sentence: str) -> str:
+def _short(sentence: str) -> str:
     """Without what steers a terminal, and with the beginning of a very long word alone."""
-    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in sentence)
-    return re.sub(rf"(\S{{{LONGEST_WORD // 2}}})\S{{{LONGEST_WORD // 2},}}", r"\1...", shown)
-
-
-def _end_like_ctrl_c() -> list[int]:
-    """Take SIGTERM and SIGHUP as Ctrl-C is taken, so that what there is gets written.
-
-    The list receives the signal's number; after the first, what there is gets written without
-    another interruption. One that is ignored, as under nohup, stays so.
-    """
-    received: list[int] = []
-
-    def interrupt(number: int, _: object) -> None:
-        if not received:
-            received.append(number)
-            raise KeyboardInterrupt
-
-    for number in _ENDING:
-        if signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, interrupt)
-    return received
-
-
-def _as_before(received: list[int]) -> None:
-    """As the command is done: a signal that comes while Python leaves raises nothing there."""
-    received.append(0)
-    for number in _ENDING:
-        if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, signal.SIG_DFL)
+    long = rf"(\S{{{LONGEST_WORD // 2}}})\S{{{LONGEST_WORD // 2},}}"
+    return re.sub(long, r"\1...", on_one_line(sentence))
 
 
 # What is wrong with a path that was given; another one is right. All else is the system's.

@@ -8,6 +8,11 @@ import sys
 from typing import Any
 
 
+def on_one_line(text: object) -> str:
+    """A path or a sentence for a terminal: on one line, and what steers a terminal as an escape."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(text))
+
+
 class _Output(io.FileIO):
     """A descriptor that takes everything once its reader has left, as of ``| head -1``.
 

@@ -19,6 +19,7 @@ from omegadot.diagnosis.reported.run_causes import (
     begin_apart,
     late,
     misread,
+    not_finite,
 )
 from omegadot.diagnosis.reported.sample_causes import (
     intervals,
@@ -219,9 +220,8 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
     if single and not clear:
         return NOTHING  # in single precision much fits a run within its rounding
     finite = whole and is_finite(reported.state)
-    seen = precision_reported(reported) if finite else ""
-    if not seen and begin_apart(reported, result):
-        seen = "runs begin at other states than the one given: one is left over from a run before"
+    seen = precision_reported(reported) if finite else not_finite(reported)
+    seen = seen or begin_apart(reported, result)
     seen = seen or next(filter(None, (cause(reported) for cause in SEEN)), "")
     if seen:
         return RunCauses((seen,))

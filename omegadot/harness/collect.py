@@ -30,6 +30,7 @@ COLUMNS = {
     "position": ("px", "py", "pz"),
     "linear_velocity": ("vx", "vy", "vz"),
 }
+MOST = float(np.finfo(float).max)
 Labels = dict[str, Any]
 
 
@@ -215,5 +216,7 @@ def trajectories_of_run(outcome: Outcome, setup: str) -> pl.DataFrame:
                     # A clock may be rounded, and its samples stand where the exact solution's do.
                     if time_row(judged.sweep, time, eps).verdict == "pass":
                         time = judged.sweep.times
-                    frames.append(_samples(labels, time, state, run["omega_dot"]))
+                    samples = _samples(labels, time, state, run["omega_dot"])
+                    # One of no time, or of one before the start, has no place in a trajectory.
+                    frames.append(samples.filter(pl.col("time").is_between(0.0, MOST)))
     return pl.concat(frames) if frames else schema.empty(schema.TRAJECTORIES)

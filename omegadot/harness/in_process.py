@@ -9,7 +9,7 @@ from typing import Any, cast
 from omegadot.adapters.protocol import Adapter, Integrator, UnsupportedError
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine, EngineChoice
-from omegadot.workers.engine_end.checked import description_of
+from omegadot.workers.engine_end.described import description_of
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.harness_end.process import Answer, WorkerProcess
 from omegadot.workers.wire import encode_frame, read_frame

@@ -101,10 +101,15 @@ class RunRecord(Record):
         return markdown_of(self).rstrip("\n")
 
     def figures(self, folder: str | os.PathLike[str]) -> list[Path]:
-        """Write the charts as SVG and PNG, for papers; the paths. Raises RecordError."""
+        """Write the charts as SVG and PNG, for papers; the paths. Raises RecordError.
+
+        A record's folder is refused: no run could replace the record that has them in it.
+        """
         from omegadot.reports.charts.static.write import write_figures
 
-        return write_figures(self, path_of(folder))
+        target = path_of(folder)
+        stored.check_no_record(target, "figures")
+        return write_figures(self, target)
 
     def __repr__(self) -> str:
         return f"<omegadot record of {len(self.tasks)} runs: {self.headline}>"

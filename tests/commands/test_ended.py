@@ -16,7 +16,7 @@ import omegadot as api
 from omegadot.diagnosis.diagnose import Causes
 from omegadot.reports.record.record import write_record
 
-# Its children leave its session and its environment, one each.
+# Its children leave its session and its environment, one each, and one both.
 SLOW = """
 import subprocess
 from omegadot.adapters.reference import ReferenceAdapter
@@ -25,6 +25,7 @@ class Endless(ReferenceAdapter):
     def run(self, *arguments, **more):
         subprocess.Popen(["sleep", "600"], start_new_session=True)
         subprocess.Popen(["sleep", "600"], env={})
+        subprocess.Popen(["sleep", "600"], env={}, start_new_session=True)
         open("busy", "w").close()
         while True:
             pass

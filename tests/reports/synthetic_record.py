@@ -103,7 +103,21 @@ def scenario_entry(name, title="A sphere, spun"):
         "title": title,
         "shows": "Omega-dot is zero and stays so.",
         "source": "Euler, 1752; https://example.org/sphere",
-        "definition": {"schema": 1, "name": name, "body": {"mass": 1.0}},
+        "definition": {
+            "schema": 1,
+            "name": name,
+            "body": {
+                "mass": 1.0,
+                "inertia": [[0.4, 0.0, 0.0], [0.0, 0.4, 0.0], [0.0, 0.0, 0.4]],
+                "allow_impossible_inertia": True,
+            },
+            "initial": {
+                "orientation": [1.0, 0.0, 0.0, 0.0],
+                "angular_velocity": [0.0, 0.0, 0.0],
+                "position": [0.0, 0.0, 0.0],
+                "linear_velocity": [0.0, 0.0, 0.0],
+            },
+        },
         "system": {
             "mass": 1.0,
             "center_of_mass": [0.0, 0.0, 0.0],

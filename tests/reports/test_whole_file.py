@@ -114,6 +114,23 @@ def test_a_record_in_a_record_is_refused_before_the_run(tmp_path: Path, record) 
         check_folder(tmp_path / "new")
 
 
+@pytest.mark.parametrize("inside", [".", "figures", "link"])
+def test_nothing_is_drawn_into_a_record(tmp_path: Path, record, inside: str) -> None:  # type: ignore[no-untyped-def]
+    """Caught: charts or a second page in a record's folder, which no run replaces from then on."""
+    folder = tmp_path / "run"
+    write_record(record, folder, PAGE)
+    (tmp_path / "link").symlink_to(folder)
+    target = tmp_path / "link" if inside == "link" else folder / inside
+    with pytest.raises(RecordError, match=r"which no run could replace with figures in it; name"):
+        RunRecord.of(read_record(folder)).figures(target)
+    with pytest.raises(RecordError, match=r"could replace with page.html in it; name another"):
+        report(folder, out=target / "page.html")
+    with pytest.raises(RecordError, match=r"could replace with two.html in it; name another"):
+        report(folder, folder, out=target / "two.html")
+    assert sorted(os.listdir(folder)) == sorted(FILES)
+    check_folder(folder)
+
+
 def test_a_shorter_interrupted_run_is_kept_out_of_the_way(  # type: ignore[no-untyped-def]
     tmp_path: Path, record, monkeypatch: pytest.MonkeyPatch
 ) -> None:

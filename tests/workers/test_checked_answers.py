@@ -12,12 +12,11 @@ from omegadot.workers.engine_end.checked import (
     AnswerError,
     checked,
     checked_bodies,
-    checked_description,
     checked_seconds,
     checked_trajectory,
-    description_of,
     numbers,
 )
+from omegadot.workers.engine_end.described import checked_description, description_of
 from omegadot.workers.engine_end.worker import failure
 from omegadot.workers.wire import one_line
 
@@ -78,6 +77,13 @@ def test_a_run_costs_what_the_adapter_measured_or_else_the_whole_call() -> None:
     assert checked_seconds(None, 2.0) == 2.0
     assert checked_seconds(np.float64(0.5), 2.0) == 0.5
     assert checked_trajectory(Trajectory(np.arange(5.0), state(5), 0.5)).seconds == 0.5
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0, 5e-324, 1e-12])
+def test_less_than_a_tick_is_nothing_measured(seconds: float) -> None:
+    """Caught: a pace of nothing, which speeds and budgets are then divided by."""
+    assert checked_seconds(seconds, 2.0) == 2.0
+    assert 0.0 < checked_seconds(None, 0.0) < 1e-3
 
 
 @pytest.mark.parametrize("seconds", [-1.0, 2.5, np.nan, np.inf, "0.5", np.ones(2)])
@@ -168,6 +174,16 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ),
         ({"integrators": (replace(EULER, orders={"speed": 1}),)}, "'speed'; give one of omega_dot"),
         ({"integrators": (replace(EULER, orders={"omega": 1.5}),)}, "the order of euler in omega"),
+        ({"integrators": (replace(EULER, orders={"omega": True}),)}, "is True; give a whole"),
+        ({"integrators": (replace(EULER, orders={"omega": 54}),)}, "is 54; give a whole .* to 53"),
+        ({"integrators": (replace(EULER, orders={"omega": 10**5000}),)}, "is of many digits; give"),
+        ({"integrators": (replace(EULER, orders=["omega"]),)}, "orders of euler is of type list"),
+        ({"integrators": (replace(EULER, note=5),)}, "note of euler is of type int"),
+        ({"integrators": (replace(EULER, one_step="no"),)}, "one_step of euler is of type str"),
+        ({"integrators": None}, "description.integrators is of type NoneType"),
+        ({"conventions": "body axes"}, "description.conventions is of type str"),
+        ({"links": "https://"}, "description.links is of type str"),
+        ({"features": "free"}, "description.features is of type str"),
     ],
 )
 def test_a_description_is_checked(fields: dict[str, Any], text: str) -> None:

@@ -18,8 +18,9 @@ from omegadot.harness.own_engines import known_engines
 from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.system import Body, State, System
 from omegadot.scenarios import ScenarioError
-from omegadot.workers.engine_end.checked import AnswerError, description_of
+from omegadot.workers.engine_end.checked import AnswerError
 from omegadot.workers.engine_end.command import CommandAdapter, ProgramError
+from omegadot.workers.engine_end.described import description_of
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.harness_end.process import WorkerProcess
 

@@ -5,22 +5,26 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from omegadot.adapters.protocol import Description
+from omegadot.reference_impl.system import State
 from omegadot.workers import machine
 from omegadot.workers.harness_end import process as worker_process
 from omegadot.workers.harness_end.process import WorkerProcess
 from omegadot.workers.machine import memory_of_machine
 from omegadot.workers.wire import encode_frame
 
-WELCOME = encode_frame({"outcome": "ok", "result": {}})
+WELCOME = encode_frame({"outcome": "ok", "result": Description("engine", "1.0", ())})
 PRINT = "import os, time; os.write(1, {text!r}); "
 NAMES_ITS_LIMIT = (
     "import resource, omegadot.workers.engine_end.worker as w; w.limit_memory(int(w.os.environ"
     "[w.MEMORY_VARIABLE])); r = str(resource.getrlimit(resource.RLIMIT_DATA)[0]); "
-    "w.os.write(1, w.encode_frame({'outcome': 'ok', 'result': r}))"
+    "from omegadot.adapters.protocol import Description; "
+    "w.os.write(1, w.encode_frame({'outcome': 'ok', 'result': Description('engine', r, ())}))"
 )
 
 
@@ -72,6 +76,55 @@ def test_what_is_no_frame_is_a_crash(text: bytes, reason: str) -> None:
     assert len(worker.deaths) == 1
 
 
+RUN = {
+    "time": np.zeros(2),
+    "state": State(np.zeros((2, 4)), *np.zeros((3, 2, 3))),
+    "omega_dot": np.zeros((2, 3)),
+    "seconds_per_step": 1e-6,
+}
+
+
+@pytest.mark.parametrize(
+    ("frame", "reason"),
+    [
+        ([1], "it is of type list"),
+        ({"outcome": "ok", "result": RUN, "x": 1}, "it has the key 'x'"),
+        ({"outcome": "best"}, "its outcome is 'best'"),
+        ({"outcome": "raised", "reason": 5}, "its reason is of type int"),
+        ({"outcome": "ok"}, "TypeError"),
+        ({"outcome": "ok", "result": {**RUN, "time": 1.0}}, "TypeError"),
+        ({"outcome": "ok", "result": {**RUN, "time": np.zeros(3)}}, "the state.orientation has"),
+        ({"outcome": "ok", "result": {**RUN, "omega_dot": [[1.0]]}}, "omega_dot has the shape"),
+        ({"outcome": "ok", "result": {**RUN, "seconds_per_step": 0.0}}, "its seconds_per_step is"),
+        ({"outcome": "ok", "result": {**RUN, "seconds_per_step": np.nan}}, "its seconds_per_step"),
+        ({"outcome": "ok", "result": {**RUN, "state": {"orientation": 1}}}, "TypeError"),
+    ],
+)
+def test_a_frame_of_another_kind_is_a_crash(frame: Any, reason: str) -> None:
+    """Caught: a TypeError of the harness, which loses what every other engine has answered."""
+    worker = worker_of(PRINT.format(text=WELCOME + encode_frame(frame)) + "time.sleep(3600)")
+    assert worker.start().ok
+    answer = worker.request("run")
+    assert answer.outcome == "crashed"
+    assert "what it answers is no answer" in answer.reason
+    assert reason in answer.reason
+    assert not worker.started
+
+
+@pytest.mark.parametrize("result", [{}, "engine", {"name": "x"}, {"integrators": 5}])
+def test_a_worker_starts_with_its_description(result: Any) -> None:
+    worker = worker_of(PRINT.format(text=encode_frame({"outcome": "ok", "result": result})))
+    assert worker.start().outcome == "crashed"
+
+
+def test_a_run_in_a_frame_is_an_answer() -> None:
+    frame = encode_frame({"outcome": "ok", "result": RUN, "seconds": 0.1})
+    worker = worker_of(PRINT.format(text=WELCOME + frame) + "time.sleep(3600)")
+    assert worker.start().ok
+    assert worker.request("run").ok
+    worker.stop()
+
+
 def test_a_program_that_is_not_there_is_reported() -> None:
     answer = WorkerProcess("none", "physics", 1.0, ["/nowhere/python"]).start()
     assert answer.outcome == "crashed"
@@ -85,7 +138,7 @@ def test_a_worker_that_is_not_running_gets_no_request() -> None:
 @pytest.mark.parametrize("memory", [None, 2**30])
 def test_a_worker_has_half_of_the_memory_or_what_it_is_given(memory: int | None) -> None:
     worker = worker_of(NAMES_ITS_LIMIT, 20.0, memory)
-    assert worker.start().result == str(memory or memory_of_machine() // 2)
+    assert worker.start().result["version"] == str(memory or memory_of_machine() // 2)
     worker.stop()
 
 

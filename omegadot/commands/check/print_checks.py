@@ -162,7 +162,10 @@ def print_checks(found: CheckResult, verbose: bool = False) -> None:
             _print_listed(console, verdict, own, whole)
     for line in _skipped(results):
         console.print(Text(line, "dim"))
-    for line in (*found.only_skipped, *(f"Baseline written: {path}" for path in found.baselines)):
+    for line in (
+        *found.only_skipped,
+        *(f"Baseline written: {on_one_line(path)}" for path in found.baselines),
+    ):
         console.print(Text(line))
     causes = {r.message.partition(CAUSE)[2] for r in results.values() if r.verdict == "fail"}
     print_failing(console, found.failing, of_several=len(causes) > 1)

@@ -10,7 +10,10 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.commands.choose.ruler import CHANNELS, NoTruthError, Ruler
 from omegadot.commands.choose.search import Edge, Search, Trials, edge_of, order_between
 from omegadot.commands.choose.trial import Row, Trial
+from omegadot.diagnosis.reported.clock import clock_cause
+from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Sweep
+from omegadot.gates.runs import trajectory
 from omegadot.gates.steps.accuracy import finest_of, order_of, steps_per_radian
 from omegadot.harness.drive import Driver
 from omegadot.harness.plan import Engine
@@ -147,6 +150,10 @@ class Candidate:
         if samples != requested:
             reason = f"run() gave {samples} samples where {requested} were requested"
             raise BrokenError("raised", reason)
+        eps = eps_of(self.engine.description.precision)
+        if trajectory.time_row(sweep, answer.result["time"], eps).verdict == "fail":
+            text = clock_cause(answer.result["time"], sweep, eps)
+            raise BrokenError("raised", f"run() reports other times than requested: {text}")
         errors = self.ruler.errors(sweep, State(**answer.result["state"]))
         seconds = float(answer.result["seconds_per_step"]) * sweep.steps / steps
         return Trial(steps, timestep, errors, seconds, len(sweep.times), sweep.accuracy)

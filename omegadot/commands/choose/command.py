@@ -101,6 +101,7 @@ def choose(
     arguments = options.given(locals())
     named = [*arguments.pop("scenarios", []), *arguments.pop("scenario", [])]
     from omegadot.commands.choose.choose import choose as choose_engine
+    from omegadot.commands.streams import on_one_line
     from omegadot.reports.choice.tables import print_choice
     from omegadot.reports.record.run_json import dump_json
     from omegadot.reports.text.numbers import listed
@@ -111,5 +112,5 @@ def choose(
     else:
         print_choice(found.document)
         if found.written:
-            typer.echo(f"Written to {listed([str(path) for path in found.written])}.")
+            typer.echo(f"Written to {listed([on_one_line(path) for path in found.written])}.")
     raise typer.Exit(found.document["exit_code"])

@@ -23,6 +23,7 @@ from omegadot.commands.score.read_table import read_table
 from omegadot.commands.score.settings import GivenColumns, Reading, reading_of, settings_of
 from omegadot.commands.typed import typed
 from omegadot.harness.usage import UsageError, check_number
+from omegadot.reports.record.record import check_no_record
 from omegadot.reports.record.whole_file import check_target, path_of, write_whole
 from omegadot.scenarios import scenario
 from omegadot.written import written
@@ -103,6 +104,7 @@ def _target(out: Path) -> Path:
     """The scenario's file. Raises UsageError for another ending, RecordError where it is taken."""
     if out.suffix != ".toml":  # nothing else is read as a scenario
         raise UsageError(f"--out {out}: a scenario's file ends in .toml; give {_with_toml(out)}.")
+    check_no_record(out.parent, out.name)
     check_target(out, MARK)
     check_target(picture.beside(out), picture.MARK)
     return out

@@ -16,6 +16,7 @@ from omegadot.commands.fit.estimates import SET
 from omegadot.commands.fit.picture import beside
 from omegadot.commands.fit.result import FitResult
 from omegadot.commands.fit.sentences import direction
+from omegadot.commands.streams import on_one_line
 from omegadot.reference_impl.system import Array
 from omegadot.reports.text.text_grid import plain_console
 from omegadot.written import written
@@ -35,7 +36,7 @@ def print_text(result: FitResult, out: Path | None) -> None:
     samples = result.samples
     console.print(
         Text(
-            f"{samples.file}: {len(samples.times)} samples from {written(samples.times[0])} to "
+            f"{on_one_line(samples.file)}: {len(samples.times)} samples from {written(samples.times[0])} to "
             f"{written(samples.times[-1])} s, in which the body turns by "
             f"{written(samples.data(np.zeros(3)).turned[-1], 3)} rad"
         )

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from omegadot.commands.options import option
+from omegadot.commands.streams import on_one_line
 
 
 def report(
@@ -51,6 +52,6 @@ def printed(runs: list[Path], out: Path | None, figures: Path | None, markdown: 
         one = len(runs) == 1
         return read_record(runs[0]).markdown() if one else as_markdown(compare(*runs)).rstrip("\n")
     if figures is None:
-        return str(draw(*runs, out=out))
+        return on_one_line(draw(*runs, out=out))
     written = [draw(runs[0], out=out)] if out is not None else []
-    return "\n".join(map(str, [*written, *read_record(runs[0]).figures(figures)]))
+    return "\n".join(map(on_one_line, [*written, *read_record(runs[0]).figures(figures)]))

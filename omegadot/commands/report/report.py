@@ -29,6 +29,11 @@ def report(run: PathLike, other: PathLike | None = None, *, out: PathLike | None
     ``two-runs.html`` in the current one. Raises RecordError.
     """
     file = None if out is None else path_of(out)
+    if file is not None:
+        from omegadot.reports.record.record import FILES, check_no_record
+
+        if file.name not in FILES:
+            check_no_record(file.parent, file.name)
     if other is None:
         return redraw(path_of(run), file)
     from omegadot.reports.two_runs.page import draw_two_runs

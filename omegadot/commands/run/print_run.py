@@ -9,6 +9,7 @@ import typer
 
 from omegadot.commands import options
 from omegadot.commands.run.result import RunResult
+from omegadot.commands.streams import on_one_line
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.text.terminal import print_summary
@@ -31,9 +32,9 @@ def print_text(result: RunResult) -> None:
     for problem in result.stale_exceptions:
         typer.echo(f"Declared exception: {problem}")
     if result.folder is not None:
-        typer.echo(f"Report: {result.folder / PAGE}")
+        typer.echo(f"Report: {on_one_line(result.folder / PAGE)}")
     if result.note:
-        typer.echo(result.note)
+        typer.echo(on_one_line(result.note))
 
 
 def print_json(result: RunResult) -> None:

@@ -175,12 +175,14 @@ def _file_for_a_map(context: typer.Context, out: Path) -> Path | None:
     """The file that is to be written beside --detect, if one is. Raises UsageError, RecordError."""
     from omegadot.commands.score.detection.reading import MARK
     from omegadot.harness.usage import UsageError
+    from omegadot.reports.record.record import check_no_record
     from omegadot.reports.record.whole_file import check_target
 
     if not _typed(context, "out"):
         return None
     if out.suffix != ".toml":
         raise UsageError(f"--out {out}: with --detect it is a map that is written; give FILE.toml.")
+    check_no_record(out.parent, out.name)
     check_target(out, MARK)
     return out
 

@@ -16,6 +16,7 @@ from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.own_units import in_own_unit
 from omegadot.commands.score.score import ScoreResult
 from omegadot.commands.score.shift import scatter
+from omegadot.commands.streams import on_one_line
 from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.text.text_grid import plain_console
@@ -43,9 +44,9 @@ def print_text(result: ScoreResult) -> None:
         console.print(Text(sentence))
     _print_others(result)
     if result.folder is not None:
-        typer.echo(f"Report: {result.folder / PAGE}")
+        typer.echo(f"Report: {on_one_line(result.folder / PAGE)}")
     if result.note:
-        typer.echo(result.note)
+        typer.echo(on_one_line(result.note))
 
 
 def _print_others(result: ScoreResult) -> None:

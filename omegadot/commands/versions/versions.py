@@ -21,6 +21,7 @@ from omegadot.commands.versions.result import VersionsResult
 from omegadot.harness.arguments import Via, check_way, several
 from omegadot.harness.engine_target import EngineLike, target_of
 from omegadot.harness.usage import UsageError, check_count, check_number, check_setup
+from omegadot.reports.record.record import check_no_record
 from omegadot.reports.record.whole_file import as_record_error, make_folder, path_of
 from omegadot.scenarios import ScenarioLike
 
@@ -76,6 +77,7 @@ def versions(
     _refuse_ignored(offline, installer, bisect, jobs)
     aims = aims_of(several(scenarios, "scenarios"), several(integrators, "integrators"), timestep)
     if out is not None:
+        check_no_record(path_of(out), "a page of versions")
         make_folder(path_of(out))
     try:
         fetching = None if offline else installer_named(installer)

@@ -49,8 +49,10 @@ def clock_cause(time: Array, sweep: Sweep, eps: float) -> str:
     if np.all(np.abs(late) <= tolerance):
         return ""
     if np.all(np.abs(late - late[0]) <= 2.0 * tolerance):
-        steps = late[0] / sweep.timestep
-        return f"every time is reported {written(late[0], 4)} s late, {written(steps, 3)} steps"
+        size, when = abs(float(late[0])), "late" if late[0] > 0.0 else "early"
+        steps = np.float64(size) / sweep.timestep if size < sweep.times[-1] else np.inf
+        counted = f", {written(steps, 3)} steps" if np.isfinite(steps) else ""
+        return f"every time is reported {written(size, 4)} s {when}{counted}"
     # sums in single precision may be in proportion over a few steps
     found = _in_single(time, sweep) or _in_proportion(time, sweep, eps)
     return found or _rounded(time, expected) or _off(late, sweep)

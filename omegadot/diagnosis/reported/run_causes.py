@@ -23,16 +23,54 @@ from omegadot.written import written
 
 LEAST_LATE = 3  # samples
 LEAST_APART = 2  # samples, each a whole state of another step
+NEAR = 1e-9  # relative: a number is passed on as it is, or through a few roundings
+ROOM = 2.0  # steps; two neighbours are not of one length
+LARGEST = float(np.sqrt(np.finfo(float).max))  # beyond it squares overflow
 
 
-def begin_apart(reported: ReportedRun, result: CaseResult) -> bool:
-    """Whether runs of the same case do not even begin at the same state."""
-    starts, first = [], slice(0, 1)
-    for run in result.runs.values():
-        if run.ok and len(run.result["time"]) and run.result["time"][0] == 0.0:
-            start = State(**run.result["state"])[first]
-            starts += [start] if np.all(np.isfinite(start.angular_velocity)) else []
-    return any(not reported.agrees(start, starts[0], first) for start in starts[1:])
+def begin_apart(reported: ReportedRun, result: CaseResult) -> str:
+    """Runs of the same case that do not even begin at the same state; "" where all do.
+
+    One that begins at what a run before it has come to, in one quantity at least that has moved, is
+    left over from that.
+    """
+    first = slice(0, 1)
+    runs = [
+        state
+        for run in result.runs.values()
+        if run.ok and len(run.result["time"]) and run.result["time"][0] == 0.0
+        if _is_measurable(state := State(**run.result["state"]))
+    ]
+    apart = [
+        n for n, one in enumerate(runs) if not reported.agrees(one[first], runs[0][first], first)
+    ]
+    if not apart:
+        return ""
+    kept = any(
+        _is_kept(runs[n], before, reported.case.initial) for n in apart for before in runs[:n]
+    )
+    why = ": one is left over from a run before" if kept else ", and at different ones"
+    return f"runs begin at other states than the one given{why}"
+
+
+def _is_measurable(state: State) -> bool:
+    """Whether the first state is finite, and so is its distance from any other."""
+    sizes = [np.abs(values[0]) for values in vars(state).values()]
+    return all(bool(np.all(one < LARGEST)) for one in sizes)
+
+
+def _is_kept(state: State, before: State, given: State) -> bool:
+    """Whether a quantity begins where the run before has ended, and not where it was to begin.
+
+    A step may lie between the two: one goes before every run, so that its cost is not counted.
+    """
+    begins, ends, due = vars(state), vars(before), vars(given)
+    for name, values in begins.items():
+        step = float(norm(np.diff(values[:2], axis=0)).sum())
+        near = ROOM * step + NEAR * float(norm(values[0]))
+        if norm(values[0] - ends[name][-1]) <= near < norm(values[0] - due[name]):
+            return True
+    return False
 
 
 def not_finite(reported: ReportedRun) -> str:

@@ -180,7 +180,7 @@ def reported_rows(system: System, states: State, omega_dot: Array, eps: float = 
 
     States that are not finite, or whose squares overflow, have no omega-dot to be held against.
     Neither have those that damping has brought so near to rest that squares lose digits to
-    underflow.
+    underflow, nor those whose quaternion is so short.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         rate = norm(states.angular_velocity) ** 2
@@ -188,6 +188,7 @@ def reported_rows(system: System, states: State, omega_dot: Array, eps: float = 
     least = np.sqrt(np.finfo(float if eps <= EPS else np.float32).tiny / eps)
     largest = np.max(np.abs(states.angular_velocity), axis=-1)
     kept &= (largest == 0.0) | (largest >= least)
+    kept &= norm(states.orientation) >= least  # a shorter quaternion has no direction
     if not kept.any():
         return []
     sound = states[kept]

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.gates.bounds.measures import TRAJECTORY_UNITS
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import STATE, MeasuredRun
 from omegadot.gates.errors.verdicts import Finding
@@ -21,6 +23,8 @@ from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
 from omegadot.written import written
 
+# In the order of a state's fields.
+STATE_CHANNELS = ("attitude", "omega", "position", "linear_momentum")
 Run = TypeVar("Run", bound=MeasuredRun)
 
 
@@ -77,6 +81,21 @@ def measured_runs_of(
     }
 
 
+def _finite(state: State) -> dict[str, NDArray[np.bool_]]:
+    """(n,) by channel: where the quantity that it is of is finite."""
+    fields = zip(STATE_CHANNELS, vars(state).values(), strict=True)
+    return {channel: np.isfinite(values).all(-1) for channel, values in fields}
+
+
+def _unbounded_row(state: State, verdict: str, note: str) -> Row:
+    """Of the first quantity that is not finite: of omega, where several cease to be at once."""
+    finite = _finite(state)
+    begins = {c: int(np.argmin(ok)) if not ok.all() else len(ok) for c, ok in finite.items()}
+    channel = min(("omega", *STATE_CHANNELS), key=lambda c: begins[c])
+    unit = TRAJECTORY_UNITS.get(channel, "1")
+    return Row("trajectory", channel, "error_max", float("nan"), unit, None, verdict, note)
+
+
 def diverged(
     integrator: Integrator,
     sweep: Sweep,
@@ -90,6 +109,7 @@ def diverged(
     Energy and angular momentum follow from the state, and overflow before it.
     """
     finite = np.isfinite(measured.saturating_error) & np.isfinite(answer.result["time"])
+    finite &= np.all(list(_finite(State(**answer.result["state"])).values()), axis=0)
     bad = np.flatnonzero(~finite)
     when = f" from t = {written(sweep.times[bad[0]])} s" if len(bad) else ""
     note = f"the state is not finite{when}"
@@ -97,7 +117,7 @@ def diverged(
     worst = min(of_state, key=lambda f: _FINDINGS.index(f.kind))
     rows = [
         trajectory.time_row(sweep, answer.result["time"], eps),
-        Row("trajectory", "omega", "error_max", float("nan"), "1", None, worst.verdict, worst.note),
+        _unbounded_row(State(**answer.result["state"]), worst.verdict, worst.note),
     ]
     why = note if worst.verdict == "fail" else worst.note
     return JudgedRun(integrator, sweep, "diverged", note, rows, why, worst.open)
@@ -111,7 +131,7 @@ def failed(integrator: Integrator, sweep: Sweep, answer: Answer, eps: float) -> 
     if is_finite(State(**answer.result["state"])):
         return JudgedRun(integrator, sweep, "ok", "", rows, why=rows[0].note)
     note = "the state is not finite"
-    rows.append(Row("trajectory", "omega", "error_max", float("nan"), "1", None, "fail", note))
+    rows.append(_unbounded_row(State(**answer.result["state"]), "fail", note))
     return JudgedRun(integrator, sweep, "diverged", note, rows, why=note)
 
 

@@ -23,6 +23,11 @@ from omegadot.written import written
 NAME = "choice.json"
 _FRAME = Frame(width=720, height=340, left=62, right=12, top=12, bottom=44)
 
+_NOT_OURS = (
+    *(OSError, ValueError, RecursionError, LookupError, TypeError, AttributeError),
+    ArithmeticError,
+)
+
 # A choice as the template takes it, on a page of its own or in a run's.
 Section = dict[str, Any]
 
@@ -77,7 +82,7 @@ def read_choice(folder: Path) -> Section | None:
         return None
     try:
         return section_of(json.loads(path.read_text(encoding="utf-8-sig")))
-    except (OSError, ValueError, RecursionError, LookupError, TypeError, AttributeError) as error:
+    except _NOT_OURS as error:
         raise RecordError(
             f"{path}: not a choice that omegadot wrote; remove it or choose again."
         ) from error

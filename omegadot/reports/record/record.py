@@ -87,6 +87,18 @@ def _check_place(folder: Path) -> None:
         raise RecordError(f"{folder}: is not empty and holds no {RUN}; name a new folder.")
 
 
+def check_no_record(folder: Path, what: str) -> None:
+    """Raise RecordError where `folder` is a record's, or lies in one: `what` cannot go there."""
+    with as_record_error(folder):
+        real = Path(os.path.realpath(folder))
+        inside = next(filter(_is_record, (real, *real.parents)), None)
+    if inside is not None:
+        where = "is a record's folder" if inside == real else f"lies in the record {inside}"
+        raise RecordError(
+            f"{folder}: {where}, which no run could replace with {what} in it; name another folder."
+        )
+
+
 def _followed(folder: Path) -> Path:
     """The folder that it stands for. Raises RecordError for a link that leads to itself."""
     followed = Path(os.path.realpath(folder))

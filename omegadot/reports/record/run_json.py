@@ -38,7 +38,8 @@ def impossible_bodies(scenarios: Iterable[Mapping[str, Any]]) -> list[str]:
     found = []
     for entry in scenarios:
         body = (entry.get("definition") or {}).get("body") or {}
-        broken = broken_triangle(np.array(body["inertia"])) if body.get(ALLOWED) else None
+        tensor = body.get("inertia") if body.get(ALLOWED) else None
+        broken = broken_triangle(np.array(tensor)) if tensor else None
         if broken:
             found.append(
                 f"{entry['name']}: an impossible inertia, allowed on request: its greatest"

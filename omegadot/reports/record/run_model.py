@@ -24,6 +24,7 @@ def _time(text: str) -> str:
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4)]
 Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
 Text = str | None
 Texts = list[str] | None
@@ -80,8 +81,22 @@ class _System(_Table):
         return tensor
 
 
+class _Body(_Table):
+    inertia: Matrix | None = None
+
+
+class _Initial(_Table):
+    orientation: Quaternion | None = None
+    angular_velocity: Vector | None = None
+    position: Vector | None = None
+    linear_velocity: Vector | None = None
+
+
 class _Definition(_Table):
-    body: dict[str, Any] | None = None
+    """What readers take of a scenario file; the rest of it is shown as it stands."""
+
+    body: _Body | None = None
+    initial: _Initial | None = None
 
 
 class _Scenario(_Table):

@@ -16,14 +16,15 @@ from omegadot.reference_impl.solutions.exact_solution import exact_solution
 from omegadot.reference_impl.stepping import stack
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.engine_end.checked import (
+    AnswerError,
     checked,
     checked_bodies,
     checked_native,
     checked_seconds,
     checked_trajectory,
-    description_of,
     numbers,
 )
+from omegadot.workers.engine_end.described import description_of
 from omegadot.workers.engine_end.memory import peak_memory
 from omegadot.workers.wire import system_from
 
@@ -117,7 +118,10 @@ def _first_steps(adapter: Adapter, request: Request) -> Any:
     run = _runs_of(adapter, request)
 
     def end(start: State, timestep: float) -> State:
-        return checked_trajectory(run(start, integrator, timestep, 1, 1)).state[-1]
+        found = checked_trajectory(run(start, integrator, timestep, 1, 1))
+        if len(found.time) < 2 and abs(found.time[-1]) < abs(found.time[-1] - timestep):
+            raise AnswerError("run() of one step has the start alone; answer with its end as well")
+        return found.state[-1]
 
     return stack(
         [

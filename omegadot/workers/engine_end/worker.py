@@ -21,13 +21,15 @@ from typing import Any, BinaryIO, cast
 from omegadot.adapters.protocol import Adapter, Setup, UnsupportedError
 from omegadot.adapters.registry import OURS, AdapterError, build_adapter
 from omegadot.reference_impl.solutions.representable import UnrepresentableError
-from omegadot.workers.engine_end.checked import AnswerError, description_of
+from omegadot.workers.engine_end.checked import AnswerError
 from omegadot.workers.engine_end.command import (
     CommandAdapter,
     ProgramError,
     ProgramLostError,
     end_with_parent,
 )
+from omegadot.workers.engine_end.described import description_of
+from omegadot.workers.engine_end.keeper import keep_family
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE, limit_memory
 from omegadot.workers.engine_end.operations import OPERATIONS
 from omegadot.workers.wire import encode_frame, one_line, read_frame
@@ -153,6 +155,7 @@ def main() -> None:
 
     The module of an engine of one's own may stand in the current folder, which comes last.
     """
+    keep_family()
     _end_with_harness()
     if sys.argv[1] not in OURS.values():
         with contextlib.suppress(FileNotFoundError):  # a folder that was removed holds no module

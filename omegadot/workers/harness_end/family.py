@@ -1,7 +1,9 @@
 """A worker's family, the process and all that it started: it is ended as one.
 
-A child may leave the worker's group for a session of its own; it is found by a mark in the
-environment that it has inherited. Each worker has a mark, and its harness has one that all bear.
+On Linux a worker has a keeper, which ends all that is below it (`engine_end.keeper`). Elsewhere,
+and where somebody has ended the keeper, a child may have left the worker's group for a session of
+its own. It is found by a mark in the environment that it has inherited. Each worker has a mark, and
+its harness has one that all bear.
 
 A worker dies with its harness by itself (`engine_end.worker`), its children do not. So this file is
 also a program, the guard: one beside each harness. It waits until the harness is gone, however that
@@ -17,17 +19,27 @@ import signal
 import subprocess
 import sys
 import uuid
+from collections.abc import Iterable
 
 import psutil
 
 VARIABLE = "OMEGADOT_WORKER_MARKS"
 # A family that starts new members while it is ended is searched again, so many times.
 MOST_SEARCHES = 8
+SECONDS_TO_END = 2.0
 
 
 def marked(environment: dict[str, str], mark: str) -> dict[str, str]:
     """The environment with one more mark; a worker's own workers bear both."""
     return {**environment, VARIABLE: f"{environment.get(VARIABLE, '')}:{mark}"}
+
+
+def ask_to_end(worker: subprocess.Popen[bytes]) -> None:
+    """Have a keeper end all that is below it, and wait for that, a moment at most."""
+    if sys.platform == "linux" and worker.poll() is None:
+        with contextlib.suppress(OSError, subprocess.TimeoutExpired):
+            worker.terminate()
+            worker.wait(SECONDS_TO_END)
 
 
 def end_family(leader: int, mark: str) -> None:
@@ -106,6 +118,17 @@ class Guard:
 GUARD = Guard()
 
 
+def _ask_to_end(leaders: Iterable[int]) -> None:
+    """The same of several, which are not this process's own."""
+    asked = []
+    for leader in leaders if sys.platform == "linux" else ():
+        with contextlib.suppress(psutil.Error, OSError):
+            keeper = psutil.Process(leader)
+            keeper.terminate()
+            asked.append(keeper)
+    psutil.wait_procs(asked, SECONDS_TO_END)
+
+
 def guard(mark: str) -> None:
     """Read the numbers of workers, negative once they are ended, until the harness is gone."""
     leaders = set()
@@ -115,6 +138,7 @@ def guard(mark: str) -> None:
             leaders.add(number)
         else:
             leaders.discard(-number)
+    _ask_to_end(leaders)
     for leader in leaders:
         _end_group(leader)
     _end_marked(mark)

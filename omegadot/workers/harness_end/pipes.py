@@ -14,7 +14,7 @@ import threading
 from dataclasses import dataclass
 from typing import Any
 
-from omegadot.workers.harness_end.family import GUARD, end_family
+from omegadot.workers.harness_end.family import GUARD, ask_to_end, end_family
 from omegadot.workers.wire import encode_frame, one_line, read_frame
 
 STDERR_BYTES_KEPT = 4000
@@ -105,6 +105,7 @@ class Pipes:
 
     def end(self) -> None:
         """End the process and everything it started, at once."""
+        ask_to_end(self.process)
         end_family(self.process.pid, self._mark)
         self.process.wait()
 

@@ -17,6 +17,7 @@ from typing import Any
 import psutil
 
 from omegadot.workers.engine_end.memory import MEMORY_VARIABLE
+from omegadot.workers.harness_end.answers import FrameError, answer_in
 from omegadot.workers.harness_end.family import GUARD, marked
 from omegadot.workers.harness_end.pipes import Lost, Pipes
 from omegadot.workers.machine import memory_of_machine
@@ -99,7 +100,8 @@ class WorkerProcess:
             return Answer("crashed", f"the worker could not be started: {error}")
         self._pipes = pipes = Pipes(process, mark)
         seconds = max(self._timeout, SECONDS_TO_START)
-        answer = self._wait(pipes, seconds, f"not started within {written(seconds)} s")
+        late = f"not started within {written(seconds)} s"
+        answer = self._wait(pipes, seconds, late, "start", {})
         if not answer.ok:
             self.stop()
         return answer
@@ -123,7 +125,8 @@ class WorkerProcess:
         if pipes is None:
             return Answer("crashed", "the worker is not running")
         pipes.send({"operation": operation, **fields})
-        return self._wait(pipes, self._timeout, f"no answer within {written(self._timeout)} s")
+        late = f"no answer within {written(self._timeout)} s"
+        return self._wait(pipes, self._timeout, late, operation, fields)
 
     def peak_memory(self) -> int | None:
         """Bytes that the living process has held in memory at most; None where it is not known."""
@@ -133,7 +136,9 @@ class WorkerProcess:
             return getattr(psutil.Process(self.pid).memory_info(), "peak_wset", None)
         return answer.result if answer.ok else None
 
-    def _wait(self, pipes: Pipes, seconds: float, late: str) -> Answer:
+    def _wait(
+        self, pipes: Pipes, seconds: float, late: str, operation: str, fields: dict[str, Any]
+    ) -> Answer:
         try:
             answer = pipes.answers.get(timeout=seconds)
         except queue.Empty:
@@ -141,6 +146,11 @@ class WorkerProcess:
             return Answer("timeout", f"{late}; the worker was ended")
         if isinstance(answer, Lost):
             return Answer("crashed", self._post_mortem(pipes, answer.how))
+        try:
+            answer = answer_in(answer, operation, fields)
+        except FrameError as error:
+            how = f"what it answers is no answer: {one_line(str(error), 100)}"
+            return Answer("crashed", self._post_mortem(pipes, how))
         if answer.pop("leaves", False):
             self.stop()
         return Answer(**{**answer, "reason": one_line(answer.get("reason", ""))})
