@@ -17,6 +17,7 @@ from omegadot.commands.check.judge import CAUSE
 from omegadot.commands.check.print_failing import print_failing
 from omegadot.commands.check.result import Check, Result, Verdict, coverage
 from omegadot.commands.options import exit_code
+from omegadot.commands.streams import on_one_line
 from omegadot.reports.text.numbers import first, listed, times
 
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
