@@ -47,7 +47,7 @@ class Integrator:
     finest_accuracy: the smallest that it follows, 0 where it follows all down to rounding.
     coordinates: those in which the engine steps a free body's translation, see `Coordinates`.
     one_step: a step depends on the state alone; False for a multistep method, which keeps earlier
-    steps in mind.
+    steps in mind, and for coordinates that are chosen by the steps before, as a chart that moves.
     steps_origin: True is the same as the coordinates "origin-world"; adapters written before
     `coordinates` give it.
     """

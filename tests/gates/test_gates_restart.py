@@ -73,7 +73,7 @@ def test_growth_is_allowed_for_and_nothing_beyond(prepared: Prepared) -> None:
     assert reported(prepared, np.sqrt(plain * grown)).verdict == "pass"
     far = reported(prepared, 2.0 * grown)
     assert (far.verdict, far.channel, far.bound) == ("fail", "omega", 1.0)
-    assert "steps depend on the past" in far.note
+    assert "steps depend on the past (declared by one_step=False)" in far.note
 
 
 def test_a_method_of_several_steps_is_not_accused(prepared: Prepared) -> None:

@@ -83,4 +83,5 @@ def row(
         return Row(GATE, *start, "info", STIFF)
     when = f"t = {written(sweep.times[sample], 4)} s"
     note = f"a run restarted at its own sample at {when} gives other samples: they are not the"
-    return Row(GATE, *start, "fail", f"{note} state that is stepped, or steps depend on the past")
+    note = f"{note} state that is stepped, or steps depend on the past (declared by one_step=False)"
+    return Row(GATE, *start, "fail", note)
