@@ -18,6 +18,7 @@ from omegadot.commands.check.judge import CAUSE
 from omegadot.commands.check.result import Check, Result, Verdict, coverage
 from omegadot.commands.check.shrink import Failing
 from omegadot.commands.options import exit_code
+from omegadot.commands.streams import on_one_line
 from omegadot.reports.text.numbers import listed, times
 
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")

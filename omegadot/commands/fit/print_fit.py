@@ -36,9 +36,9 @@ def print_text(result: FitResult, out: Path | None) -> None:
     samples = result.samples
     console.print(
         Text(
-            f"{on_one_line(samples.file)}: {len(samples.times)} samples from {written(samples.times[0])} to "
-            f"{written(samples.times[-1])} s, in which the body turns by "
-            f"{written(samples.data(np.zeros(3)).turned[-1], 3)} rad"
+            f"{on_one_line(samples.file)}: {len(samples.times)} samples from "
+            f"{written(samples.times[0])} to {written(samples.times[-1])} s, in which "
+            f"the body turns by {written(samples.data(np.zeros(3)).turned[-1], 3)} rad"
         )
     )
     if result.shape_determined:
