@@ -178,12 +178,13 @@ def test_an_interruption_waits_until_a_record_is_written(
 
 
 INTERRUPTED_IN_IMPORT = """
+import os
 import sys
 
 class Interrupts:
     def find_spec(self, name, path, target=None):
         if name == "omegadot.commands.cli":
-            raise KeyboardInterrupt
+            os.kill(os.getpid(), int(sys.argv[1]))
 
 sys.meta_path.insert(0, Interrupts())
 from omegadot.__main__ import main
@@ -191,7 +192,16 @@ main()
 """
 
 
-def test_an_interruption_while_it_is_loaded_is_one_line() -> None:
-    command = [sys.executable, "-c", INTERRUPTED_IN_IMPORT]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (130, "omegadot: interrupted.\n")
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_an_interruption_while_it_is_loaded_is_one_line(name: str) -> None:
+    """Caught: handlers that the command line sets when it has been imported itself."""
+    number = int(getattr(signal, name))
+    command = [sys.executable, "-c", INTERRUPTED_IN_IMPORT, str(number)]
+    done = subprocess.run(
+        command,
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL) and None,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (128 + number, "omegadot: interrupted.\n")

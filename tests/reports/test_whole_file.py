@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from omegadot.commands.report.command import printed
 from omegadot.commands.report.report import report
 from omegadot.commands.run.result import result_of
 from omegadot.reports.record.interrupted import place_of_interrupted, written_in
@@ -112,6 +113,14 @@ def test_a_record_in_a_record_is_refused_before_the_run(tmp_path: Path, record) 
     write_record(record, tmp_path / "new" / "sub", PAGE)
     with pytest.raises(RecordError, match="new: holds 'sub', which is another record"):
         check_folder(tmp_path / "new")
+
+
+def test_a_path_is_printed_on_one_line(tmp_path: Path, record) -> None:  # type: ignore[no-untyped-def]
+    """Caught: a name with a newline, or with what steers a terminal, printed as it is."""
+    write_record(record, tmp_path / "run", PAGE)
+    text = printed([tmp_path / "run"], tmp_path / "a\nb\x1b[31m.html", None, False)
+    assert text == f"{tmp_path}/a\\nb\\x1b[31m.html"
+    assert (tmp_path / "a\nb\x1b[31m.html").is_file()
 
 
 @pytest.mark.parametrize("inside", [".", "figures", "link"])

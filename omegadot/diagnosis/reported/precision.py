@@ -96,6 +96,8 @@ def decimals_reported(reported: ReportedRun) -> str:
     for name, what in DECIMAL.items():
         came, own = (getattr(x, name)[1:] for x in (reported.state, reported.own))
         for digits in range(1, MOST_DECIMALS):
+            if np.max(np.spacing(np.abs(came))) > 0.1 ** (digits + 1):
+                break  # numbers so large have no more decimals
             rounded = np.round(came, digits)
             if np.array_equal(rounded, came) and len(np.unique(came)) > came.size // 2:
                 if np.any(np.round(own, digits) != own):

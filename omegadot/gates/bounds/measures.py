@@ -5,6 +5,7 @@ from __future__ import annotations
 from copy import copy
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.gates.bounds.roundings import PLAIN, Roundings
 from omegadot.gates.bounds.scales import (
@@ -29,6 +30,14 @@ from omegadot.reference_impl.system import Array, State, System
 TRAJECTORY_UNITS = {"omega": "1", "attitude": "rad", "position": "m"}
 THIN = 2.0  # times its own rate: more than a body does that is not thin
 INVARIANT_CHANNELS = ("energy", "angular_momentum", "linear_momentum")
+
+
+def _same(one: State, other: State) -> NDArray[np.bool_]:
+    """(n,): whether all numbers are the same; q and -q are one attitude."""
+    pairs = zip(vars(one).values(), vars(other).values(), strict=True)
+    same = [np.all(a == b, axis=-1) for a, b in pairs]
+    same[0] |= np.all(one.orientation == -other.orientation, axis=-1)
+    return np.asarray(np.all(same, axis=0))
 
 
 class Yardstick:
@@ -134,8 +143,15 @@ class Yardstick:
         """(n,): |one - other| in this channel.
 
         omega: over the rate.  attitude: rad, or how much longer a quaternion is, whichever is more.
-        position: m.  energy, momenta: over their sizes.
+        position: m.  energy, momenta: over their sizes.  The same numbers are nowhere apart, though
+        no distance can be worked out with them.
         """
+        found = self._distance(channel, one, other)
+        if np.isfinite(found).all():
+            return found
+        return np.where(_same(one, other), 0.0, found)
+
+    def _distance(self, channel: str, one: State, other: State) -> Array:
         # An engine that has gone astray may be where squares overflow: that far away is infinite.
         with np.errstate(over="ignore", invalid="ignore"):
             if channel == "omega":

@@ -24,6 +24,7 @@ from omegadot.written import written
 
 GATE = "trajectory"
 DIGITS, SINGLE_DIGITS = 53, 24  # of a double's and of a single's mantissa
+FINEST = -1074  # every double is a whole multiple of 2 to this power
 FEWEST_COARSE = 8  # by chance one in 4^8 = 65 536
 
 
@@ -130,4 +131,6 @@ def grain_of(values: Array) -> int | None:
         exponent - DIGITS + np.log2(whole & -whole).astype(int)
     )  # of the lowest digit that is set
     grain = int(np.min(last))
+    if grain <= FINEST:
+        return None
     return grain if np.sum(exponent - SINGLE_DIGITS <= grain - 2) >= FEWEST_COARSE else None
