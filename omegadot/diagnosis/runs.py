@@ -10,6 +10,7 @@ from omegadot.diagnosis.models.fitted_misreadings import ADDED
 from omegadot.diagnosis.reported.clock import clock_of_runs
 from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.guesses import Guesses
+from omegadot.diagnosis.reported.one_of_all import one_of_all
 from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import SLACK, ReportedRun, reported_run
 from omegadot.diagnosis.reported.run_causes import (
@@ -220,6 +221,7 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
         return NOTHING  # in single precision much fits a run within its rounding
     finite = whole and is_finite(reported.state)
     seen = precision_reported(reported) if finite else ""
+    seen = seen or one_of_all(reported, result)
     if not seen and begin_apart(reported, result):
         seen = "runs begin at other states than the one given: one is left over from a run before"
     seen = seen or next(filter(None, (cause(reported) for cause in SEEN)), "")

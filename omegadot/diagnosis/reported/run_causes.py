@@ -26,13 +26,24 @@ LEAST_APART = 2  # samples, each a whole state of another step
 
 
 def begin_apart(reported: ReportedRun, result: CaseResult) -> bool:
-    """Whether runs of the same case do not even begin at the same state."""
-    starts, first = [], slice(0, 1)
-    for run in result.runs.values():
-        if run.ok and len(run.result["time"]) and run.result["time"][0] == 0.0:
-            start = State(**run.result["state"])[first]
-            starts += [start] if np.all(np.isfinite(start.angular_velocity)) else []
-    return any(not reported.agrees(start, starts[0], first) for start in starts[1:])
+    """Whether a run begins at another state than the one given: where the run before it ended.
+
+    One step, which is not logged, is run before each: the next may begin at the end of that.
+    """
+    given, first, end = reported.own[:1], slice(0, 1), None
+    for (_, timestep), run in result.runs.items():
+        if not run.ok or not len(run.result["time"]):
+            continue
+        state = State(**run.result["state"])
+        start = state[:1]
+        apart = run.result["time"][0] == 0.0 and not reported.agrees(start, given, first)
+        if end is not None and apart and np.all(np.isfinite(start.angular_velocity)):
+            sweep = replace(reported.sweep, timestep=timestep)
+            on = replace(reported, sweep=sweep).stepped_on(end, 1)
+            if any(reported.agrees(start, one, slice(1, 2)) for one in (end, on)):
+                return True
+        end = state[-1:]
+    return False
 
 
 def not_finite(reported: ReportedRun) -> str:
