@@ -22,8 +22,9 @@ from omegadot.gates.case import Case
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import at_point, place_on_pivot
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
+from omegadot.reference_impl.stepping import stack
 from omegadot.reference_impl.symmetric import apply, inverse
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import Array, State
 
 Made = Callable[[Case, State], State]
 FREE = [case for case in CASES if case.system.load.pivot is None]
@@ -35,14 +36,21 @@ def set_states(case: Case, number: int) -> State:
     return place_on_pivot(case.system, State(q, *(draw.normal(size=3) for _ in range(3))))
 
 
-def causes(made: Made, cases: list[Case]) -> list[list[str]]:
-    """What is named on each scenario, held against all of them."""
+def causes(made: Made, cases: list[Case], count: int = 0) -> list[list[str]]:
+    """What is named on each scenario, held against all of them.
+
+    count: from how many states steps of no length are known.
+    """
     across, rounds = Across(), []
     for number, case in enumerate(cases):
         requested = set_states(case, number)
         rounds.append((case, requested, made(case, requested)))
         features = features_of(case.system, case.initial)
-        across.add(Scene(case.name, case.system, features, {}, states=rounds[-1][1:]))
+        scene = Scene(case.name, case.system, features, {}, states=rounds[-1][1:])
+        if count:
+            many = [set_states(case, 100 + k) for k in range(count)]
+            scene.limits.append((stack(many), stack([made(case, one) for one in many])))
+        across.add(scene)
     return [state_causes(across, *one, EPS) for one in rounds]
 
 
@@ -159,3 +167,81 @@ def test_a_condition_of_the_state_that_is_set_is_named() -> None:
     assert text.startswith("the rotation looks transposed")
     where = "but only where the scalar part of the quaternion that is set is negative"
     assert text.endswith(where)
+
+
+def by_matrix(matrix: Callable[[Case], Array]) -> Made:
+    """Omega is this matrix times the one that is set, and a pivoted body's velocity follows."""
+
+    def made(case: Case, state: State) -> State:
+        w = matrix(case) @ state.angular_velocity
+        return place_on_pivot(case.system, replace(state, angular_velocity=w))
+
+    return made
+
+
+def moving(case: Case) -> Array:
+    return np.asarray(moving_inertia(case.system))
+
+
+@pytest.mark.parametrize(
+    ("matrix", "text"),
+    [
+        (
+            lambda c: inverse(moving(c)) @ c.system.body.inertia,
+            "omega reads back as M^-1 I omega (",
+        ),
+        (
+            lambda c: inverse(c.system.body.inertia) @ moving(c),
+            "omega reads back as I^-1 M omega (",
+        ),
+        (
+            lambda c: c.system.body.inertia @ inverse(moving(c)),
+            "omega reads back as I M^-1 omega (",
+        ),
+        (
+            lambda c: inverse(np.diag(np.diag(c.system.body.inertia))) @ c.system.body.inertia,
+            "omega reads back as D^-1 I omega (",
+        ),
+    ],
+)
+def test_an_omega_turned_by_two_inertias_is_named(
+    matrix: Callable[[Case], Array], text: str
+) -> None:
+    """Caught: no cause of an omega that is kept as a momentum by one inertia, and not by it."""
+    found = [texts for texts in causes(by_matrix(matrix), list(CASES)) if texts]
+    assert found
+    assert all(one[0].startswith(text) for one in found)
+
+
+@pytest.mark.parametrize(
+    ("matrix", "text"),
+    [
+        (2.5 * np.eye(3), "omega is scaled by 2.5 as a state is set or read back"),
+        (np.eye(3)[[1, 0, 2]], "the axes of omega are others: x, y, z hold y, x, z"),
+        (np.diag([1.0, -1.0, 1.0]), "the axes of omega are others: x, y, z hold x, -y, z"),
+    ],
+)
+def test_an_omega_in_other_axes_is_named_where_a_place_follows_it(matrix: Array, text: str) -> None:
+    """Caught: no cause on a pivot, where the velocity that reads back is that of this omega."""
+    assert causes(by_matrix(lambda _: matrix), list(CASES)) == [[text]] * len(CASES)
+
+
+def test_an_unknown_matrix_is_stated_and_no_turn_is_one() -> None:
+    """Caught: a matrix that is fitted to states at one attitude alone."""
+    shear = np.array([[1.0, 0.25, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]])
+    (text, *others) = [one for (one,) in causes(by_matrix(lambda _: shear), FREE, count=8)]
+    assert text.startswith("omega reads back as a matrix times the one that is set: on ")
+    assert text.endswith("as (1, 0.25, 0); (0, 1, 0); (0, 0, 0.5)")
+    assert set(others) == {text}
+
+    def turned_back(case: Case, state: State) -> State:
+        w = shear @ rotate(state.orientation, state.angular_velocity)
+        return place_on_pivot(case.system, replace(state, angular_velocity=w))
+
+    def squared(case: Case, state: State) -> State:
+        w = state.angular_velocity * (1.0 + 0.1 * state.angular_velocity[0])
+        return place_on_pivot(case.system, replace(state, angular_velocity=w))
+
+    for wrong in (turned_back, squared):
+        assert [texts for texts in causes(wrong, FREE, count=8) if texts] == []
+    assert [texts for texts in causes(by_matrix(lambda _: shear), FREE, count=4) if texts] == []
