@@ -216,14 +216,15 @@ def test_an_omega_turned_by_two_inertias_is_named(
 @pytest.mark.parametrize(
     ("matrix", "text"),
     [
-        (2.5 * np.eye(3), "omega is scaled by 2.5 as a state is set or read back"),
-        (np.eye(3)[[1, 0, 2]], "the axes of omega are others: x, y, z hold y, x, z"),
-        (np.diag([1.0, -1.0, 1.0]), "the axes of omega are others: x, y, z hold x, -y, z"),
+        (2.5 * np.eye(3), "omega is scaled by 2.5"),
+        (np.eye(3)[[1, 0, 2]], "omega has other axes: x, y, z hold y, x, z of what was requested"),
+        (np.diag([1.0, -1.0, 1.0]), "x, y, z hold x, -y, z of what was requested"),
     ],
 )
 def test_an_omega_in_other_axes_is_named_where_a_place_follows_it(matrix: Array, text: str) -> None:
     """Caught: no cause on a pivot, where the velocity that reads back is that of this omega."""
-    assert causes(by_matrix(lambda _: matrix), list(CASES)) == [[text]] * len(CASES)
+    for (found,) in causes(by_matrix(lambda _: matrix), list(CASES)):
+        assert f"{text} as a state is set or read back" in found
 
 
 def test_an_unknown_matrix_is_stated_and_no_turn_is_one() -> None:
