@@ -27,18 +27,18 @@ def of_other_states(evidence: Mapping[str, Mapping[str, Evidence]], source: str)
     evidence: by scenario and source.
     """
     every = [one[source] for one in evidence.values() if source in one]
-    wrong = [one for one in every if one.finite and one.clear]
+    wrong = [one for one in every if one.finite and len(_wrong(one))]
     if not wrong or any(not one.finite for one in every):
         return ""
-    first = max(wrong, key=lambda one: np.count_nonzero(~one.sound))
-    if np.count_nonzero(~first.sound) < LEAST:
+    first = max(wrong, key=lambda one: len(_wrong(one)))
+    if len(_wrong(first)) < LEAST:
         return ""
-    count = len(first.sound)
+    count, at = len(first.sound), int(_wrong(first)[0])
     if source == ALONG and _of_request_before(evidence):
         return "states have the omega-dot of those in the same places of the request before"
-    if not np.any(_same(first, int(np.argmin(first.sound)))):
+    if not np.any(_same(first, at)):
         return ""
-    for text, place in _mappings(first):
+    for text, place in _mappings(first, at):
         if all(_is_of(one, place(np.arange(len(one.sound)), len(one.sound))) for one in every):
             return f"of {count} states requested together, {text}"
     if all(_is_of_any(one) for one in wrong):
@@ -46,9 +46,15 @@ def of_other_states(evidence: Mapping[str, Mapping[str, Evidence]], source: str)
     return ""
 
 
-def _mappings(evidence: Evidence) -> Iterator[tuple[str, Place]]:
+def _wrong(evidence: Evidence) -> Places:
+    """The states whose omega-dot is another, whatever their linear acceleration is."""
+    off = norm(evidence.found.angular - evidence.true.angular)
+    return np.flatnonzero(off > BEYOND_ROUNDING * evidence.angular_bound)
+
+
+def _mappings(evidence: Evidence, at: int) -> Iterator[tuple[str, Place]]:
     """Those that the first wrong answer admits, with their numbers."""
-    count, at = len(evidence.sound), int(np.argmin(evidence.sound))
+    count = len(evidence.sound)
     yield "each has the omega-dot of the first", lambda i, n: 0 * i
     yield "each has the omega-dot of the last", lambda i, n: 0 * i + n - 1
     yield "they are answered in reverse: the first has the omega-dot of the last", _reversed
@@ -78,7 +84,7 @@ def _modulo(size: int) -> Place:
 
 
 def _until(size: int) -> Place:
-    return lambda i, n: np.minimum(i, size - 1)
+    return lambda i, n: np.asarray(np.minimum(i, size - 1))
 
 
 def _rolled(by: int) -> Place:
@@ -86,7 +92,7 @@ def _rolled(by: int) -> Place:
 
 
 def _shifted(by: int) -> Place:
-    return lambda i, n: np.clip(i + by, 0, n - 1)
+    return lambda i, n: np.asarray(np.clip(i + by, 0, n - 1))
 
 
 def _first_of(size: int) -> Place:
@@ -94,13 +100,13 @@ def _first_of(size: int) -> Place:
 
 
 def _last_of(size: int) -> Place:
-    return lambda i, n: np.minimum(i - i % size + size - 1, n - 1)
+    return lambda i, n: np.asarray(np.minimum(i - i % size + size - 1, n - 1))
 
 
 def _reversed_in(size: int) -> Place:
     def place(i: Places, n: int) -> Places:
         first = i - i % size
-        return first + np.minimum(size, n - first) - 1 - i % size
+        return np.asarray(first + np.minimum(size, n - first) - 1 - i % size)
 
     return place
 
@@ -124,9 +130,7 @@ def _matches(evidence: Evidence, angular: Array, bound: Array) -> bool:
 
 def _is_of_any(evidence: Evidence) -> bool:
     """Whether each wrong omega-dot is that of another state, and they are of several."""
-    off = norm(evidence.found.angular - evidence.true.angular)
-    wrong = np.flatnonzero(off > BEYOND_ROUNDING * evidence.angular_bound)
-    of = {tuple(np.flatnonzero(_same(evidence, int(at)))) for at in wrong}
+    of = {tuple(np.flatnonzero(_same(evidence, int(at)))) for at in _wrong(evidence)}
     return len(of) >= LEAST and () not in of
 
 
