@@ -10,6 +10,7 @@ import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
+from omegadot.diagnosis.models.kept_place import kept_place
 from omegadot.diagnosis.models.linear_map import (
     PRODUCTS,
     Product,
@@ -61,6 +62,9 @@ def state_causes(
     here = _Round(case, scene.features, requested, back, eps)
     if not here.fails(back):
         return []
+    kept = kept_place(list(across.scenes.values()), case, eps)
+    if kept:
+        return [kept]
     every = [
         _Round(replace(case, system=one.system), one.features, *one.states, eps)
         for one in across.scenes.values()
