@@ -69,6 +69,7 @@ class CaseCauses:
         for name, integrator in self._integrators.items():
             if integrator.steps is not None:
                 scene.evidence[source_of(name)] = integrator.steps.evidence
+                scene.limits.append((integrator.steps.states, integrator.steps.limit))
                 scene.opposites[source_of(name)] = [*opposite_steps(case, result, name)]
         engine.across.add(scene)
         self._siblings = engine.siblings

@@ -9,8 +9,10 @@ import numpy as np
 from omegadot.diagnosis.equations.known import scenarios_in_common
 from omegadot.diagnosis.in_steps import StepCauses
 from omegadot.diagnosis.kept_case import kept_case
+from omegadot.diagnosis.models.kept_place import kept_place
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
+from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
 from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
@@ -97,7 +99,7 @@ class IntegratorCauses:
         steps = self.steps
         if self._kept.again:
             seen = self._of_trajectories()
-            return [one for one in seen if is_of_one_run(one)] or [self._kept.again]
+            return [one for one in seen if is_of_one_run(one)] or [self._again]
         if steps is None or steps.sound:
             found = self._of_trajectories()
             own = self._over.lost.get(self._case.name)
@@ -127,6 +129,14 @@ class IntegratorCauses:
         if last:
             return last
         return self._in_steps.known(steps) or self._known_of_runs()
+
+    @property
+    def _again(self) -> str:
+        """What shows in runs that are requested again; of another system what is kept, if known."""
+        again, scenes = self._kept.again, list(self._across.scenes.values())
+        of_system = again == AGAIN["reloaded"]
+        kept = kept_place(scenes, self._case, self._truth.yardstick.eps) if of_system else ""
+        return f"{again}: {kept}" if kept else again
 
     def _short_steps(self, steps: VanishingSteps) -> list[str]:
         """Steps that are too short to move a body; none where that is not what is wrong.

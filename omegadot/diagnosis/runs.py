@@ -10,6 +10,7 @@ from omegadot.diagnosis.models.fitted_misreadings import ADDED
 from omegadot.diagnosis.reported.clock import clock_of_runs
 from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.guesses import Guesses
+from omegadot.diagnosis.reported.one_of_all import one_of_all
 from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import SLACK, ReportedRun, reported_run
 from omegadot.diagnosis.reported.run_causes import (
@@ -27,6 +28,7 @@ from omegadot.diagnosis.reported.sample_causes import (
     omega_dot_late,
     one_field,
 )
+from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
 from omegadot.diagnosis.stepping.other_schemes import slips_of
 from omegadot.diagnosis.stepping.restarts import restart_cause
 from omegadot.diagnosis.stepping.slips import OF_SCHEME
@@ -37,7 +39,6 @@ from omegadot.gates.case import Case
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun, is_finite
-from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.written import written
 
 ALIKE = ("steps are", "a damping of")  # causes that act in every step alike
@@ -196,7 +197,7 @@ def _lower_order(guesses: Sequence[ReportedRun]) -> RunCauses:
     if is_steppable(guesses[0]):
         # By a slip in one of the declared order some motions are a known one's of lower order.
         due = max(filter(None, guesses[0].integrator.orders.values()), default=0)
-        of_order = [one for one in OF_SCHEME if SCHEMES[one].orders["omega"] >= due]
+        of_order = [one for one in OF_SCHEME if scheme_named(one).orders["omega"] >= due]
         texts += [text for one in of_order for text in slips_of(guesses[0], one)]
     return RunCauses(tuple(dict.fromkeys(texts)), is_decisive(guesses[0]))
 
@@ -221,6 +222,7 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
         return NOTHING  # in single precision much fits a run within its rounding
     finite = whole and is_finite(reported.state)
     seen = precision_reported(reported) if finite else not_finite(reported)
+    seen = seen or one_of_all(reported, result)
     seen = seen or begin_apart(reported, result)
     seen = seen or next(filter(None, (cause(reported) for cause in SEEN)), "")
     if seen:

@@ -23,6 +23,7 @@ from omegadot.gates.case import Case
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.kinematics import at_point, place_on_pivot
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse, rotation_matrix
+from omegadot.reference_impl.stepping import stack
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Array, State
 
@@ -36,23 +37,28 @@ def set_states(case: Case, number: int) -> State:
     return place_on_pivot(case.system, State(q, *(draw.normal(size=3) for _ in range(3))))
 
 
-def causes(made: Made, cases: list[Case]) -> list[list[str]]:
-    """What is named on each scenario, held against all of them."""
-    across = across_of(made, cases)
+def causes(made: Made, cases: list[Case], count: int = 0) -> list[list[str]]:
+    """What is named on each scenario, held against all of them.
+
+    count: from how many states steps of no length are known.
+    """
+    across = across_of(made, cases, count)
     rounds = [(case, across.scenes[case.name].states) for case in cases]
     return [state_causes(across, case, *states, EPS) for case, states in rounds if states]
 
 
-def across_of(made: Made, cases: list[Case]) -> Across:
+def across_of(made: Made, cases: list[Case], count: int = 0) -> Across:
     """Each scenario with a state that was set, and what is made of it."""
     across = Across()
     for number, case in enumerate(cases):
         requested = set_states(case, number)
-        features, states = (
-            features_of(case.system, case.initial),
-            (requested, made(case, requested)),
-        )
-        across.add(Scene(case.name, case.system, features, {}, states=states))
+        features = features_of(case.system, case.initial)
+        states = (requested, made(case, requested))
+        scene = Scene(case.name, case.system, features, {}, states=states)
+        if count:
+            many = [set_states(case, 100 + k) for k in range(count)]
+            scene.limits.append((stack(many), stack([made(case, one) for one in many])))
+        across.add(scene)
     return across
 
 
@@ -213,7 +219,11 @@ ATTITUDES: dict[str, tuple[Made, str]] = {
         f"{ANGLES} R_z(a) R_y(b) R_x(c) are put together as R_x(a) R_y(b) R_z(c)",
     ),
     "fixed axes": (angles_of("xyz", "XYZ"), "are put together as R_x(c) R_y(b) R_z(a)"),
-    "proper": (angles_of("ZXZ", "ZYZ"), "R_z(a) R_x(b) R_z(c) are put together as R_z(a) R_y(b)"),
+    "proper": (angles_of("ZXZ", "ZYX"), "R_z(a) R_x(b) R_z(c) are put together as R_z(a) R_y(b)"),
+    "relabelled": (
+        angles_of("ZXZ", "ZYZ"),
+        "the quaternion's vector part is another: x, y, z hold -y, x, z",
+    ),
     "exchanged": (
         angles_of("ZYX", "ZYX", lambda a: a[[1, 0, 2]]),
         f"{ANGLES} R_z(a) R_y(b) R_x(c) are put together as R_z(b) R_y(a) R_x(c)",
@@ -255,3 +265,82 @@ def test_what_is_seen_of_states_is_stated_where_no_cause_fits() -> None:
     assert f"at every attitude that is set, on all {len(FREE)} scenarios" in text
     assert "omega, the position and the linear velocity read back right" in text
     assert known_state(across_of(lambda _, state: state, FREE), FREE[0], EPS) == ""
+
+
+def by_matrix(matrix: Callable[[Case], Array]) -> Made:
+    """Omega is this matrix times the one that is set, and a pivoted body's velocity follows."""
+
+    def made(case: Case, state: State) -> State:
+        w = matrix(case) @ state.angular_velocity
+        return place_on_pivot(case.system, replace(state, angular_velocity=w))
+
+    return made
+
+
+def moving(case: Case) -> Array:
+    return np.asarray(moving_inertia(case.system))
+
+
+@pytest.mark.parametrize(
+    ("matrix", "text"),
+    [
+        (
+            lambda c: inverse(moving(c)) @ c.system.body.inertia,
+            "omega reads back as M^-1 I omega (",
+        ),
+        (
+            lambda c: inverse(c.system.body.inertia) @ moving(c),
+            "omega reads back as I^-1 M omega (",
+        ),
+        (
+            lambda c: c.system.body.inertia @ inverse(moving(c)),
+            "omega reads back as I M^-1 omega (",
+        ),
+        (
+            lambda c: inverse(np.diag(np.diag(c.system.body.inertia))) @ c.system.body.inertia,
+            "omega reads back as D^-1 I omega (",
+        ),
+    ],
+)
+def test_an_omega_turned_by_two_inertias_is_named(
+    matrix: Callable[[Case], Array], text: str
+) -> None:
+    """Caught: no cause of an omega that is kept as a momentum by one inertia, and not by it."""
+    found = [texts for texts in causes(by_matrix(matrix), list(CASES)) if texts]
+    assert found
+    assert all(one[0].startswith(text) for one in found)
+
+
+@pytest.mark.parametrize(
+    ("matrix", "text"),
+    [
+        (2.5 * np.eye(3), "omega is scaled by 2.5"),
+        (np.eye(3)[[1, 0, 2]], "omega has other axes: x, y, z hold y, x, z of what was requested"),
+        (np.diag([1.0, -1.0, 1.0]), "x, y, z hold x, -y, z of what was requested"),
+    ],
+)
+def test_an_omega_in_other_axes_is_named_where_a_place_follows_it(matrix: Array, text: str) -> None:
+    """Caught: no cause on a pivot, where the velocity that reads back is that of this omega."""
+    for (found,) in causes(by_matrix(lambda _: matrix), list(CASES)):
+        assert f"{text} as a state is set or read back" in found
+
+
+def test_an_unknown_matrix_is_stated_and_no_turn_is_one() -> None:
+    """Caught: a matrix that is fitted to states at one attitude alone."""
+    shear = np.array([[1.0, 0.25, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]])
+    (text, *others) = [one for (one,) in causes(by_matrix(lambda _: shear), FREE, count=8)]
+    assert text.startswith("omega reads back as a matrix times the one that is set: on ")
+    assert text.endswith("as (1, 0.25, 0); (0, 1, 0); (0, 0, 0.5)")
+    assert set(others) == {text}
+
+    def turned_back(case: Case, state: State) -> State:
+        w = shear @ rotate(state.orientation, state.angular_velocity)
+        return place_on_pivot(case.system, replace(state, angular_velocity=w))
+
+    def squared(case: Case, state: State) -> State:
+        w = state.angular_velocity * (1.0 + 0.1 * state.angular_velocity[0])
+        return place_on_pivot(case.system, replace(state, angular_velocity=w))
+
+    for wrong in (turned_back, squared):
+        assert [texts for texts in causes(wrong, FREE, count=8) if texts] == []
+    assert [texts for texts in causes(by_matrix(lambda _: shear), FREE, count=4) if texts] == []

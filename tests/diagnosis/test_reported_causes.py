@@ -14,6 +14,7 @@ from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
 from omegadot.diagnosis.reported.clock import clock_cause, clock_of_runs
 from omegadot.diagnosis.reported.of_steps import ways_of_steps
 from omegadot.diagnosis.reported.requests import again_cause, place_cause
+from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
 from omegadot.diagnosis.stepping.slips import OF_SCHEME, slipped
 from omegadot.diagnosis.wording.conditions import only_where
 from omegadot.diagnosis.wording.kinds import agreed, beside_others, kind_of
@@ -214,7 +215,7 @@ def test_every_slip_makes_another_scheme(name: str) -> None:
     """By more than rounding, but for those that nothing shows without loads or translation."""
     motion = attitude_motion(body().system)
     q, v = body().initial.orientation, body().initial.angular_velocity
-    due = np.concatenate(SCHEMES[name].step(motion, q, v, 0.05))
+    due = np.concatenate(scheme_named(name).step(motion, q, v, 0.05))
     for text, scheme in slipped(name).items():
         unseen = text.startswith("the position moves") or "loads" in text
         end = np.concatenate(scheme.step(motion, q, v, 0.05))

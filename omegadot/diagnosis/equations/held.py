@@ -40,6 +40,7 @@ class Scene:
     what was doubled.  opposites: by source, of systems in which one thing is the other way.
     before: what the engine had been loaded with, by source where that is another than of all else
     (""); nothing where it is unknown.  states: one that was set, and what read back of it.
+    limits: from which states steps were taken, and where those of no length lead; of any scheme.
     """
 
     name: str
@@ -51,6 +52,7 @@ class Scene:
     before: Mapping[str, LoadedBefore] = field(default_factory=dict)
     states: tuple[State, State] | None = None
     opposites: dict[str, list[tuple[Features, Evidence]]] = field(default_factory=dict)
+    limits: list[tuple[State, State]] = field(default_factory=list)
 
     def loaded_before(self, source: str) -> LoadedBefore | None:
         """What had been loaded before the answers of a source; None where it is unknown."""

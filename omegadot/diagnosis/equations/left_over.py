@@ -90,15 +90,22 @@ def _found(seen: Sequence[_Seen]) -> tuple[str, frozenset[tuple[str, str]]]:
         return nothing
     likely = [k for k in KEPT if all(one.explained(k, few=True) for one in wrong)]
     kept = [k for k in likely if _holds(k, seen, wrong)]
-    least = min((len(k.part.attributes) for k in kept), default=0)  # the plainest
+    text = worded_kept(kept)
+    if not text:
+        return nothing
+    return text, frozenset(one.where for one in wrong)
+
+
+def worded_kept(kept: Sequence[Kept]) -> str:
+    """The plainest of these; "" where too many are left that nothing decides between."""
+    least = min((len(k.part.attributes) for k in kept), default=0)
     kept = [k for k in kept if len(k.part.attributes) == least]
     texts = list(dict.fromkeys(k.text for k in kept))
     if len({k.what for k in kept}) == 1 and len(texts) > 1:
         texts = [kept[0].vague]
     if not 1 <= len(texts) <= MOST_NAMED:
-        return nothing
-    text = texts[0] if len(texts) == 1 else "either " + ", or ".join(texts)
-    return text, frozenset(one.where for one in wrong)
+        return ""
+    return texts[0] if len(texts) == 1 else "either " + ", or ".join(texts)
 
 
 def _holds(one: Kept, seen: Sequence[_Seen], wrong: Sequence[_Seen]) -> bool:

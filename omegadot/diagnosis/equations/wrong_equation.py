@@ -18,6 +18,7 @@ from omegadot.diagnosis.equations.evidence import (
     of_inverse_dynamics,
 )
 from omegadot.diagnosis.equations.held import Scene
+from omegadot.diagnosis.equations.of_other_states import of_other_states
 from omegadot.diagnosis.equations.quotient import difference_quotient
 from omegadot.diagnosis.reported.requests import place_cause
 from omegadot.diagnosis.wording.features import features_of
@@ -100,7 +101,8 @@ def equation_causes(across: Across, name: str, source: str) -> list[str]:
         return [single]
     text = place_cause(evidence)
     if not text and source in (FORWARD, ALONG) and np.any(found.angular):
-        text = _constant(across, source)
+        every = {scene.name: scene.evidence for scene in across.scenes.values()}
+        text = of_other_states(every, source) or _constant(across, source)
     text = text or across.cause(name, source)
     if not text and source in (FORWARD, ALONG):
         text = difference_quotient(evidence)

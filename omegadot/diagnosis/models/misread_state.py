@@ -12,7 +12,15 @@ from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.known import scenarios_in_common
 from omegadot.diagnosis.models.attitude_misread import attitude_misread
 from omegadot.diagnosis.models.fitted_misreadings import fitted_misreadings
+from omegadot.diagnosis.models.kept_place import kept_place
 from omegadot.diagnosis.models.known_state import known_of_states
+from omegadot.diagnosis.models.linear_map import (
+    PRODUCTS,
+    Product,
+    fitted_map,
+    is_product,
+    unknown_map,
+)
 from omegadot.diagnosis.models.misreadings import Misreading, losses, misreadings, settings
 from omegadot.diagnosis.wording.features import SORTED_BY_KIND, Features, in_common
 from omegadot.diagnosis.wording.laws import law_of
@@ -24,6 +32,7 @@ from omegadot.reference_impl.system import Array, State, System
 
 SIGN = "without its sign"
 NEGATIVE = "the scalar part of the quaternion that is set is negative"
+PLACE = ("position", "linear_velocity")
 TURNS = ("orientation", "angular_velocity")
 LAWS = {
     "angular_velocity": ("omega", "rad/s"),
@@ -56,6 +65,9 @@ def state_causes(
     here = _Round(case, scene.features, requested, back, eps)
     if not here.fails(back):
         return []
+    kept = kept_place(list(across.scenes.values()), case, eps)
+    if kept:
+        return [kept]
     every = _every(across, case, eps)
     lost = [
         text
@@ -65,11 +77,14 @@ def state_causes(
     if lost and SIGN in lost[0] and not any(one.back.orientation[0] < 0.0 for one in every):
         return lost[:1]
     for way in _ways(case.system):
-        if not here.fails(way.right(back)):
-            fits = [not one.fails(_way(one, way.statement).right(one.back)) for one in every]
+        if not here.fails(_undone(here, way)):
+            fits = [not one.fails(_undone(one, _way(one, way.statement))) for one in every]
             found = _where(way.statement, every, fits)
             if found:
                 return [found]
+    product = _product(here, every)
+    if product:
+        return [product]
     lost = [text for text in lost if SIGN not in text]
     if lost:
         return lost[:1]
@@ -77,8 +92,8 @@ def state_causes(
     if law:
         return [law]
     for way in fitted_misreadings(back, requested, together=False):
-        if not here.fails(way.right(back)):
-            fits = [not one.fails(way.right(one.back)) for one in every]
+        if not here.fails(_undone(here, way)):
+            fits = [not one.fails(_undone(one, way)) for one in every]
             found = _where(way.statement, every, fits)
             if found:
                 return [found]
@@ -89,7 +104,40 @@ def state_causes(
     pairs = zip(vars(single).values(), vars(back).values(), strict=True)
     if eps <= EPS and all(np.array_equal(a, b) for a, b in pairs):
         return ["the state is kept in single precision"]
-    return []
+    unknown = _unknown_map(across, every) if _is_omega(here) else ""
+    return [unknown] if unknown else []
+
+
+def _is_omega(one: _Round) -> bool:
+    """Whether omega alone is another, and of a pivoted body what follows from it."""
+    return not _differs(one, _with(one, "angular_velocity"))
+
+
+def _product(here: _Round, every: Sequence[_Round]) -> str:
+    """A product of known inertias with omega, where nothing else is off."""
+    if not _is_omega(here):
+        return ""
+    for product in PRODUCTS:
+        fits = [_is_product(product, one) for one in every]
+        if _is_product(product, here):
+            found = _where(f"omega reads back as {product.text}", every, fits)
+            if found:
+                return found
+    return ""
+
+
+def _is_product(product: Product, one: _Round) -> bool:
+    how = (one.case.system, one.requested, one.back, one.eps)
+    return _is_omega(one) and is_product(product, *how)
+
+
+def _unknown_map(across: Across, every: Sequence[_Round]) -> str:
+    """Of the scenarios on which omega does not read back, that with the fewest loads first."""
+    off = {id(one.case.system) for one in every if one.fails(one.back)}
+    scenes = [scene for scene in across.scenes.values() if id(scene.system) in off]
+    scenes.sort(key=lambda scene: sum(scene.features.kinds.values()))
+    maps = [(s.name, fitted_map(*s.limits[0]) if s.limits else None) for s in scenes]
+    return unknown_map(maps) if all(map(_is_omega, every)) else ""
 
 
 def known_state(across: Across, case: Case, eps: float) -> str:
@@ -142,6 +190,18 @@ def _with(one: _Round, field: str) -> State:
     made = replace(one.requested, **{field: getattr(one.back, field)})
     pivoted = one.case.system.load.pivot is not None
     return place_on_pivot(one.case.system, made) if pivoted and field in TURNS else made
+
+
+def _undone(one: _Round, way: Misreading) -> State:
+    """What is meant by what reads back; on a pivot the place follows, where it did before."""
+    right, system = way.right(one.back), one.case.system
+    same = all(np.array_equal(getattr(right, n), getattr(one.back, n)) for n in PLACE)
+    if system.load.pivot is None or not same:
+        return right
+    on_pivot = place_on_pivot(system, one.back)
+    rows = state_rows(one.case, one.back, on_pivot, one.eps)
+    follows = all(row.verdict != "fail" for row in rows)
+    return place_on_pivot(system, right) if follows else right
 
 
 def _ways(system: System) -> tuple[Misreading, ...]:

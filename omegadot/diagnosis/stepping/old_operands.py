@@ -59,7 +59,7 @@ def old_operands(by: SchemeOf, runs: Sequence[KeptRun], least: int = LEAST_RUNS)
     if name not in STEPPED or by.coordinates != "com-world":
         return []
     # within a step of these schemes the slips know the places
-    places = PLACES[:3] if name in OF_SCHEME else PLACES
+    places = PLACES[:3] if name in OF_SCHEME and name not in EXPLICIT else PLACES
     shows = [run for run in runs if run.fails and not run.sound(by)[:MOST_SAMPLES].all()]
     failing = len(shows)
     if failing < least:

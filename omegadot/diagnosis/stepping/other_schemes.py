@@ -75,10 +75,12 @@ def slips_of(reported: ReportedRun, name: str) -> list[str]:
 
     All that fit: some differ in what this motion does not have.
     """
+    first = reported.until(2)  # the first interval rules out most of them
     return [
         f"it is stepped by {name}, but {text}"
         for text, scheme in slipped(name).items()
         if reported.integrator.coordinates in scheme.coordinates
+        and first.agrees(first.state, first.stepped(scheme))
         and reported.is_made(partial(ReportedRun.stepped, scheme=scheme))
     ]
 

@@ -1,4 +1,4 @@
-"""Schemes of the reference with one slip in them, as they are written by mistake."""
+"""Known schemes with one slip in them, as they are written by mistake."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
 from omegadot.diagnosis.stepping.on_quaternion import Rate, Rows, at_unit, on_quaternion
+from omegadot.diagnosis.stepping.tableau_slips import tableau_slips, wrong_signs
 from omegadot.reference_impl.rotations import quaternion_product
-from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
+from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.schemes.scheme import Step
 from omegadot.reference_impl.system import Array
 
@@ -91,6 +93,10 @@ RUNGE_KUTTA: dict[str, Step] = {
         _classical(rate=_by_rest)
     ),
     "omega-dot is held in the step at that of its start": _classical(rates_of=AT_START),
+    **{
+        text: on_quaternion(rows, (1 / 6, 1 / 3, 1 / 3, 1 / 6))
+        for text, rows in wrong_signs(CLASSIC)
+    },
 }
 
 
@@ -166,10 +172,10 @@ EULER: dict[str, Step] = {
     "the turn of a step is taken by the second-order series of the exponential": _by_series(2),
     "the turn of a step is taken by the third-order series of the exponential": _by_series(3),
 }
-OF_SCHEME = {"rk4-quaternion": RUNGE_KUTTA, "semi-implicit-euler": EULER}
+OF_SCHEME = {"rk4-quaternion": RUNGE_KUTTA, "semi-implicit-euler": EULER, **tableau_slips()}
 
 
 def slipped(name: str) -> dict[str, Scheme]:
-    """The schemes that a slip makes of one of the reference, by what is wrong."""
+    """The schemes that a slip makes of a known one, by what is wrong."""
     steps = OF_SCHEME.get(name, {})
-    return {text: replace(SCHEMES[name], step=step) for text, step in steps.items()}
+    return {text: replace(scheme_named(name), step=step) for text, step in steps.items()}

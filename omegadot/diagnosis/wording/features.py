@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import comb
 
 import numpy as np
 
 from omegadot.diagnosis.wording.decided import decided
 from omegadot.diagnosis.wording.digits import limits
+from omegadot.diagnosis.wording.inertia_features import (
+    EQUAL,
+    OfInertia,
+    inertia_features,
+    inertias_in_common,
+)
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.system import State, System
@@ -17,7 +23,6 @@ from omegadot.reference_impl.system import State, System
 # How unlikely chance must be to sort the scenarios so: one in so many ways to sort them. A kind is
 # likely by itself; of a size the limit may lie anywhere, and every size is tried from both sides.
 SORTED_BY_KIND, ODDS = 6, 20
-EQUAL = 1e-12  # of the largest moment, by how much others differ from it by rounding
 COMPONENT = "has no"  # of a vector
 FOLLOWS = {
     "the body is pivoted": ("the pivot lies off the origin", "the body does not move at the start"),
@@ -29,10 +34,14 @@ FOLLOWS = {
 
 @dataclass(frozen=True)
 class Features:
-    """kinds: sentences that hold for a scenario, or do not.  sizes: numbers of it, with units."""
+    """kinds: sentences that hold for a scenario, or do not.  sizes: numbers of it, with units.
+
+    inertia: sentences of its inertia; see `inertia_features`.
+    """
 
     kinds: dict[str, bool]
     sizes: dict[str, tuple[float, str]]
+    inertia: OfInertia = field(default_factory=dict)
 
 
 def features_of(system: System, initial: State) -> Features:
@@ -104,7 +113,7 @@ def features_of(system: System, initial: State) -> Features:
             "N m",
         ),
     }
-    return Features(kinds, sizes)
+    return Features(kinds, sizes, inertia_features(system))
 
 
 def ways_of(scenarios: Sequence[Features]) -> int:
@@ -122,6 +131,7 @@ def in_common(
 ) -> list[str]:
     """Conditions that hold for all that show a fault and for none of the others, kinds first.
 
+    What holds of the inertia alone is looked at where nothing else does.
     tried: further systems, each with whether it shows the fault; none may contradict a condition.
     None where so few scenarios are sorted by chance.
     """
@@ -142,6 +152,7 @@ def in_common(
     found = [" and ".join(_plainest(each)) for each in texts]
     if kinds or ways < ODDS * 2 * len(shown[0].sizes):
         return _plainest(found)
+    wrong_and_right = [[one.inertia for one in group] for group in (shown, others)]
     shown = [*shown, *(one for one, wrong in tried if wrong)]
     others = [*others, *(one for one, wrong in tried if not wrong)]
     for name, (_, unit) in shown[0].sizes.items():
@@ -150,7 +161,8 @@ def in_common(
             found.append(f"{name} is above a limit between {limits(max(low), min(high), unit)}")
         elif max(high) < min(low):
             found.append(f"{name} is below a limit between {limits(max(high), min(low), unit)}")
-    return found
+    more = [(one.inertia, wrong) for one, wrong in tried]
+    return found or inertias_in_common(wrong_and_right[0], wrong_and_right[1], more)
 
 
 def _plainest(found: list[str]) -> list[str]:

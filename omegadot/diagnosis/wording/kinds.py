@@ -28,6 +28,10 @@ FACTS = (
     "is stepped in full",
 )
 SEEN = ("none is known", "the error of one step goes as")
+OF_ONE_RUN = (
+    *("the last step is missing", "left over", "one before", "does not begin at", "its sign"),
+    "the same at every sample of a run",
+)
 # One number in every run, or it is another cause.
 CONSTANTS = ("low-pass", "it is filtered", "every time is too", "every time is scaled by")
 SAME = 0.01  # relative, of such a number; it has three digits
@@ -57,9 +61,8 @@ def is_named(text: str) -> bool:
 
 def is_of_one_run(text: str) -> bool:
     """Whether it holds of a run that is another when it is requested again."""
-    kept = ("the last step is missing", "left over", "one before", "does not begin at", "its sign")
     first = text.startswith("only the first steps are wrong")  # as where a run before left them
-    return (is_fact(text) and not first) or any(one in text for one in kept)
+    return (is_fact(text) and not first) or any(one in text for one in OF_ONE_RUN)
 
 
 def agreed(here: Sequence[str], over_cases: Mapping[str, tuple[Sequence[str], bool]]) -> list[str]:
