@@ -6,7 +6,7 @@ Pure functions: the terminal's table and the page show the same summary.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -152,7 +152,8 @@ def summarise(record: Record) -> Summary:
     failed = failed_gates(record.metrics)
     failing = {key[1:] for key in failed}
     failing |= {column_of(task) for task in tasks if task_status(task) == "fail"}
-    columns = _columns(tasks, singles, failing)
+    failures = failures_of(record)
+    columns = _columns(tasks, singles, failing, [failure.who for failure in failures])
     named = [entry["name"] for entry in record.run["scenarios"]]
     scenarios = tuple(dict.fromkeys([*named, *(task["scenario"] for task in tasks)]))
     statuses: dict[Key, list[str]] = {}
@@ -175,7 +176,7 @@ def summarise(record: Record) -> Summary:
         cells,
         *_counted(tasks),
         _missing(record.run),
-        failures_of(record),
+        failures,
         _truths(record.trajectories),
         (*impossible_bodies(record.run["scenarios"]), *_ended(record.run), *_unstepped(record.run)),
         _one_step(tasks),
@@ -262,12 +263,17 @@ def column_of(task: Mapping[str, Any]) -> tuple[str, str, str]:
 
 
 def _columns(
-    tasks: Iterable[Mapping[str, Any]], singles: set[str], failing: Collection[tuple[str, ...]]
+    tasks: Iterable[Mapping[str, Any]],
+    singles: set[str],
+    failing: Collection[tuple[str, ...]],
+    dearest: Sequence[tuple[str, ...]],
 ) -> tuple[Column, ...]:
-    # The engines stand first, those that fail before the others: of twenty a screen shows some.
+    # The engines stand first, those that fail before the others, as they are told of above the
+    # table: of twenty a screen shows some.
+    places = {who: place for place, who in enumerate(dearest)}
     keys = sorted(
         dict.fromkeys(column_of(task) for task in tasks),
-        key=lambda k: (k[0] in YARDSTICKS, k not in failing),
+        key=lambda k: (k[0] in YARDSTICKS, k not in failing, places.get(k, len(places))),
     )
     columns = []
     for engine, version, setup in keys:
