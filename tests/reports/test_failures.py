@@ -438,3 +438,26 @@ def test_the_cell_the_table_and_the_headline_have_one_residual(record: Record) -
     assert table.size == "3.4e13 × bound (0.69 relative)"
     (shown,) = (g for g in glances(summary, found.metrics, Sources()) if g["status"] == "fail")
     assert shown["residual"][0] == "0.69"
+
+
+def test_a_residual_after_another_load_is_named_where_it_is_shown(record: Record) -> None:
+    """Caught: 0.12 at the top and 0.15 in the table, of a system that is not the scenario's."""
+    note = "after the same system with another mass was loaded"
+    rows = [
+        metric("sphere", "dart", None, None, "equation", "omega_dot", name, value, **more)
+        for name, value, more in (
+            ("residual", 0.12, {}),
+            ("residual_of_sibling", 0.15, {"note": note}),
+        )
+    ]
+    rows = [{**row, "verdict": "fail"} for row in rows]
+
+    def shown(found: Record) -> tuple[str, str]:
+        table = glances(summarise(found), found.metrics, Sources())
+        return next(row["residual"] for row in table if row["engine"].startswith("dart"))
+
+    found = with_metrics(record, *rows)
+    assert "residual 0.12 " in summarise(found).failures[0].measured
+    assert shown(found) == ("0.12", "on sphere; bound 1e-13")
+    after = "after a similar system was loaded, on sphere; bound 1e-13"
+    assert shown(with_metrics(record, rows[1])) == ("0.15", after)

@@ -21,11 +21,19 @@ from omegadot.reports.summary.advice import Advice
 from omegadot.reports.summary.engine_failure import EngineFailure
 from omegadot.reports.summary.failed_gate import FailedGate, failed_gates
 from omegadot.reports.summary.failures import failures_of
-from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
+from omegadot.reports.summary.figures import (
+    Figure,
+    Key,
+    Range,
+    figures_of,
+    range_of,
+    size,
+    worst_residual,
+)
 from omegadot.reports.summary.not_tried import not_tried
 from omegadot.reports.summary.reasons import MODEL_ALONE, failing_gates, tests_motion
 from omegadot.reports.text.engine_version import version_text, with_version
-from omegadot.reports.text.numbers import times
+from omegadot.reports.text.numbers import degrees, times
 
 # From the worst to the best. A skip is never a pass, and neither is a run that was not judged.
 STATUSES = (
@@ -42,6 +50,8 @@ STATUSES = (
     "pass",
     "absent",
 )
+
+FAR_OFF = 1.0  # rad: such an attitude is that of another motion
 
 
 @dataclass(frozen=True)
@@ -80,6 +90,14 @@ class Cell:
     drift: Range | None
     attitude: Range | None
     failed: FailedGate | None = None
+
+    @property
+    def far_off(self) -> str:
+        """How far off a cell is that passes all the same; "" where that is less than a radian."""
+        worst = self.attitude.worst if self.attitude else None
+        if self.status != "pass" or worst is None or not size(worst) > FAR_OFF:
+            return ""
+        return f"{degrees(worst.value)} deg off"
 
 
 @dataclass(frozen=True)
@@ -289,7 +307,7 @@ def _cell(failed: FailedGate | None, statuses: list[str], figures: dict[str, lis
     return Cell(
         "fail" if failed else worst(statuses),
         Counter(statuses),
-        max(figures.get("omega_dot", []), key=size, default=None),
+        worst_residual(figures.get("omega_dot", [])),
         range_of(figures.get("angular_momentum", [])),
         range_of(figures.get("attitude", [])),
         failed,
