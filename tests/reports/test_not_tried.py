@@ -12,11 +12,12 @@ from synthetic_record import metric, with_metrics
 from omegadot.harness.arguments import case_of
 from omegadot.reports.page.page import draw_page
 from omegadot.reports.record.record import Record
-from omegadot.reports.summary.not_tried import DRAWN, not_tried, pairs_of, parts_of
+from omegadot.reports.summary.not_tried import not_tried, pairs_of, parts_of
 from omegadot.reports.summary.summary import summarise
 from omegadot.reports.text.markdown import markdown_of
 from omegadot.reports.text.terminal import print_summary
 from omegadot.scenarios import builtin_names, scenario
+from omegadot.scenarios.random_systems import BLOCK
 
 ENGINE = {"name": "acme", "argument": "acme.py:Acme"}
 
@@ -45,7 +46,7 @@ def test_the_built_in_scenarios_have_no_pivot_off_the_origin() -> None:
 
 
 def test_random_systems_have_all_that_is_said_to_be_missing() -> None:
-    entries = [entry_of(f"random-0-{k}") for k in range(DRAWN)]
+    entries = [entry_of(f"random-0-{k}") for k in range(BLOCK)]
     found = [parts_of(e["system"], e["definition"]["initial"]) for e in entries]
     assert all(any(parts[name] for parts in found) for name in found[0])
     lacking = [p for p in pairs_of(found[0]) if not any(f[p[0]] and f[p[1]] for f in found)]
@@ -72,9 +73,9 @@ def test_it_stands_on_a_green_page_alone(
     page = draw_page(green)
     assert page.index("<h1>") < page.index(advice.text) < page.index("Verdicts")
     # Caught: a command in prose, which one cannot tell from the sentence about it.
-    assert f"<code>{advice.command}</code> draws {DRAWN} random systems" in page
+    assert f"<code>{advice.command}</code> draws {BLOCK} random systems" in page
     print_summary(green)
     assert advice.sentence in " ".join(capsys.readouterr().out.split())
-    assert f"`{advice.command}` draws {DRAWN} random systems" in markdown_of(green)
+    assert f"`{advice.command}` draws {BLOCK} random systems" in markdown_of(green)
     row = metric("sphere", "dart", None, None, "model", "model", "mass", 1.0, verdict="fail")
     assert summarise(with_metrics(green, row)).untried is None

@@ -64,7 +64,7 @@ def scope(run: Mapping[str, Any], tasks: Sequence[Row], worst: Row, places: Sequ
 
     tasks: all of the engine.  worst: its worst row.  places: the scenarios on which the gate fails.
     """
-    gate = worst["gate"]
+    gate: str = worst["gate"]
     held: dict[str, set[str]] = {}
     for task in tasks:
         held.setdefault(task["scenario"], set()).add((task.get("gates") or {}).get(gate) or "")

@@ -11,9 +11,9 @@ import numpy as np
 
 from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.advice import Advice
+from omegadot.scenarios.random_systems import BLOCK
 
 MOST_NAMED = 4
-DRAWN = 24  # random systems of `omegadot check` by default
 LEAST_TURN = 1e-12  # of a quaternion's scalar part, below one
 # One is the other's own kind, or rules it out: no scenario is to be looked for with both.
 NO_PAIRS = (
@@ -84,5 +84,5 @@ def not_tried(run: Mapping[str, Any], passed: Sequence[str]) -> Advice | None:
     return Advice(
         f"Not tested here: {'; '.join(texts)}.",
         f"omegadot check {shlex.quote(engine)}",
-        f"draws {DRAWN} random systems, with all of them among these",
+        f"draws {BLOCK} random systems, with all of them among these",
     )
