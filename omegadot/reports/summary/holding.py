@@ -74,7 +74,9 @@ def scope(run: Mapping[str, Any], tasks: Sequence[Row], worst: Row, places: Sequ
         return ""
     where = listed(holds) if len(holds) <= _PLACES else first(holds, _PLACES)
     # A step's fault may need a state that is far from a scenario's own.
-    text = f"the {gate} gate on {where}" + ", from the states tried" * (worst["metric"] == OF_STEPS)
+    text = f"the {gate} gate on {where}" + ", from the states tried" * bool(
+        worst["metric"] == OF_STEPS
+    )
     alone = _alone(run, places, holds)
     if not alone:
         return text
