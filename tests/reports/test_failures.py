@@ -51,14 +51,15 @@ def test_a_failing_engine_is_which_where_why_and_what_it_costs(record: Record) -
         "dart fails the equation gate (omega-dot at given states) on sphere, before any step is "
         "taken, so in all 3 runs there: omega-dot residual 0.002 (0.2 % of the terms of the "
         "equation), 2e10 times its bound. Its scheme and trajectory gates fail as well. Likely "
-        "cause: the gyroscopic term is missing. Cost: attitude wrong by 3 rad (172 deg) on sphere "
-        "with semi-implicit, step 0.02 s; sound integrators of order 1: 0.024 rad (1.4 deg)."
+        "cause: the gyroscopic term is missing. Holds: the equation gate on spun-again. Cost: "
+        "attitude wrong by 3 rad (172 deg) on sphere with semi-implicit, step 0.02 s; sound "
+        "integrators of order 1: 0.024 rad (1.4 deg)."
     )
     assert summarise(record).failures == ()
 
 
-def test_what_it_costs_is_of_the_scenario_that_is_named(record: Record) -> None:
-    """Caught: an equation that is worst on one scenario, and the cost of another."""
+def test_what_it_costs_names_its_scenario(record: Record) -> None:
+    """Caught: an equation that is worst on one scenario, and the dearer run of another left out."""
     equation = metric("sphere", "dart", None, None, "equation", "omega_dot", "residual", 1.0)
     runs = [
         metric(name, *FAILING, 0.02, "trajectory", "attitude", "error_max", value)
@@ -67,7 +68,8 @@ def test_what_it_costs_is_of_the_scenario_that_is_named(record: Record) -> None:
     rows = [{**row, "verdict": "fail"} for row in (equation, *runs)]
     (found,) = summarise(with_metrics(record, *rows)).failures
     assert (found.scenario, found.run) == ("sphere", "")
-    assert found.cost.startswith("attitude wrong by 3 rad (172 deg) on sphere with semi-implicit")
+    text = "attitude wrong by 9 rad (516 deg) on spun-again with semi-implicit"
+    assert found.cost.startswith(text)
 
 
 def test_what_fails_in_no_run_costs_nothing_there(record: Record) -> None:
@@ -436,3 +438,26 @@ def test_the_cell_the_table_and_the_headline_have_one_residual(record: Record) -
     assert table.size == "3.4e13 × bound (0.69 relative)"
     (shown,) = (g for g in glances(summary, found.metrics, Sources()) if g["status"] == "fail")
     assert shown["residual"][0] == "0.69"
+
+
+def test_a_residual_after_another_load_is_named_where_it_is_shown(record: Record) -> None:
+    """Caught: 0.12 at the top and 0.15 in the table, of a system that is not the scenario's."""
+    note = "after the same system with another mass was loaded"
+    rows = [
+        metric("sphere", "dart", None, None, "equation", "omega_dot", name, value, **more)
+        for name, value, more in (
+            ("residual", 0.12, {}),
+            ("residual_of_sibling", 0.15, {"note": note}),
+        )
+    ]
+    rows = [{**row, "verdict": "fail"} for row in rows]
+
+    def shown(found: Record) -> tuple[str, str]:
+        table = glances(summarise(found), found.metrics, Sources())
+        return next(row["residual"] for row in table if row["engine"].startswith("dart"))
+
+    found = with_metrics(record, *rows)
+    assert "residual 0.12 " in summarise(found).failures[0].measured
+    assert shown(found) == ("0.12", "on sphere; bound 1e-13")
+    after = "after a similar system was loaded, on sphere; bound 1e-13"
+    assert shown(with_metrics(record, rows[1])) == ("0.15", after)

@@ -239,9 +239,10 @@ def test_a_large_error_of_sound_engines_is_said_and_what_to_do(record, capsys):
     summary = summarise(large(record))
     advice = summary.accuracy
     assert advice.sentence == (
-        "Sound, not necessarily accurate: on sphere dart semi-implicit, step 0.005 s, is off by 2 "
-        "rad (115 deg), mujoco RK4, step 0.005 s, by 7.5e-10 rad (4.3e-8 deg). omegadot choose "
-        "sphere --attitude 1deg finds an engine and a step that suffice."
+        "Sound, not necessarily accurate: on sphere, step 0.005 s, order 1 (dart semi-implicit, "
+        "mujoco Euler) is off by up to 2 rad (115 deg); order 4 (mujoco RK4) by 7.5e-10 rad "
+        "(4.3e-8 deg). The reason is the step, too coarse for order 1 here; the equations hold. "
+        "omegadot choose sphere --attitude 1deg finds an engine and a step that suffice."
     )
     assert not any("attitude error" in remark for remark in remarks(summary))  # said once
     page = draw_page(large(record)).replace("\u2060", "")
@@ -258,15 +259,43 @@ def test_a_large_error_of_sound_engines_is_said_and_what_to_do(record, capsys):
 def test_a_large_drift_is_said_where_the_attitude_is_right(record):
     where = ["sphere", "dart", "semi-implicit", 0.005, "invariants", "angular_momentum"]
     advice = summarise(with_metrics(record, metric(*where, "drift_full", 0.03))).accuracy
-    assert "has an angular momentum off by 3 %" in advice.text
+    assert (
+        "order 1 (dart semi-implicit, mujoco Euler) has an angular momentum off by" in advice.text
+    )
+    assert "off by up to 3 %; order 4 (mujoco RK4) by" in advice.text
     assert advice.command.startswith("omegadot choose sphere --momentum-drift 0.01")
+
+
+def test_a_pass_that_is_far_off_stands_out(record):
+    """Caught: a green tick, and nothing else, for a run that is upside down."""
+    for size, shown_ in ((2.0, "115 deg off"), (0.9, "")):
+        found = large(record, size)
+        cells = {c.engine: own for (name, c), own in summarise(found).cells.items() if own.far_off}
+        assert [own.far_off for own in cells.values()] == [shown_] * bool(shown_)
+        rows = glances(summarise(found), found.metrics, Sources())
+        assert [row["far_off"] for row in rows if row["engine"].startswith("dart")] == [shown_]
+        page = draw_page(found)
+        assert page.count("115 deg off") == 2 * bool(shown_)  # in the table and in the matrix
+    failed = change(large(record), first_of(record, "dart"), gates={"equation": "fail"})
+    assert cell(failed, "sphere", "dart").far_off == ""
+
+
+def test_the_reason_of_one_coarse_run_is_its_step():
+    """Caught: "off by 180 deg" without a reason, and a choice among the one engine alone."""
+    found = large(build(("sphere",), engines={"dart": INTEGRATORS["dart"]}))
+    advice = summarise(found).accuracy
+    assert "order 1 (dart semi-implicit) is off by 2 rad" in advice.text
+    assert advice.text.endswith(
+        "The reason is the step, too coarse for order 1 here; the equations hold."
+    )
+    assert advice.command == "omegadot choose sphere --attitude 1deg"
 
 
 def test_an_engine_of_ones_own_is_in_the_command(record):
     found = large(build(("sphere",), engines={"dart": INTEGRATORS["dart"]}))
     found.run["engines"][0]["argument"] = "my dart.py:Dart"
     assert summarise(found).accuracy.command == (
-        "omegadot choose sphere --attitude 1deg --adapter 'my dart.py:Dart' --engine dart"
+        "omegadot choose sphere --attitude 1deg --adapter 'my dart.py:Dart'"
     )
 
 

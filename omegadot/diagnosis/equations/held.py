@@ -125,8 +125,8 @@ class Held:
             return f", but only where {condition}"
         if self.numbers:
             return ""  # what is seen elsewhere is not by these
-        count = len(self.shown)
-        return f", on {count} of the {count + len(self.against)} scenarios that would show it"
+        others = "other" if len(self.against) == 1 else "others"
+        return f", not on {len(self.against)} {others} that would show it"
 
 
 class Scenes:

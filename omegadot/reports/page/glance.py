@@ -10,10 +10,11 @@ from typing import Any
 import polars as pl
 
 from omegadot.reports.record.schema import GATES, YARDSTICKS
-from omegadot.reports.summary.figures import Figure, size
+from omegadot.reports.summary.figures import Figure, size, worst_residual
 from omegadot.reports.summary.matrix import MARKS, origin_of
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import Cell, Column, Summary, text_of, worst
+from omegadot.reports.text.metric_names import residual_name
 from omegadot.reports.text.numbers import (
     angle,
     grouped,
@@ -21,7 +22,6 @@ from omegadot.reports.text.numbers import (
     listed,
     short,
     times,
-    times_its_bound,
 )
 
 # A cell: the value, its details, which may be folded away, and what stands beside it in any case.
@@ -53,6 +53,7 @@ def _glance(
         "status": status.replace("-", " "),
         "mark": MARKS.get(status, "–"),
         "runs": _runs(cells, status),
+        "far_off": _far_off(cells) if status == "pass" else "",
         "residual": _residual(cells),
         "best": _largest([found.best for found in ranges]),
         "worst": _largest([found.worst for found in ranges]),
@@ -62,8 +63,11 @@ def _glance(
     }
 
 
-def _excess(figure: Figure) -> float:
-    return times_its_bound(figure.value, figure.bound) if figure.bound else 0.0
+def _far_off(cells: Iterable[Cell]) -> str:
+    """How far off the worst scenario is that passes; "" where none is."""
+    found = [cell for cell in cells if cell.far_off and cell.attitude]
+    worst = max(found, key=lambda c: size(c.attitude.worst) if c.attitude else 0.0, default=None)
+    return worst.far_off if worst else ""
 
 
 def _runs(cells: Iterable[Cell], status: str) -> str:
@@ -77,14 +81,12 @@ def _runs(cells: Iterable[Cell], status: str) -> str:
 
 def _residual(cells: Iterable[Cell]) -> Detailed:
     """The largest; where one is above its bound, the one that is so by the most."""
-    found = [cell.residual for cell in cells if cell.residual]
-    largest = max(found, key=size, default=None)
-    if largest is None:
+    worst = worst_residual(cell.residual for cell in cells if cell.residual)
+    if worst is None:
         return "–", ""
-    over = max(found, key=_excess)
-    largest = over if _excess(over) > 1.0 else largest
-    bound = "" if largest.bound is None else f"; bound {short(largest.bound)}"
-    return short(largest.value), f"on {largest.scenario}{bound}"
+    bound = "" if worst.bound is None else f"; bound {short(worst.bound)}"
+    name = residual_name(worst.metric)
+    return short(worst.value), f"{name}{', ' * bool(name)}on {worst.scenario}{bound}"
 
 
 def _largest(figures: list[Figure]) -> Detailed:

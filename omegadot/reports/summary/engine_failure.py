@@ -29,6 +29,8 @@ class EngineFailure:
     cause: the likeliest, "" where none is known, and then seen: what is known in its place.
     cost: what the failure means for the attitude, next to integrators that pass; "" where it is not
     known.  command: shrinks the failure and looks for its cause, or repeats it; "" without any.
+    scope: where the same gate holds; "" where it does nowhere.  who: engine, version and setup.
+    harm: how much of the attitude's error is beyond that of sound runs, rad.
     """
 
     engine: str
@@ -45,6 +47,9 @@ class EngineFailure:
     later: tuple[str, ...] = ()
     seen: str = ""
     command: str = ""
+    scope: str = ""
+    who: tuple[str, ...] = ()
+    harm: float = 0.0
 
     @property
     def looks_at(self) -> str:
@@ -94,7 +99,8 @@ class EngineFailure:
     def labelled(self) -> list[tuple[str, str]]:
         """What is known of it, by name: as page and terminal list it."""
         known = self.cause or f"none was found; {self.seen or 'what fails is listed'}"
-        found = [("likely cause", known), ("measured", self.found), ("what it costs", self.cost)]
+        found = [("likely cause", known), ("measured", self.found), ("what holds", self.scope)]
+        found += [("what it costs", self.cost)]
         command = f"{self.command} ({self.purpose})" if self.command else ""
         return [(name, text) for name, text in (*found, ("next", command)) if text]
 
@@ -104,6 +110,7 @@ class EngineFailure:
         parts = [f"{self.head}: {self.found}"]
         parts += [f"Likely cause: {self.cause}"] if self.cause else []
         parts += [f"No cause was found: {self.seen}"] if self.seen else []
+        parts += [f"Holds: {self.scope}"] if self.scope else []
         parts += [f"Cost: {self.cost}"] if self.cost else []
         text = ". ".join(parts) + "."
         return f"{text} Next: {self.command}" if self.command else text

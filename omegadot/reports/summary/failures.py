@@ -13,6 +13,7 @@ from omegadot.reports.record.schema import GATES
 from omegadot.reports.summary.cost import WHO, cost_of
 from omegadot.reports.summary.engine_failure import EngineFailure
 from omegadot.reports.summary.failed_gate import measure, worst_row
+from omegadot.reports.summary.holding import facts, scope
 from omegadot.reports.summary.next_command import next_command
 from omegadot.reports.summary.reasons import cause_of, failing_gates
 from omegadot.reports.summary.unseen import OF_STEPS, unseen
@@ -27,7 +28,7 @@ Row = Mapping[str, Any]
 
 
 def failures_of(record: Record) -> tuple[EngineFailure, ...]:
-    """Every failing engine, in the order of the record."""
+    """Every failing engine, the dearest first; those that cost the same in the record's order."""
     rows = record.metrics.filter(pl.col("verdict") == "fail").to_dicts()
     several = Counter(name for name, *_ in {tuple(row[key] for key in WHO) for row in rows})
     found: dict[tuple[str, ...], list[Row]] = {}
@@ -43,6 +44,7 @@ def failures_of(record: Record) -> tuple[EngineFailure, ...]:
         places |= {task["scenario"] for task in at_gate}
         every = _rows_of(record, who).to_dicts() if worst["gate"] == "equation" else []
         others = {row["gate"] for row in own} | {g for t in failing for g in failing_gates(t)}
+        cause, cost = _likeliest(failing), cost_of(record, who, own)
         failures.append(
             EngineFailure(
                 engine_name(engine, version if several[engine] > 1 else "", setup),
@@ -53,15 +55,18 @@ def failures_of(record: Record) -> tuple[EngineFailure, ...]:
                 worst["gate"] in STEPLESS,
                 (len(places), len({task["scenario"] for task in tasks})),
                 (_count(at_gate, worst), _count(tasks, worst)),
-                _likeliest(failing),
-                cost_of(record, who, own),
+                cause,
+                cost.text,
                 unseen(record, worst, every, at_gate),
                 tuple(g for g in GATES if g in others and GATES.index(g) > _place(worst)),
-                _seen(failing),
+                _seen(failing) or ("" if cause else facts(own, tasks, worst["gate"])),
                 next_command(record.run, worst, {task["integrator"] for task in failing}),
+                scope(record.run, tasks, worst, sorted(places)),
+                who,
+                cost.size,
             )
         )
-    return tuple(failures)
+    return tuple(sorted(failures, key=lambda failure: -failure.harm))
 
 
 def _count(tasks: Sequence[Row], worst: Row) -> int:

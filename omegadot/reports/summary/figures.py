@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import polars as pl
 
-from omegadot.reports.text.numbers import magnitude
+from omegadot.reports.summary.failed_gate import PLAIN
+from omegadot.reports.text.numbers import magnitude, times_its_bound
 
 _SUMMARISED = (
     ((pl.col("gate") == "equation") & (pl.col("channel") == "omega_dot"))
@@ -36,15 +38,36 @@ class Figure:
 
 @dataclass(frozen=True)
 class Range:
-    """The best and the worst integrator of an engine, each at the finest step it was run with."""
+    """The best and the worst integrator of an engine, each at the finest step it was run with.
+
+    all: of every integrator.
+    """
 
     best: Figure
     worst: Figure
+    all: tuple[Figure, ...] = ()
 
 
 def size(figure: Figure) -> float:
     """Its magnitude, for ordering: what is not a number is larger than any number."""
     return magnitude(figure.value)
+
+
+def excess_of(figure: Figure) -> float:
+    """How many times its bound it is; 0 where it has none."""
+    return times_its_bound(figure.value, figure.bound) if figure.bound else 0.0
+
+
+def worst_residual(figures: Iterable[Figure]) -> Figure | None:
+    """The one that every table shows; None of none.
+
+    Of the plain ones that are above their bound, that which is so by the most, as where a failure
+    is told of; else of the others; where all hold, the largest.
+    """
+    found = list(figures)
+    over = [figure for figure in found if excess_of(figure) > 1.0]
+    plain = [figure for figure in over if figure.metric in PLAIN]
+    return max(plain or over, key=excess_of, default=max(found, key=size, default=None))
 
 
 def range_of(figures: list[Figure]) -> Range | None:
@@ -57,7 +80,9 @@ def range_of(figures: list[Figure]) -> Range | None:
         if present is None or size(figure) > size(present):
             at_step[step or 0.0] = figure
     finest = [steps[min(steps)] for steps in runs.values()]
-    return Range(min(finest, key=size), max(finest, key=size)) if finest else None
+    if not finest:
+        return None
+    return Range(min(finest, key=size), max(finest, key=size), tuple(finest))
 
 
 def figures_of(metrics: pl.DataFrame) -> dict[Key, dict[str, list[Figure]]]:

@@ -10,6 +10,7 @@ from typing import Any
 from omegadot.reports.summary.figures import Figure, Range
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.summary import STATUSES, Cell, Column, Summary, text_of
+from omegadot.reports.text.metric_names import residual_name
 from omegadot.reports.text.numbers import knob, quantity, short, times
 
 MARKS = {"pass": "✓", "fail": "✗", "declared": "!", "absent": ""}
@@ -31,6 +32,7 @@ class Shown:
     numbers: text by the keys of NUMBERS; where a gate fails, by FAILED its worst measure alone: no
     number that passes stands beside a failure.  card: the number of its card among `cards`.  rank:
     for sorting, the worst first.  gate: the first that fails, if one does.
+    far_off: that it passes with an attitude that is of no use, if it does.
     """
 
     mark: str
@@ -40,6 +42,7 @@ class Shown:
     card: int = 0
     rank: int = 0
     gate: str = ""
+    far_off: str = ""
 
 
 def origin_of(column: Column, figure: Figure | None = None) -> dict[str, Any]:
@@ -62,7 +65,8 @@ def shown(cell: Cell, card: int = 0) -> Shown:
     if cell.failed:
         numbers = {FAILED: cell.failed.number}
     rank, gate = STATUSES.index(cell.status), cell.failed.gate if cell.failed else ""
-    return Shown(MARKS.get(cell.status, "–"), text_of(cell.status), part, numbers, card, rank, gate)
+    mark = MARKS.get(cell.status, "–")
+    return Shown(mark, text_of(cell.status), part, numbers, card, rank, gate, cell.far_off)
 
 
 def matrix(summary: Summary) -> list[tuple[str, list[Shown]]]:
@@ -108,8 +112,7 @@ def named(figure: Figure | None) -> tuple[str, str]:
     """A figure as text: the value with its unit, and the run behind it."""
     if figure is None:
         return "–", ""
-    path = "along the trajectory" if figure.metric == "residual_on_path" else ""
-    run = (path, figure.integrator, knob(figure.timestep, figure.accuracy))
+    run = (residual_name(figure.metric), figure.integrator, knob(figure.timestep, figure.accuracy))
     return quantity(figure.value, figure.unit), ", ".join(filter(None, run))
 
 

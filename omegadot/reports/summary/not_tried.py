@@ -11,7 +11,7 @@ import numpy as np
 
 from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.summary.advice import Advice
-from omegadot.reports.text.numbers import times
+from omegadot.scenarios.random_systems import BLOCK
 
 MOST_NAMED = 4
 LEAST_TURN = 1e-12  # of a quaternion's scalar part, below one
@@ -77,12 +77,12 @@ def not_tried(run: Mapping[str, Any], passed: Sequence[str]) -> Advice | None:
     if len(absent) > MOST_NAMED:
         texts.append(f"{len(absent) - MOST_NAMED} more")
     if apart:
-        texts.append(f"{len(apart)} of the {times(len(pairs), 'combination')} of two of the others")
+        texts.append("some of the others in one system")
     if not texts:
         return None
     engine = ours[0]["argument"] if len(ours) == 1 else "ENGINE"
     return Advice(
         f"Not tested here: {'; '.join(texts)}.",
         f"omegadot check {shlex.quote(engine)}",
-        "draws random systems with all of them",
+        f"draws {BLOCK} random systems, with all of them among these",
     )

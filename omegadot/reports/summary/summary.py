@@ -6,7 +6,7 @@ Pure functions: the terminal's table and the page show the same summary.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -21,11 +21,19 @@ from omegadot.reports.summary.advice import Advice
 from omegadot.reports.summary.engine_failure import EngineFailure
 from omegadot.reports.summary.failed_gate import FailedGate, failed_gates
 from omegadot.reports.summary.failures import failures_of
-from omegadot.reports.summary.figures import Figure, Key, Range, figures_of, range_of, size
+from omegadot.reports.summary.figures import (
+    Figure,
+    Key,
+    Range,
+    figures_of,
+    range_of,
+    size,
+    worst_residual,
+)
 from omegadot.reports.summary.not_tried import not_tried
 from omegadot.reports.summary.reasons import MODEL_ALONE, failing_gates, tests_motion
 from omegadot.reports.text.engine_version import version_text, with_version
-from omegadot.reports.text.numbers import times
+from omegadot.reports.text.numbers import degrees, times
 
 # From the worst to the best. A skip is never a pass, and neither is a run that was not judged.
 STATUSES = (
@@ -42,6 +50,8 @@ STATUSES = (
     "pass",
     "absent",
 )
+
+FAR_OFF = 1.0  # rad: such an attitude is that of another motion
 
 
 @dataclass(frozen=True)
@@ -80,6 +90,14 @@ class Cell:
     drift: Range | None
     attitude: Range | None
     failed: FailedGate | None = None
+
+    @property
+    def far_off(self) -> str:
+        """How far off a cell is that passes all the same; "" where that is less than a radian."""
+        worst = self.attitude.worst if self.attitude else None
+        if self.status != "pass" or worst is None or not size(worst) > FAR_OFF:
+            return ""
+        return f"{degrees(worst.value)} deg off"
 
 
 @dataclass(frozen=True)
@@ -152,7 +170,8 @@ def summarise(record: Record) -> Summary:
     failed = failed_gates(record.metrics)
     failing = {key[1:] for key in failed}
     failing |= {column_of(task) for task in tasks if task_status(task) == "fail"}
-    columns = _columns(tasks, singles, failing)
+    failures = failures_of(record)
+    columns = _columns(tasks, singles, failing, [failure.who for failure in failures])
     named = [entry["name"] for entry in record.run["scenarios"]]
     scenarios = tuple(dict.fromkeys([*named, *(task["scenario"] for task in tasks)]))
     statuses: dict[Key, list[str]] = {}
@@ -175,7 +194,7 @@ def summarise(record: Record) -> Summary:
         cells,
         *_counted(tasks),
         _missing(record.run),
-        failures_of(record),
+        failures,
         _truths(record.trajectories),
         (*impossible_bodies(record.run["scenarios"]), *_ended(record.run), *_unstepped(record.run)),
         _one_step(tasks),
@@ -262,12 +281,17 @@ def column_of(task: Mapping[str, Any]) -> tuple[str, str, str]:
 
 
 def _columns(
-    tasks: Iterable[Mapping[str, Any]], singles: set[str], failing: Collection[tuple[str, ...]]
+    tasks: Iterable[Mapping[str, Any]],
+    singles: set[str],
+    failing: Collection[tuple[str, ...]],
+    dearest: Sequence[tuple[str, ...]],
 ) -> tuple[Column, ...]:
-    # The engines stand first, those that fail before the others: of twenty a screen shows some.
+    # The engines stand first, those that fail before the others, as they are told of above the
+    # table: of twenty a screen shows some.
+    places = {who: place for place, who in enumerate(dearest)}
     keys = sorted(
         dict.fromkeys(column_of(task) for task in tasks),
-        key=lambda k: (k[0] in YARDSTICKS, k not in failing),
+        key=lambda k: (k[0] in YARDSTICKS, k not in failing, places.get(k, len(places))),
     )
     columns = []
     for engine, version, setup in keys:
@@ -283,7 +307,7 @@ def _cell(failed: FailedGate | None, statuses: list[str], figures: dict[str, lis
     return Cell(
         "fail" if failed else worst(statuses),
         Counter(statuses),
-        max(figures.get("omega_dot", []), key=size, default=None),
+        worst_residual(figures.get("omega_dot", [])),
         range_of(figures.get("angular_momentum", [])),
         range_of(figures.get("attitude", [])),
         failed,

@@ -16,3 +16,10 @@ _NAMES = {
 def metric_name(metric: str) -> str:
     """A metric in plain English; one without a name of its own loses its underscores."""
     return _NAMES.get(metric, metric.replace("_", " "))
+
+
+def residual_name(metric: str) -> str:
+    """What tells a residual from that at the given states: along what, or after what; else ""."""
+    of_path = metric == "residual_on_path"  # short, as it stands in cells
+    text = "along the trajectory" if of_path else metric_name(metric).removeprefix("residual")
+    return text.strip() if metric.startswith("residual_") else ""

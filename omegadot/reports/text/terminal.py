@@ -116,7 +116,7 @@ def _column(cells: list[Cell], shown: int, console: Console) -> list[Text]:
     texts = [Text(" ".join([" ", *aligned]).rstrip())]
     for cell, own in zip(cells, numbers, strict=True):
         terms = [f"{text:<{width}}" for text, width in zip(own, widths, strict=True)]
-        style = _STYLES.get(cell.status, _NOT_RUN)
+        style = _STYLES["declared"] if cell.far_off else _STYLES.get(cell.status, _NOT_RUN)
         text = Text(_mark(cell, console), style)
         if cell.failed:  # the numbers that are headed may all be of gates that hold
             text.append(_failed(cell.failed, shown, console), style)

@@ -41,11 +41,12 @@ function title(context, cell, text, colour, theme, below = "") {
     context.fillText(fitted(context, line, cell.width - 12), cell.x + cell.width / 2, cell.y + y);
   });
 }
-// From the moment a run diverges its cell has a frame, a broad one at first.
+// A run of which a gate fails has a frame, broad for a while where it diverges; no sound run has one.
 function frame(context, cell, trajectory, colour, time) {
-  if (trajectory.diverges === null || time < trajectory.diverges) return;
+  if (!trajectory.gates) return;
+  const since = trajectory.diverges === null ? -1 : time - trajectory.diverges;
   context.strokeStyle = colour;
-  context.lineWidth = time - trajectory.diverges < trajectory.time.at(-1) / 12 ? 4 : 1.5;
+  context.lineWidth = since >= 0 && since < trajectory.time.at(-1) / 12 ? 4 : 1.5;
   context.strokeRect(cell.x + 3, cell.y + 3, cell.width - 6, cell.height - 6);
 }
 

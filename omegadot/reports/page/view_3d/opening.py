@@ -9,13 +9,13 @@ from typing import Any
 from omegadot.reports.charts.coinciding import Lane
 from omegadot.reports.page.view_3d.attitudes import RunAttitudes
 from omegadot.reports.record.schema import YARDSTICKS
+from omegadot.reports.summary.orders import Orders
 from omegadot.reports.summary.reasons import failing_gates
 
 PLACES = 3  # runs that the view shows beside the exact solution
 _OF_A_RUN = {"scheme", "invariants", "trajectory"}
 Ranks = Mapping[tuple[float | None, float | None], int]
 Key = tuple[str, str, str, float | None, float | None]
-Orders = Mapping[tuple[str, str], float | None]
 
 
 @dataclass(frozen=True)
@@ -42,23 +42,14 @@ def failing_runs(tasks: Iterable[Mapping[str, Any]]) -> dict[str, dict[Key, list
     return found
 
 
-def declared_orders(engines: Iterable[Mapping[str, Any]]) -> Orders:
-    """The order in attitude that each integrator declares, by engine and integrator."""
-    return {
-        (engine["name"], own["name"]): (own.get("orders") or {}).get("attitude")
-        for engine in engines
-        for own in engine.get("integrators") or ()
-    }
-
-
 def opening(
     runs: Sequence[RunAttitudes], ranks: Ranks, failing: Mapping[Key, list[str]], orders: Orders
 ) -> Opening:
     """What to open with on a scenario. runs: in the order of the page's lines.
 
     orders: declared in attitude, by engine and integrator.
-    Where engines fail: of two of them, the integrator whose failing run errs the most, then of the
-    engines that do not fail the most exact run of the order of the first, so that what is seen
+    Where engines fail: of the two that err the most, the integrator whose failing run does, then of
+    the engines that do not fail the most exact run of the order of the first, so that what is seen
     apart is the fault and not the order, or the most exact where none has that order; at the finest
     step at which the first of them fails.
     Else of three engines in turn the least and the most exact integrator, at the coarsest step.
@@ -72,7 +63,8 @@ def opening(
     def harm(run: RunAttitudes) -> tuple[bool, float]:  # before runs of a wrong equation alone
         return bool(_OF_A_RUN & set(failing[key_of(run)])), run.largest
 
-    worst = [max(own, key=harm) for own in _by_engine(failed)][: PLACES - 1]
+    worst = [max(own, key=harm) for own in _by_engine(failed)]
+    worst = sorted(worst, key=harm, reverse=True)[: PLACES - 1]
     lanes = [lane_of(run) for run in worst]
     rank = min(_rank(run, ranks) for run in failed if lane_of(run) == lanes[0])
     engines_failing = {engine for engine, *_ in failing}

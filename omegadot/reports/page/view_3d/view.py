@@ -24,14 +24,13 @@ from omegadot.reports.page.view_3d.attitudes import DIVERGED, Attitudes, attitud
 from omegadot.reports.page.view_3d.bodies import look_of
 from omegadot.reports.page.view_3d.opening import (
     Key,
-    Orders,
-    declared_orders,
     failing_runs,
     key_of,
     lane_of,
     opening,
 )
 from omegadot.reports.record.record import Record
+from omegadot.reports.summary.orders import Orders, declared_orders
 from omegadot.reports.text.numbers import knob
 
 # A unit, half a turn, and this many times the scenario's greatest omega each have code 32767.
