@@ -16,3 +16,10 @@ _NAMES = {
 def metric_name(metric: str) -> str:
     """A metric in plain English; one without a name of its own loses its underscores."""
     return _NAMES.get(metric, metric.replace("_", " "))
+
+
+def measure_name(channel: str, metric: str) -> str:
+    """Channel and metric, as people read them, and no term twice: "time shift" of time."""
+    if channel == "model" or channel.replace("-", " ") in metric:
+        return metric
+    return f"{channel} {metric}"
