@@ -29,7 +29,7 @@ _NAMES = {"time": "a time", "angle": "an angle", "rate": "an angular velocity"}
 _NAMES |= {"length": "a length", "ratio": "a ratio", "factor": "a factor"}
 _EXAMPLES = {"time": "60s, 5ms or 1min", "angle": "0.1deg or 1e-3rad", "rate": "0.5deg/s or 2rpm"}
 _EXAMPLES |= {"length": "1mm or 0.1m", "ratio": "1e-6, 1ppm or 0.01%", "factor": "100"}
-_SPELLINGS = {"µ": "u", "μ": "u", "°": "deg", "turn": "rev", "×": "x"}
+SPELLINGS = {"µ": "u", "μ": "u", "°": "deg", "turn": "rev", "×": "x"}
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S*)\s*")
 
 
@@ -39,7 +39,7 @@ def unit_named(text: str, kind: str, where: str) -> str:
     kind: a key of UNITS.  where: the option, or file and key, for the error.  Raises UsageError.
     """
     units, unit = UNITS[kind], text
-    for other, ours in _SPELLINGS.items():
+    for other, ours in SPELLINGS.items():
         unit = unit.replace(other, ours)
     if unit in units:
         return unit

@@ -7,11 +7,15 @@ from pathlib import Path
 
 import pytest
 
+import omegadot
 from omegadot.adapters.protocol import Description, Integrator
 from omegadot.commands.choose.eligible import unmet, untestable
+from omegadot.commands.choose.licences import check_licences
 from omegadot.commands.choose.motion import Motion, cases_of
 from omegadot.commands.choose.requirements import Requirements, merged, read_requirements
+from omegadot.commands.engines.engines import EngineEntry
 from omegadot.commands.units import quantity
+from omegadot.harness.plan import EngineChoice
 from omegadot.harness.usage import UsageError
 
 QUANTITIES = [
@@ -130,6 +134,32 @@ def test_engines_that_are_as_required_are_not_refused() -> None:
         licences=("mit",), python="3.12",
     )  # fmt: skip
     assert unmet(engine(), requested) == []
+
+
+@pytest.mark.parametrize("name", ["permissive", "Apache2", "apache-2.0 or mit", "LicenseRef-x"])
+def test_a_name_that_is_no_licence_is_refused_with_those_there_are(name: str) -> None:
+    """Caught: a typo, for which no engine qualifies."""
+    with pytest.raises(UsageError) as caught:
+        omegadot.choose("sphere", "mujoco", attitude="1deg", licences=[name])
+    message = str(caught.value)
+    assert message.startswith(f"--licence {name}: there is no such licence; ")
+    assert "the installed engines have Apache-2.0" in message
+    assert "\n" not in message
+
+
+def test_names_of_licences_in_any_letters_and_engines_own_are_accepted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A licence of SPDX that no engine has may stand in a list of those that are allowed."""
+    choice = EngineChoice("toy", "toy:Toy")
+    module = "omegadot.commands.choose.licences"
+    check_licences(["apache-2.0", "mit", "BSD-2-Clause"], [choice])  # and starts nothing
+    monkeypatch.setattr(
+        f"{module}.entry_of", lambda c: EngineEntry(c.name, engine(licence="In-House"))
+    )
+    check_licences(["in-house"], [choice])
+    with pytest.raises(UsageError, match="write In-House"):
+        check_licences(["in-hose"], [choice])
 
 
 def test_a_package_that_refuses_the_python_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

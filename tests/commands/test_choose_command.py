@@ -207,6 +207,7 @@ def test_hostile_texts_are_shown_as_they_are(chosen: tuple[Path, Result]) -> Non
     page = draw_choice(choice)
     assert "<img" not in page
     assert "<script" not in page
+    assert "Below the red line all accuracy limits are met." in page
 
 
 def test_a_link_in_a_motion_of_ones_own(tmp_path: Path) -> None:

@@ -1,5 +1,7 @@
 """The schemes of flight simulators, recognised channel by channel, at steps as logs have them."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -171,6 +173,17 @@ def test_stamps_near_whole_steps_are_accepted_with_what_they_leave_open(
     # A perfect trace is within its digits only where its stamps' openness counts.
     perfect = score(stamps(kind), tumble(TIMES)).json["channels"]["omega"]
     assert perfect["max"] <= perfect["bound"] + 1e-11  # to which `tumble` is exact
+
+
+def test_what_a_declared_scheme_leaves_has_its_unit(score):
+    """Caught: "0.0011 is left", of a relative error as of an angle in rad."""
+    times = STEP * np.arange(COUNT + 1)
+    result = score(times, tumble(times), "--integrator-scheme", "explicit-euler")
+    assert result.code == 1
+    notes = {name: one["note"] for name, one in result.json["channels"].items()}
+    assert re.match(r"not explained by explicit-euler: \S+ relative is left", notes["omega"])
+    assert re.match(r"not explained by explicit-euler: \S+ rad is left", notes["attitude"])
+    assert "omega and attitude equal none of the" in scheme_of(result)
 
 
 def test_every_scheme_has_one_name():

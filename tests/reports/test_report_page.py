@@ -157,7 +157,7 @@ def test_the_page_shows_the_source_of_error(sound):
     text = text_of(why)
     assert "mujoco Euler and dart semi-implicit produce identical trajectories" in text
     assert "(both step semi-implicit-euler)" in text
-    assert "On all 2 scenarios that tell schemes apart." in text
+    assert "They do so on all 2 scenarios that tell schemes apart." in text
     assert why.count("6 of 6") == 3
     assert "1.01 (1)" in text
     assert text_of(sound).count("3 runs at step 0.005 s produce 2 different trajectories") == 2

@@ -44,7 +44,7 @@ def test_identical_trajectories_are_not_independent_evidence():
         "x Euler, y step and z aba+euler produce identical trajectories (all step euler), "
         "so they count as one witness."
     )
-    assert extent(found) == "On the one scenario that tells schemes apart."
+    assert extent(found) == "They do so on the one scenario that tells schemes apart."
     assert found.engines == 3
 
 
@@ -53,11 +53,11 @@ def test_an_exception_does_not_split_a_cluster_and_is_named():
     apart = [cluster("four", "x:a", "other"), cluster("four", "y:b")]
     (found,) = clusters_over_scenarios(of(*same, *apart))
     assert found.schemes == ("euler",)
-    assert extent(found) == "On 3 of 4 scenarios that tell schemes apart, not on four."
+    assert extent(found) == "They do so on 3 of 4 scenarios that tell schemes apart, not on four."
     many = [cluster(n, m) for n in "pqrst" for m in ("x:a", "y:b")]
     (found,) = clusters_over_scenarios(of(*same, *[cluster(n, "x:a y:b") for n in "klmno"], *many))
     assert extent(found) == (
-        "On 8 of 13 scenarios that tell schemes apart, not on p, q, r and 2 more."
+        "They do so on 8 of 13 scenarios that tell schemes apart, not on p, q, r and 2 more."
     )
 
 
@@ -68,7 +68,8 @@ def test_one_that_differs_somewhere_is_named_apart():
     (found,) = clusters_over_scenarios(of(*same, *top))
     assert sentence(found).startswith("x a and z c produce identical trajectories")
     assert extent(found) == (
-        "On all 3 scenarios that tell schemes apart. y b equals them on 2 of these, not on top."
+        "They do so on all 3 scenarios that tell schemes apart. "
+        "y b equals them on 2 of these, not on top."
     )
     assert found.engines == 3
 
@@ -98,7 +99,7 @@ def test_agreement_on_the_exact_solution_is_not_counted():
     more = [cluster("top", "x:a y:b"), cluster("top", "x:c", "rk4")]
     (found,) = clusters_over_scenarios(of(sphere, sphere | {"scenario": "spin"}, *more))
     assert (found.members, found.schemes) == (("x:a", "y:b"), ("euler",))
-    assert extent(found) == "On the one scenario that tells schemes apart."
+    assert extent(found) == "They do so on the one scenario that tells schemes apart."
 
 
 def test_schemes_that_no_scenario_distinguishes_are_all_named():

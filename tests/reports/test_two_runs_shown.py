@@ -71,6 +71,22 @@ def test_everything_is_in_the_json(base) -> None:
     assert change["band"] == pytest.approx(2 * BOUND)
 
 
+def test_what_appeared_and_vanished_has_integrators_and_steps(base) -> None:
+    """Caught: an engine whose RK4 alone vanished, in a row that names the engine only."""
+    engine, integrator = RUN[1], RUN[2]
+    gone = [e for e in base.run["tasks"] if (e["engine"], e["integrator"]) != (engine, integrator)]
+    fewer = with_run(base, tasks=gone)
+    steps = [f"step {step} s" for step in SMALL["steps"]]
+    for pair, term in (((base, fewer), "Vanished"), ((fewer, base), "Appeared")):
+        found = compare_records(*pair)
+        line = as_text(found).split(f"{term}\n")[1].splitlines()[0]
+        row = next(line for line in as_markdown(found).splitlines() if f"| {integrator} |" in line)
+        cells = draw_two_runs(found).split(f'id="{term.lower()}"')[1].split("</table>")[0]
+        for text in (" ".join(part.split()) for part in (line, row, cells)):
+            assert all(name in text for name in (engine, integrator, *steps)), text
+        assert f"{len(base.run['tasks']) - len(gone)} runs" in line
+
+
 def test_a_seed_that_no_float_holds_is_shown(base) -> None:
     found = compare_records(base, with_run(base, seed=10**400))
     assert "beyond 1e308" in as_text(found)

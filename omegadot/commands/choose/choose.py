@@ -12,6 +12,7 @@ from typing import Any
 from omegadot import __version__
 from omegadot.commands.choose.chooser import Choice
 from omegadot.commands.choose.document import document
+from omegadot.commands.choose.licences import check_licences
 from omegadot.commands.choose.motion import Motion, cases_of
 from omegadot.commands.choose.requirements import merged, read_requirements
 from omegadot.commands.choose.result import ChooseResult
@@ -104,6 +105,8 @@ def choose(
         jobs=(os.cpu_count() or 1) if jobs is None else jobs,
     )
     check_number("--budget", budget, 0.0)
+    others = engine_choices([], several(adapters))
+    check_licences(wanted.licences, {c.name: c for c in (*others, *request.choices)}.values())
     if out is not None:
         make_folder(path_of(out))
     with reporting(progress) as report:

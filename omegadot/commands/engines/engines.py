@@ -44,10 +44,11 @@ def engines(adapters: EngineLike | Sequence[EngineLike] = ()) -> tuple[EngineEnt
     choices = engine_choices([], several(adapters))
     choices += [EngineChoice(name, OPTIONAL[name]) for name in OPTIONAL if is_absent(name)]
     with ThreadPoolExecutor() as threads:
-        return tuple(threads.map(_entry, choices))
+        return tuple(threads.map(entry_of, choices))
 
 
-def _entry(choice: EngineChoice) -> EngineEntry:
+def entry_of(choice: EngineChoice) -> EngineEntry:
+    """One engine, started in a process of its own to describe itself."""
     worker = WorkerProcess(choice.target, "physics", START_TIMEOUT)
     answer = worker.start()
     worker.finish()

@@ -60,7 +60,10 @@ def samples_of(reading: Reading) -> Samples:
         )
     turned = None if trace.orientation is None else normalize(trace.orientation)
     found = Samples(file, trace.times, omega, turned, _digits(trace))
-    _check(found, f"{reading.how.rate_unit} and {reading.how.time_unit}")
+    units = f"{reading.how.rate_unit} and {reading.how.time_unit}"
+    named = [repr(n) for option, n in reading.named.items() if option in ("rate-unit", "time-unit")]
+    advice = f"correct the units in the names of its columns, as of {named[0]}" if named else ""
+    _check(found, units, advice or "give the units of the file with --rate-unit and --time-unit")
     return found
 
 
@@ -75,8 +78,11 @@ def _digits(trace: Trace) -> tuple[float, float]:
     return omega, turn
 
 
-def _check(found: Samples, units: str) -> None:
-    """Raise TraceError where nothing can be fitted. units: in which omega and times were read."""
+def _check(found: Samples, units: str, advice: str) -> None:
+    """Raise TraceError where nothing can be fitted.
+
+    units: in which omega and times were read.  advice: how to have others taken.
+    """
     count = len(found.times)
     if count < LEAST_SAMPLES:
         raise TraceError(
@@ -92,8 +98,7 @@ def _check(found: Samples, units: str) -> None:
         raise TraceError(
             f"{found.file}: read in {units}, the body turns by "
             f"{written(turned / (count - 1), 3)} rad from "
-            "sample to sample, more than samples can show; give the units of the file with "
-            "--rate-unit and --time-unit."
+            f"sample to sample, more than samples can show; {advice}."
         )
     if turned > MOST_TURNED:
         raise TraceError(

@@ -42,6 +42,14 @@ class Clock:
         parts += [f"--time-offset {self.offset}"] * (instant(self.offset, "") != own)
         return " ".join(parts)
 
+    def advice(self, reading: Reading) -> str:
+        """What to do, of what is not so already: options to give, or a column's name to correct."""
+        if self.unit == reading.how.time_unit or "time-unit" not in reading.named:
+            return f"give {self.options(reading)}"
+        rest = self.options(reading).removeprefix(f"--time-unit {self.unit}").strip()
+        named = f"{reading.advice('time_unit', self.unit)} to {self.unit}"
+        return f"{named}, and give {rest}" if rest else named
+
 
 def clocks(reading: Reading, duration: float) -> Iterator[Clock]:
     """The clocks by which a trace lasts no longer than the scenario, the likeliest first.
@@ -84,9 +92,9 @@ def check_duration(reading: Reading, duration: float) -> None:
         return
     likely = [c for c in clocks(reading, duration) if _lasts(reading, c) > 0.01 * duration]
     best = next(iter(likely), None)
-    advice = f"give {best.options(reading)} if the motion begins there" if best else ""
+    advice = f"{best.advice(reading)} if the motion begins there" if best else ""
     if best and best.offset == "0":
-        advice = f"looks like {best.unit}; give {best.options(reading)}"
+        advice = f"looks like {best.unit}; {best.advice(reading)}"
     until = reading.stamps.text(-1) if reading.stamps.dated else f"{written(end, 15)} s"
     raise TraceError(
         f"{table.file}: runs until {until}, the scenario lasts {written(duration)} s; "
@@ -127,7 +135,7 @@ def check_clock(found: Measured, reading: Reading, duration: float) -> None:
             if longer:
                 why = f"it lasts {written(span, 3)} s of the scenario's {written(duration)} s"
             raise TraceError(
-                f"{reading.table.file}: by its time stamps {why}; give {clock.options(reading)} "
+                f"{reading.table.file}: by its time stamps {why}; {clock.advice(reading)} "
                 "if the motion begins there."
             )
 

@@ -26,7 +26,7 @@ from omegadot.commands.score.steps import (
 )
 from omegadot.commands.score.trace import trace_of
 from omegadot.commands.score.world import Shifted, Turned, shifted_world, turned_world
-from omegadot.gates.bounds.measures import INVARIANT_CHANNELS
+from omegadot.gates.bounds.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
 from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import CHANNELS
 from omegadot.gates.errors.verdicts import Finding
@@ -176,10 +176,13 @@ def _finding(error: Array, bound: Array, own: Comparison | None, channel: str) -
     if np.all(error <= bound):
         return Finding("round-off", "within digits and rounding")
     if own is not None:
-        left = float(np.max(own.left[channel]))
+        unit = TRAJECTORY_UNITS.get(channel, "1")
+        left = (
+            f"{written(float(np.max(own.left[channel])), 2)} {'relative' if unit == '1' else unit}"
+        )
         if own.agrees(channel):
-            return Finding("explained", f"explained by {own.scheme}, to {written(left, 2)}")
-        return Finding("unexplained", f"not explained by {own.scheme}: {written(left, 2)} is left")
+            return Finding("explained", f"explained by {own.scheme}, to {left}")
+        return Finding("unexplained", f"not explained by {own.scheme}: {left} is left")
     return Finding("beyond", "measured, not judged: no scheme is declared")
 
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from omegadot.commands.score.clock import GROSS, NEARER
 from omegadot.commands.score.columns import GROUPS
-from omegadot.commands.score.convention import option_of
 from omegadot.commands.score.measured import Measured, measure_trace
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import TraceError
@@ -44,7 +43,7 @@ def check_units(found: Measured, reading: Reading) -> None:
                 )
                 raise TraceError(
                     f"{reading.table.file}: {what} {times} what {given} would give here, and looks "
-                    f"like {unit}; give {option_of(field)} {unit}."
+                    f"like {unit}; {reading.advice(field, unit)}."
                 )
     _check_one_rate(found, reading)
 

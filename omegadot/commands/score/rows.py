@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import partial
 
@@ -24,6 +25,7 @@ from omegadot.written import written
 
 SPINS = ("omega", "attitude")
 MOST_NAMED = 3
+_PLURAL = re.compile(r"^(equals|is)\b")
 
 
 def rows_of(found: Judged, requirements: list[Requirement]) -> list[Row]:
@@ -142,7 +144,16 @@ def _equals(found: Judged, schemes: list[Comparison]) -> str:
         else:
             clause = f"equals none of the {len(KNOWN)} that are known"
         clauses.setdefault(clause, []).append(channel)
-    return ", ".join(f"{' and '.join(names)} {clause}" for clause, names in clauses.items())
+    return ", ".join(_clause(names, clause) for clause, names in clauses.items())
+
+
+def _clause(channels: list[str], clause: str) -> str:
+    """``omega equals rk4``; ``omega and attitude equal rk4``."""
+    if len(channels) > 1:
+        clause = _PLURAL.sub(
+            lambda verb: "equal" if verb[0] == "equals" else "are", clause, count=1
+        )
+    return f"{' and '.join(channels)} {clause}"
 
 
 def _named(schemes: list[Comparison]) -> str:

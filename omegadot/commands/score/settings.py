@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime, time
 from functools import cached_property
 from pathlib import Path
@@ -13,8 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.commands.score.columns import GROUPS, Columns, assignments_of, columns_of
-from omegadot.commands.score.convention import NUMBERS, SETTINGS, Convention, convention_of
+from omegadot.commands.score.convention import (
+    NUMBERS,
+    SETTINGS,
+    Convention,
+    convention_of,
+    option_of,
+)
 from omegadot.commands.score.digits import longest, open_of, shared_digits
+from omegadot.commands.score.named_units import named_units
 from omegadot.commands.score.stamps import Stamps, counted, in_window, instant, stamps_of
 from omegadot.commands.score.table import Column, Table, TraceError
 from omegadot.harness.usage import UsageError, nearest
@@ -30,11 +37,23 @@ Assigned = list[tuple[str, list[str]]]
 
 @dataclass(frozen=True)
 class Reading:
-    """A trace's file and how it is read."""
+    """A trace's file and how it is read.
+
+    named: by option, such as ``rate-unit``, the column whose name has that unit.
+    """
 
     table: Table
     columns: Columns
     how: Convention
+    named: Mapping[str, str] = field(default_factory=dict)
+
+    def advice(self, unit_field: str, unit: str) -> str:
+        """How to have another unit taken: by its option, or where a name has one, by that."""
+        option = option_of(unit_field)
+        name = self.named.get(option.removeprefix("--"))
+        if name is None:
+            return f"give {option} {unit}"
+        return f"correct the unit in the name of column {name!r}"
 
     @cached_property
     def stamps(self) -> Stamps:
@@ -91,7 +110,11 @@ def reading_of(
     assigned, declared = settings_of(columns, map_file, settings)
     how = convention_of(declared)
     timed = how.rate is None
-    found = Reading(table, columns_of(table, assigned, how.quaternion, how.euler, timed), how)
+    roles = columns_of(table, assigned, how.quaternion, how.euler, timed)
+    options = {key: getattr(how, SETTINGS[key]) for key in declared}
+    named = named_units(table, roles, options)
+    how = convention_of({**declared, **{option: unit for option, (unit, _) in named.items()}})
+    found = Reading(table, roles, how, {option: name for option, (_, name) in named.items()})
     first, last = (
         None if text is None else instant(text, option)
         for text, option in ((how.from_time, "--from"), (how.to_time, "--to"))

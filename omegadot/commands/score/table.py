@@ -149,6 +149,12 @@ def bare(name: str) -> str:
     return _UNIT.sub("", name).strip().casefold()
 
 
+def unit_text(name: str) -> str:
+    """What stands in brackets at the end of a column's name: "deg/s" of ``wX (deg/s)``."""
+    found = _UNIT.search(name)
+    return found[1][1:-1].strip() if found else ""
+
+
 def find_column(table: Table, wanted: str, role: str) -> str:
     """The column of this name, or of this number (from one, as ``#3``). Raises TraceError."""
     if wanted in table.names:

@@ -16,7 +16,7 @@ from omegadot.reports.summary.failed_gate import excess, over_bound, worst_row
 from omegadot.reports.summary.provenance import Sources
 from omegadot.reports.summary.reasons import cause_of
 from omegadot.reports.summary.summary import Column, column_of
-from omegadot.reports.text.metric_names import metric_name
+from omegadot.reports.text.metric_names import measure_name, metric_name
 from omegadot.reports.text.numbers import engine_name, knob, quantity, times
 
 MOST = 40  # rows on the page; every engine has its share of them, and three at least
@@ -119,7 +119,7 @@ def _failure(
     stepped = [row for row in rows if row["timestep"] or row["accuracy"]]  # no order of a sweep
     runs = {tuple(row[key] for key in _RUN) for row in stepped}
     others = f" and {len(measures) - 1} more" if len(measures) > 1 else ""
-    measure = f"{channel_name(worst['channel'])} {metric_name(worst['metric'])}"
+    measure = measure_name(channel_name(worst["channel"]), metric_name(worst["metric"]))
     run = (worst["integrator"], knob(worst["timestep"], worst["accuracy"]))
     count = times(len(runs), "run") if runs else ""
     key = (worst["scenario"], *_engine_of(worst), *(worst[name] for name in _RUN))

@@ -60,9 +60,10 @@ def extent(cluster: Cluster) -> str:
 
 def _on(count: int, total: int, apart: Sequence[str]) -> str:
     if total == 1:
-        return "On the one scenario that tells schemes apart."
+        return "They do so on the one scenario that tells schemes apart."
     counted = f"{total} scenarios that tell schemes apart"
-    return f"On {count} of {counted}, not on {_first(apart)}." if apart else f"On all {counted}."
+    where = f"{count} of {counted}, not on {_first(apart)}" if apart else f"all {counted}"
+    return f"They do so on {where}."
 
 
 def _first(scenarios: Sequence[str]) -> str:

@@ -23,3 +23,10 @@ def residual_name(metric: str) -> str:
     of_path = metric == "residual_on_path"  # short, as it stands in cells
     text = "along the trajectory" if of_path else metric_name(metric).removeprefix("residual")
     return text.strip() if metric.startswith("residual_") else ""
+
+
+def measure_name(channel: str, metric: str) -> str:
+    """Channel and metric, as people read them, and no term twice: "time shift" of time."""
+    if channel == "model" or channel.replace("-", " ") in metric:
+        return metric
+    return f"{channel} {metric}"

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 
 from omegadot.reports.page.tables import channel_name
+from omegadot.reports.text.metric_names import measure_name
 from omegadot.reports.text.numbers import engine_name, quantity, short
 from omegadot.reports.two_runs.sides import RunKey
 
@@ -75,9 +76,7 @@ class Change:
     @property
     def what(self) -> str:
         """The gate and the figure: trajectory: attitude error max."""
-        name = " ".join(filter(None, (channel_name(self.channel), self.metric.replace("_", " "))))
-        if self.channel == "model" or self.channel == self.metric:
-            name = self.metric.replace("_", " ")
+        name = measure_name(channel_name(self.channel), self.metric.replace("_", " "))
         return ": ".join(filter(None, (self.gate, name))) or "outcome"
 
 

@@ -10,13 +10,13 @@ from omegadot.reports.record.schema import YARDSTICKS
 from omegadot.reports.text.numbers import engine_name, first, knob, plain, times
 from omegadot.reports.two_runs.change import Change, from_to, grouped, name_of
 from omegadot.reports.two_runs.comparison import Comparison
-from omegadot.reports.two_runs.sides import Side, Task
+from omegadot.reports.two_runs.sides import RunKey, Side, Task
 
 _CHANGE_HEADS = ("engine", "integrator", "what", "largest at", "change", "total", "reason now")
-_PRESENCE_HEADS = ("engine", "outcome", "runs", "scenarios", "reason")
+_PRESENCE_HEADS = ("engine", "integrator", "steps", "outcome", "runs", "scenarios", "reason")
 _SETTING_HEADS = ("", "first", "second")
 _COST_HEADS = ("engine", "integrator", "median", "quartiles", "runs")
-_SCENARIOS_NAMED = 4
+_NAMED = 4
 
 Rows = list[tuple[str, ...]]
 
@@ -61,15 +61,18 @@ def _change_row(changes: list[Change]) -> tuple[str, ...]:
 
 
 def _presences(tasks: Iterable[Task]) -> Rows:
-    """Runs that one record alone has: one row an engine and outcome."""
-    groups: dict[tuple[str, str, str], list[str]] = {}
+    """Runs that one record alone has: one row an engine, integrator and outcome."""
+    groups: dict[tuple[str, str, str, str], list[RunKey]] = {}
     for task in tasks:
-        why = "" if task.status == "pass" else task.why
-        groups.setdefault((name_of(task.key), task.status, why), []).append(task.key.scenario)
-    return [
-        (engine, status, str(len(own)), first(list(dict.fromkeys(own)), _SCENARIOS_NAMED), why)
-        for (engine, status, why), own in groups.items()
-    ]
+        key, why = task.key, "" if task.status == "pass" else task.why
+        groups.setdefault((name_of(key), key.integrator, task.status, why), []).append(key)
+    found: Rows = []
+    for (engine, integrator, status, why), own in groups.items():
+        steps = list(dict.fromkeys(knob(key.timestep, key.accuracy) for key in own))
+        scenarios = list(dict.fromkeys(key.scenario for key in own))
+        shown = first(list(filter(None, steps)), _NAMED), first(scenarios, _NAMED)
+        found.append((engine, integrator, shown[0], status, str(len(own)), shown[1], why))
+    return found
 
 
 def _settings(comparison: Comparison) -> Rows:

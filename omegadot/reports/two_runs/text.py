@@ -17,6 +17,7 @@ from omegadot.reports.two_runs.sides import Side, Task
 _ROWS_SHOWN = 12
 # Reported for information, after what is judged.
 _FOLDED = ("settings", "cost")
+_PRESENT = ("vanished", "appeared")
 
 
 def as_text(comparison: Comparison) -> str:
@@ -51,6 +52,9 @@ def _cells(part: Part, row: tuple[str, ...]) -> tuple[str, ...]:
     if part.anchor == "cost":
         *names, median, span, runs = row
         return *names, f"{median} times ({span}), {times(int(runs), 'run')}"
+    if part.anchor in _PRESENT:
+        *names, runs, scenarios, why = row
+        return *names, times(int(runs), "run"), scenarios, why
     return row
 
 

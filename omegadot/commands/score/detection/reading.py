@@ -12,6 +12,8 @@ import numpy as np
 from omegadot.commands.score.convention import SETTINGS, axes_text
 from omegadot.commands.score.detection.candidates import Attitude, Omega
 from omegadot.commands.score.detection.numbers import AXES, SAME
+from omegadot.commands.score.named_units import unit_in
+from omegadot.harness.usage import UsageError
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array
 
@@ -81,12 +83,12 @@ class Reading:
         clock = self.clock
         found: list[Option] = [("column", f"t={clock.column}")] * (clock.column is not None)
         found += clock.declared
-        found += [("time-unit", self.clock.unit)] * (self.clock.unit != "s")
+        found += _unit("time-unit", clock.unit, "s", "t", (clock.column or "",))
         found += [("time-offset", self.clock.offset)] * (self.clock.offset != 0.0)
         world = body = SAME
         if self.omega is not None:
             found.append(("column", f"w={','.join(self.omega.columns)}"))
-            found += [("rate-unit", self.omega.unit)] * (self.omega.unit != "rad/s")
+            found += _unit("rate-unit", self.omega.unit, "rad/s", "w", self.omega.columns)
             found += [("omega-frame", "world")] * (self.omega.frame == "world")
             body = self.omega.axes if self.omega.frame == "body" else SAME
         if self.attitude is not None:
@@ -95,6 +97,17 @@ class Reading:
         for name, axes in (("world", world), ("body", body)):
             found += [(f"{name}-axes", axes_text(AXES[axes]))] * (axes != SAME)
         return found
+
+
+def _unit(option: str, unit: str, default: str, role: str, names: Sequence[str]) -> list[Option]:
+    """The option of a unit where another would be taken without it: the names' own, or SI's."""
+    own = default
+    for name in names:
+        try:
+            own = unit_in(name, role) or own
+        except UsageError:  # it has one of another quantity, and the option is needed
+            own = ""
+    return [(option, unit)] * (unit != own)
 
 
 def _option(key: str, value: str | float) -> str:
@@ -117,7 +130,7 @@ def _attitude_options(found: Attitude) -> list[Option]:
         options = [("column", f"r={names}")]
     else:
         options = [("column", f"e={names}"), ("euler", found.kind)]
-        options += [("angle-unit", found.unit)] * (found.unit != "rad")
+        options += _unit("angle-unit", found.unit, "rad", "e", found.columns)
     return options + [("attitude-is", found.direction)] * (found.direction != "world-from-body")
 
 
