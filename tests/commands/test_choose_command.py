@@ -247,7 +247,7 @@ def test_what_is_just_missed_differs_in_its_digits() -> None:
 def test_a_step_is_shown_in_the_digits_that_are_known() -> None:
     """Caught: 0.08080808 of a step that is known to 5 %."""
     assert [step_text(x) for x in (8 / 99, 0.002, 8 / 356769, 0.1, 1.0, 12.0)] == [
-        *("0.0808", "0.002", "0.0000224", "0.1", "1", "12"),
+        *("0.0808", "0.002", "2.24e-5", "0.1", "1", "12"),
     ]
 
 
