@@ -52,6 +52,8 @@ def keep_family() -> None:
 
 
 def _stop(_: int, __: FrameType | None) -> NoReturn:
+    # The kernel and the guard both send it: a second one would end the keeper before its family.
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
     raise _EndedError
 
 
