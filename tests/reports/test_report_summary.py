@@ -401,3 +401,10 @@ def test_a_run_that_diverges_fails_only_with_a_gate(trajectory: str, failed: boo
     gates = {"model": "pass", "equation": "pass", "trajectory": trajectory}
     who = ("t-handle", "dart", "6.20", "physics", "semi-implicit", 0.2, None)
     assert TaskResult(*who, "diverged", "", gates, "", None).failed is failed
+
+
+def test_an_error_that_is_no_number_has_no_size(record):
+    """Caught: "is off by up to not finite", of a run that blows up at a coarse step."""
+    sentence = summarise(large(record, float("inf"))).accuracy.sentence
+    assert "(dart semi-implicit) leaves the range of numbers" in sentence
+    assert "not finite" not in sentence

@@ -40,7 +40,7 @@ def inaccurate(
         order = orders.get((figure.engine, figure.integrator or ""))
         groups.setdefault(order, []).append(figure)
     parts = [_part(order, own, text) for order, own in groups.items()]
-    parts[0] = parts[0].replace(") by ", f") {what} by ", 1)
+    off = "; ".join(parts).replace(") by ", f") {what} by ", 1)
     name, knobs = found[0].scenario, {knob(one.timestep, one.accuracy) for one in found}
     at = f", {knobs.pop()}," if len(knobs) == 1 and all(knobs) else ""
     worst = next(iter(groups))
@@ -49,8 +49,7 @@ def inaccurate(
     reason = f"The reason is the {'step' if of_step else 'accuracy'}, too coarse for {scheme} here"
     scenario = requested_scenarios(run).get(name, name)
     return Advice(
-        f"Sound, not necessarily accurate: on {name}{at} {'; '.join(parts)}. "
-        f"{reason}; the equations hold.",
+        f"Sound, not necessarily accurate: on {name}{at} {off}. {reason}; the equations hold.",
         " ".join(["omegadot choose", shlex.quote(scenario), option, *_engines(run)]),
         "finds an engine and a step that suffice",
     )
@@ -61,9 +60,12 @@ def _part(order: float | None, figures: Sequence[Figure], text: Callable[[float]
 
     figures: the largest first.
     """
-    own = {figure.engine: figure for figure in reversed(figures)}
+    lost = [figure for figure in figures if not math.isfinite(figure.value)]
+    own = {figure.engine: figure for figure in reversed(lost or figures)}
     names = [_run(figure) for figure in sorted(own.values(), key=size, reverse=True)]
     whose = "undeclared order" if order is None else f"order {plain(order)}"
+    if lost:
+        return f"{whose} ({', '.join(names)}) leaves the range of numbers"
     most = "up to " if len({text(figure.value) for figure in figures}) > 1 else ""
     return f"{whose} ({', '.join(names)}) by {most}{text(figures[0].value)}"
 
