@@ -90,7 +90,7 @@ def test_bodies_chosen_otherwise_have_no_such_condition() -> None:
     """Every third of them, whatever its inertia is."""
     every = {id(one.system): k for k, one in enumerate(BODIES)}
     (text,) = causes(lambda system: every[id(system)] % 3 == 0)
-    assert text.startswith("the gyroscopic term is missing, on ")
+    assert text.startswith("the gyroscopic term is missing, not on ")
 
 
 def test_equal_moments_off_the_diagonal_have_no_hand() -> None:

@@ -57,7 +57,7 @@ def test_what_to_look_at_first_comes_first(record: Record) -> None:
         ("fail", "dart 1.0", "equation", "omega-dot residual"),
         ("fail", "dart 1.0", "scheme", "attitude unexplained and 2 more"),
         ("fail", "dart 1.0", "trajectory", "attitude error max"),
-        ("declared", "dart 1.0", "model", "model inertia"),
+        ("declared", "dart 1.0", "model", "inertia"),
     ]
     page = draw_page(failing(record))
     assert page.index("Sorted for reading") < page.index('<table class="judged')

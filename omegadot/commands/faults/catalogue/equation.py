@@ -64,7 +64,10 @@ def OmegaDotInWorld(self: Spoiled, states: State) -> Acceleration:
     return Acceleration(rotate(states.orientation, found.angular), found.linear)
 
 
-@forward_dynamics("asymmetric", named="omega-dot is the same at every state")
+@forward_dynamics(
+    "asymmetric",
+    named=("omega-dot is the same at every state", "each has the omega-dot of the first"),
+)
 def OmegaDotConstant(self: Spoiled, states: State) -> Acceleration:
     """omega-dot is that of the first state requested, whatever comes after."""
     found = self.inner.forward_dynamics(states)
