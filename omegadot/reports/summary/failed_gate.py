@@ -15,7 +15,7 @@ from omegadot.reports.text.numbers import knob, quantity, short, times_its_bound
 RESIDUAL = "residual"
 # Of the states as they are given, at random and along the exact motion.
 PLAIN = (RESIDUAL, "residual_on_path")
-SHARE = 1e-3  # from which on a residual is told in percent as well
+SHARE = 1e-3  # from which on a residual is given in percent as well
 Row = Mapping[str, Any]
 
 

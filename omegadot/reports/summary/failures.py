@@ -1,4 +1,4 @@
-"""The failing engines of a record, each with what is to be told of it."""
+"""The failing engines of a record, each with what is stated of it."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def worst_residual(figures: Iterable[Figure]) -> Figure | None:
     """The one that every table shows; None of none.
 
     Of the plain ones that are above their bound, that which is so by the most, as where a failure
-    is told of; else of the others; where all hold, the largest.
+    is stated; else of the others; where all hold, the largest.
     """
     found = list(figures)
     over = [figure for figure in found if excess_of(figure) > 1.0]

@@ -286,7 +286,7 @@ def _columns(
     failing: Collection[tuple[str, ...]],
     dearest: Sequence[tuple[str, ...]],
 ) -> tuple[Column, ...]:
-    # The engines stand first, those that fail before the others, as they are told of above the
+    # The engines stand first, those that fail before the others, as they are listed above the
     # table: of twenty a screen shows some.
     places = {who: place for place, who in enumerate(dearest)}
     keys = sorted(

@@ -120,13 +120,13 @@ GUARD = Guard()
 
 def _ask_to_end(leaders: Iterable[int]) -> None:
     """The same of several, which are not this process's own."""
-    asked = []
+    ending = []
     for leader in leaders if sys.platform == "linux" else ():
         with contextlib.suppress(psutil.Error, OSError):
             keeper = psutil.Process(leader)
             keeper.terminate()
-            asked.append(keeper)
-    psutil.wait_procs(asked, SECONDS_TO_END)
+            ending.append(keeper)
+    psutil.wait_procs(ending, SECONDS_TO_END)
 
 
 def guard(mark: str) -> None:

@@ -80,7 +80,7 @@ async function cellCard(link) {
   openCard(origins, nameOf(sourceOf(origins, own)), anchor, shown, [`Worst verdict: ${status}`, part].filter(Boolean).join("; ") + ".");
 }
 
-// A term is explained where it is asked for; its place in the glossary is a link from there.
+// A term is explained in place; its place in the glossary is a link from there.
 function termCard(link) {
   const card = element("card"), name = element(link.hash.slice(1)), place = made("a", { href: link.hash, textContent: "In the glossary" });
   element("card-title").textContent = name.textContent;
