@@ -248,18 +248,18 @@ def test_an_attitude_that_goes_through_other_numbers_is_named(name: str) -> None
     assert all(len(one) == 1 and text in one[0] for one in found), found
 
 
-def half_way(q: Array) -> Array:
-    """Half of the turn from the identity: of no convention."""
-    return normalize(q + np.array([1.0, 0.0, 0.0, 0.0]))
+def part_way(q: Array) -> Array:
+    """Some of the turn from the identity: of no convention."""
+    return normalize(q + np.array([0.7, 0.0, 0.0, 0.0]))
 
 
 def test_an_attitude_of_no_convention_has_no_cause() -> None:
-    assert causes(by_attitude(half_way), list(CASES)) == [[]] * len(CASES)
+    assert causes(by_attitude(part_way), list(CASES)) == [[]] * len(CASES)
 
 
 def test_what_is_seen_of_states_is_stated_where_no_cause_fits() -> None:
     """Caught: "no cause found" of states of which much is known."""
-    across = across_of(by_attitude(half_way), FREE)
+    across = across_of(by_attitude(part_way), FREE)
     text = known_state(across, FREE[0], EPS)
     assert text.startswith("none is known; the attitude that reads back is not the one set")
     assert f"at every attitude that is set, on all {len(FREE)} scenarios" in text

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from omegadot.diagnosis.models.attitude_charts import chart_misread
 from omegadot.diagnosis.models.euler_angles import angles_misread
 from omegadot.diagnosis.models.mistyped_matrix import matrix_mistyped
 from omegadot.reference_impl.rotations import attitude_angle, normalize
@@ -24,5 +25,8 @@ def attitude_misread(requested: Array, back: Array, eps: float) -> str:
     angles = angles_misread(requested, back, eps)
     if angles:
         return f"attitudes go through Euler angles of two conventions: {angles}"
+    chart = chart_misread(requested, back, eps)
+    if chart:
+        return f"attitudes {chart}"
     entry = matrix_mistyped(requested, back, eps)
     return f"attitudes go through a matrix that has one entry wrong: {entry}" * bool(entry)

@@ -21,6 +21,7 @@ from omegadot.diagnosis.models.linear_map import (
     is_product,
     unknown_map,
 )
+from omegadot.diagnosis.models.made_place import Place, made_place
 from omegadot.diagnosis.models.misreadings import Misreading, losses, misreadings, settings
 from omegadot.diagnosis.wording.features import SORTED_BY_KIND, Features, in_common
 from omegadot.diagnosis.wording.laws import law_of
@@ -82,7 +83,7 @@ def state_causes(
             found = _where(way.statement, every, fits)
             if found:
                 return [found]
-    product = _product(here, every)
+    product = _product(here, every) or made_place([_place(one) for one in every])
     if product:
         return [product]
     lost = [text for text in lost if SIGN not in text]
@@ -110,7 +111,11 @@ def state_causes(
 
 def _is_omega(one: _Round) -> bool:
     """Whether omega alone is another, and of a pivoted body what follows from it."""
-    return not _differs(one, _with(one, "angular_velocity"))
+    return _is_alone(one, "angular_velocity")
+
+
+def _place(one: _Round) -> Place:
+    return Place(one.case.system, one.requested, one.back, lambda made: not _differs(one, made))
 
 
 def _product(here: _Round, every: Sequence[_Round]) -> str:
@@ -168,10 +173,15 @@ def _every(across: Across, case: Case, eps: float) -> list[_Round]:
 
 
 def _attitude(every: Sequence[_Round]) -> str:
-    """A rule by which all attitudes come back; the rest of each state is that of these."""
-    text = attitude_misread(*_attitudes(every), every[0].eps)
-    if text and not any(_differs(one, _with(one, "orientation")) for one in every):
-        return f"{text}, as a state is set or read back"
+    """A rule by which all attitudes come back, or all that are wrong; the rest is that of these."""
+    if not all(_is_alone(one, "orientation") for one in every):
+        return ""
+    wrong = [one for one in every if one.fails(one.back)]
+    for shown in (every, wrong):
+        text = attitude_misread(*_attitudes(shown), every[0].eps)
+        if text:
+            fits = [any(one is other for other in shown) for one in every]
+            return _where(f"{text}, as a state is set or read back", every, fits)
     return ""
 
 
@@ -180,16 +190,17 @@ def _law(every: Sequence[_Round]) -> str:
     for field, (what, unit) in LAWS.items():
         pairs = [(getattr(one.requested, field), getattr(one.back, field)) for one in every]
         text = law_of(pairs, what, unit)
-        if text and not any(_differs(one, _with(one, field)) for one in every):
+        if text and all(_is_alone(one, field) for one in every):
             return f"{text} as a state is set or read back"
     return ""
 
 
-def _with(one: _Round, field: str) -> State:
-    """The state that was set with one quantity of the other; a pivoted body's place follows."""
+def _is_alone(one: _Round, field: str) -> bool:
+    """Whether one quantity alone is another, and of a pivoted body what follows from it or not."""
     made = replace(one.requested, **{field: getattr(one.back, field)})
-    pivoted = one.case.system.load.pivot is not None
-    return place_on_pivot(one.case.system, made) if pivoted and field in TURNS else made
+    follows = one.case.system.load.pivot is not None and field in TURNS
+    others = [made, place_on_pivot(one.case.system, made)] if follows else [made]
+    return any(not _differs(one, other) for other in others)
 
 
 def _undone(one: _Round, way: Misreading) -> State:
