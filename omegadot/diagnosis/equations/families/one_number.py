@@ -24,6 +24,9 @@ from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, System
 from omegadot.written import written
 
+# Of what the inertia about the pivot is made of: omega-dot is far from linear in it.
+FAR = (1.0, 0.1, 10.0)
+
 
 def _mass_scaled(form: Form, k: float) -> Form:
     return replace(form, torque_body=k * form.torque_body, torque_world=k * form.torque_world)
@@ -64,6 +67,16 @@ def _torque_of(frame: str) -> Family:
         lambda f, s, k: replace(f, **{name: k * getattr(f, name)}),
         scaled(f"the torque in {frame} axes"),
     )
+
+
+def _with_lever(family: Family) -> Family:
+    """A factor of what is there on a pivot off the centre of mass alone."""
+
+    def starts(system: System) -> list[Array]:
+        off = system.load.pivot is not None and bool(np.any(form_of(system).arm))
+        return [np.array([k]) for k in FAR] if off else []
+
+    return replace(family, starts=starts)
 
 
 def _parallel_axis(form: Form, system: System, k: float) -> Form:
@@ -132,21 +145,25 @@ ONE_NUMBER: tuple[Family, ...] = (
         ),
         guess=scale_of_inertia,
     ),
-    scalar(
-        "parallel axis",
-        "inertia",
-        1.0,
-        lambda s: s.load.pivot is not None and bool(np.any(form_of(s).arm)),
-        _parallel_axis,
-        scaled("what the parallel-axis theorem adds to the inertia for the pivot"),
+    _with_lever(
+        scalar(
+            "parallel axis",
+            "inertia",
+            1.0,
+            always,
+            _parallel_axis,
+            scaled("what the parallel-axis theorem adds to the inertia for the pivot"),
+        )
     ),
-    scalar(
-        "lever",
-        "lever",
-        1.0,
-        lambda s: s.load.pivot is not None and bool(np.any(form_of(s).arm)),
-        _lever_scaled,
-        scaled("the lever from the pivot to the centre of mass"),
+    _with_lever(
+        scalar(
+            "lever",
+            "lever",
+            1.0,
+            always,
+            _lever_scaled,
+            scaled("the lever from the pivot to the centre of mass"),
+        )
     ),
     scalar(
         "gravity",
@@ -242,7 +259,7 @@ ONE_NUMBER: tuple[Family, ...] = (
     Family(
         "mass",
         "mass",
-        lambda s: [] if s.load.pivot is None else [np.array([float(s.body.mass)])],
+        lambda s: [] if s.load.pivot is None else [k * np.array([float(s.body.mass)]) for k in FAR],
         lambda f, s, p: _of_system(with_body(s, mass=np.asarray(p[0]))),
         lambda s, p: (
             f"the dynamics act as if the mass were {number(float(p[0]), float(s.body.mass))} kg, "
