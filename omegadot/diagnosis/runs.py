@@ -10,6 +10,7 @@ from omegadot.diagnosis.models.fitted_misreadings import ADDED
 from omegadot.diagnosis.reported.clock import clock_of_runs
 from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.guesses import Guesses
+from omegadot.diagnosis.reported.late import late
 from omegadot.diagnosis.reported.one_of_all import one_of_all
 from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import SLACK, ReportedRun, reported_run
@@ -18,7 +19,6 @@ from omegadot.diagnosis.reported.run_causes import (
     SEEN,
     another_start,
     begin_apart,
-    late,
     misread,
     not_finite,
 )

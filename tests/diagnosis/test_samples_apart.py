@@ -9,9 +9,9 @@ import pytest
 from test_short_steps import own_run
 
 from omegadot.diagnosis.reported.field_causes import field_causes
+from omegadot.diagnosis.reported.late import late
 from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import ReportedRun
-from omegadot.diagnosis.reported.run_causes import late
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import normalize
 

@@ -3,42 +3,69 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
-from omegadot.diagnosis.equations.equation_form import Form, accelerations
+from omegadot.diagnosis.equations.equation_form import Form, accelerations, form_of, stacked
 from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.fitted import SLACK
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.stepping import step_body
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.system import State, System
 
 SEEN = 1e-9  # relative: a change that is smaller is not followed
 NOT_STEPPED = ("report", "precision")
 
 
+@dataclass(frozen=True, eq=False)
+class _Same:
+    """A system that is compared by identity: one is asked for again and again."""
+
+    system: System
+
+    def __hash__(self) -> int:
+        return id(self.system)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.system is self.system
+
+
+@lru_cache(maxsize=2)
+def _forms(same: _Same) -> dict[str, Form]:
+    """The equation with one thing wrong, by what is wrong, where it has a meaning here."""
+    system, right = same.system, form_of(same.system)
+    known = [h for h in hypotheses(system) if h.part not in NOT_STEPPED and not h.unlikely]
+    made = {one.text.strip(): wrong_form([one], system, right) for one in known}
+    return {text: form for text, form in made.items() if form is not None}
+
+
+def _distinct(system: System, states: State) -> dict[str, Form]:
+    """Those that change what moves the body at these states, each in a way of its own."""
+    every = _forms(_Same(system))
+    tried, true = (
+        accelerations(stacked([*every.values()]), states),
+        forward_dynamics(system, states),
+    )
+    changes = np.concatenate([tried.angular - true.angular, tried.linear - true.linear], axis=1)
+    sizes = np.max(np.abs(changes), axis=(1, 2))
+    least = SEEN * float(np.max(np.abs(true.angular)) + np.max(np.abs(true.linear)))
+    kept = list[int]()
+    for k in np.flatnonzero(~(sizes <= least)):
+        apart = np.max(np.abs(changes[kept] - changes[k]), axis=(1, 2))
+        if not np.any(apart <= SEEN * sizes[k]):
+            kept.append(int(k))
+    texts = [*every]
+    return {texts[k]: every[texts[k]] for k in kept}
+
+
 def other_equations(reported: ReportedRun) -> list[str]:
     """The scheme over another equation, all hypotheses side by side in lanes."""
-    system, states = reported.case.system, reported.own
-    known = [h for h in hypotheses(system) if h.part not in NOT_STEPPED and not h.unlikely]
-    found, forms, kept = list[str](), list[Form](), list[Array]()
-    true = forward_dynamics(system, states)
-    for one in known:
-        form = wrong_form([one], system)
-        if form is None:
-            continue
-        tried = accelerations(form, states)
-        change = np.concatenate([tried.angular - true.angular, tried.linear - true.linear])
-        size = float(np.max(np.abs(change)))
-        if size <= SEEN * float(np.max(np.abs(true.angular)) + np.max(np.abs(true.linear))):
-            continue
-        if any(np.max(np.abs(change - other)) <= SEEN * size for other in kept):
-            continue
-        found.append(one.text.strip())
-        forms.append(form)
-        kept.append(change)
+    distinct = _distinct(reported.case.system, reported.own)
+    found, forms = [*distinct], [*distinct.values()]
     if not forms:
         return []
     for run in (reported.beginning, reported):  # the beginning rules most of them out
