@@ -13,7 +13,6 @@ from omegadot.gates.errors.measured_run import (
     Declared,
     MeasuredRun,
     errors_of,
-    evidence_of,
 )
 from omegadot.gates.errors.orders import (
     ORDER_TOLERANCE,
@@ -107,27 +106,17 @@ def comparison_keys(integrator: Integrator, system: System) -> list[SchemeKey]:
     ]
 
 
-def match_row(
-    truth: Truth,
-    integrator: Integrator,
-    measured: MeasuredRun,
-    state: State,
-    measured_runs: list[MeasuredRun],
-) -> Row:
+def match_row(truth: Truth, integrator: Integrator, measured: MeasuredRun, state: State) -> Row:
     """The largest distance from the declared scheme, in parts of its round-off bound.
 
-    An engine that declares a scheme and steps another fails, even where its error shrinks as it
-    should: its declaration is wrong. A remaining distance passes where it shrinks faster than the
-    scheme's own error by an order at least: that is the same scheme, less finely computed.
-    For an engine that declares none, the row names the schemes that it equals.
+    A declared scheme is a claim on every step, and this run alone decides it: an engine that steps
+    another fails, however fast the difference vanishes with the step. Two schemes of order p always
+    differ by terms of that order or a higher one, so that an order tells nothing of which is
+    stepped. For an engine that declares none, the row names the schemes that it equals.
     """
     if measured.against_scheme:
         found = likeness(measured.against_scheme, measured.beside_scheme)
-        row = _declared_row(truth, integrator, measured, state, found)
-        if row.verdict == "fail" and _left_is_of_higher_order(measured, measured_runs, integrator):
-            note = f"equals {integrator.scheme} but for terms that vanish faster than its error"
-            return _row(found, "info", note)
-        return row
+        return _declared_row(truth, integrator, measured, state, found)
     if integrator.scheme is not None:
         note = f"the reference has no run of {integrator.scheme} to hold this against"
         return _row(NOTHING, "info", note)
@@ -141,22 +130,6 @@ def match_row(
 
 def _equalled(alike: Mapping[SchemeKey, Likeness]) -> str:
     return " and ".join(dict.fromkeys(key.scheme for key, one in alike.items() if one.agree))
-
-
-def _left_is_of_higher_order(
-    measured: MeasuredRun, measured_runs: list[MeasuredRun], integrator: Integrator
-) -> bool:
-    """Whether, in every channel, what is left of the scheme is rounding or of a higher order."""
-    for channel in CHANNELS:
-        evidence = evidence_of(measured, measured_runs, channel, integrator.orders.get(channel))
-        if evidence.left is None or evidence.equals_scheme:
-            continue
-        left, declared = evidence.orders[-1], integrator.orders.get(channel)
-        if left is None or declared is None or not left.resolved or evidence.excess > 1.0:
-            return False
-        if left.value < declared + 1 - ORDER_TOLERANCE:
-            return False
-    return True
 
 
 def _row(found: Likeness, verdict: str, note: str) -> Row:
