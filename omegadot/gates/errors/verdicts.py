@@ -112,6 +112,8 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
         largest = float(np.max(evidence.left[bounded]))
         until = "" if bounded.all() else ", until the scheme blows up"
         return Finding("explained", f"explained by {scheme}, to {written(largest, 2)}{until}")
+    if not known and evidence.left is not None:  # the declared scheme does not overflow here
+        return Finding("unexplained", NOT_FINITE)
     if evidence.floor is not None and np.all(evidence.error <= evidence.round_off + evidence.floor):
         return Finding("beyond", "not judged: below the resolvable floor of this motion")
     finite = bool(np.all(np.isfinite(evidence.error)))
