@@ -224,6 +224,16 @@ class Yardstick:
             **self.invariant_round_off(theta, speed, reach, swift),
         }
 
+    def apart_by(self, theta: Array, times: Array) -> dict[str, Array]:
+        """(n,) per channel: how far apart motions are whose attitude and omega are by theta, rad.
+
+        times: (n,) s, over which a velocity that is off moves the place.
+        """
+        speed = theta * self.rate * self.scale.lever
+        reach = theta * self.scale.lever + times * speed
+        own = {"omega": theta, "attitude": theta, "position": reach}
+        return {**own, **self.invariant_round_off(theta, speed, reach)}
+
     def invariant_round_off(
         self, theta: Array, speed: Array, reach: Array, swift: Array | float | None = None
     ) -> dict[str, Array]:

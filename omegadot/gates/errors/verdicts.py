@@ -69,6 +69,7 @@ class Evidence:
     of_momentum: (n,), what rounding may grow to where the angular momentum may be what is stepped.
     stiffness: ``h |omega| sqrt(J / lambda)`` of the finest step. Above one the body's thin axis may
     turn by more than a radian in a step, on which a sound scheme may err without any order.
+    opened: (n,), what rounding may make of it where it decides by which formula a step turns.
     """
 
     error: Array
@@ -81,11 +82,14 @@ class Evidence:
     highest: float = np.inf
     of_momentum: Array | None = None
     stiffness: float = 0.0
+    opened: Array | None = None
 
     @property
     def equals_scheme(self) -> bool:
         """Whether rounding alone, of either, tells the run from the reference's of its scheme."""
-        return self.left is not None and bool(np.all(self.left <= OF_EITHER * self.round_off))
+        opened = 0.0 if self.opened is None else self.opened
+        bound = OF_EITHER * self.round_off + opened
+        return self.left is not None and bool(np.all(self.left <= bound))
 
     @property
     def may_be_rounding(self) -> bool:

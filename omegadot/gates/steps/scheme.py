@@ -31,6 +31,7 @@ from omegadot.written import written
 
 GATE = "scheme"
 BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
+CHANGES = ": steps turn just as far as where its formula changes, and rounding decides which it is"
 NOTHING = Likeness(float("nan"), "omega", float("nan"))
 
 
@@ -142,7 +143,8 @@ def _declared_row(
     if np.isnan(found.share):
         return _row(found, "info", BLOWN_UP)
     if found.agree:
-        return _row(found, "pass", f"equals {integrator.scheme}, to {written(found.distance, 2)}")
+        note = f"equals {integrator.scheme}, to {written(found.distance, 2)}"
+        return _row(found, "pass", f"{note}{CHANGES if measured.opened else ''}")
     others = _equalled(like_schemes(truth, measured.sweep, state))
     instead = f"equals {others}" if others else "steps otherwise"
     text = f"declares {integrator.scheme}, but {instead}: {found.channel} diverges from it"

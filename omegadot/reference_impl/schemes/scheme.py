@@ -19,6 +19,17 @@ Step = Callable[[Motion, Array, Array, float | Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
+class FormulaChange:
+    """turn: rad, of a step, at which its formula changes.  jump: rad, what the two differ by there.
+
+    Where a turn is that to rounding, either formula is the scheme's.
+    """
+
+    turn: float
+    jump: float
+
+
+@dataclass(frozen=True)
 class Scheme:
     """A named scheme.
 
@@ -27,6 +38,7 @@ class Scheme:
     for a channel without truncation error, in which only rounding is left.
     solved_to: relative residual at which engines stop solving the step's equation; 0 at rounding.
     coordinates: those of one body in which it can be stepped.
+    change: of the formula of its turn, where it has two.
     """
 
     name: str
@@ -37,6 +49,7 @@ class Scheme:
     source: str = ""
     solved_to: float = 0.0
     coordinates: tuple[Coordinates, ...] = (*IN_WORLD, "body-spatial")
+    change: FormulaChange | None = None
 
     def order(
         self, channel: str, system: System, coordinates: Coordinates = "com-world"
