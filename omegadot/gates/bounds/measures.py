@@ -92,6 +92,14 @@ class Yardstick:
         moments = np.linalg.eigvalsh(np.asarray(moving_inertia(self.system), dtype=float))
         return float(self.rate * np.sqrt(moments[-1] / moments[0]))
 
+    @property
+    def by_momentum(self) -> float:
+        """``|J omega| / lambda`` over the rate: how far omega turns as the momentum is off by all.
+
+        J's least eigenvalue is lambda.
+        """
+        return self._momentum
+
     def with_eps(self, eps: float) -> Yardstick:
         """The same sizes for imitations in another precision.
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.gates.bounds.formula_change import opened_by_change
 from omegadot.gates.bounds.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
+from omegadot.gates.bounds.opened import opened_by_scheme
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.excess import excess_of
@@ -37,7 +37,7 @@ class MeasuredRun:
     """One engine's run, measured. All arrays are (n,) at the sample times, by channel.
 
     gained: whether the energy is larger (1) than the exact one or smaller (-1), where it is known.
-    opened: see `opened_by_change`; empty where it opens nothing.
+    opened: see `opened_by_scheme`; empty where it leaves nothing open.
     single: whether the engine works in single precision.  of_momentum: what rounding may grow to
     where the scheme is not known, and may step the angular momentum.  stiffness: see `Evidence`.
     """
@@ -58,6 +58,11 @@ class MeasuredRun:
         """How far rounding may take it from its scheme's run: each of the two may be off."""
         bounds = self.round_off.items()
         return {c: OF_EITHER * bound + self.opened.get(c, 0.0) for c, bound in bounds}
+
+    def equals_by_rounding(self, channel: str) -> bool:
+        """Whether rounding alone tells it from its scheme's run in a channel."""
+        bound = OF_EITHER * self.round_off[channel]
+        return bool(np.all(self.against_scheme[channel] <= bound))
 
     @property
     def saturating_error(self) -> Array:
@@ -85,7 +90,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
     faster = yardstick.faster(own.state, sweep.timestep) if own else 1.0
     how = (sweep.timestep, sweep.sample_steps, growth, faster)
     bounds = yardstick.round_off(*how)
-    opened = opened_by_change(yardstick, sweep, own, bounds["omega"]) if own else {}
+    opened = opened_by_scheme(yardstick, sweep, own, bounds["omega"]) if own else {}
     momentum = yardstick.of_momentum().round_off(*how) if own is None else bounds
     return MeasuredRun(
         sweep=sweep,

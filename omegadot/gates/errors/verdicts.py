@@ -69,7 +69,7 @@ class Evidence:
     of_momentum: (n,), what rounding may grow to where the angular momentum may be what is stepped.
     stiffness: ``h |omega| sqrt(J / lambda)`` of the finest step. Above one the body's thin axis may
     turn by more than a radian in a step, on which a sound scheme may err without any order.
-    opened: (n,), what rounding may make of it where it decides by which formula a step turns.
+    opened: (n,), what the scheme itself leaves open between its runs.
     """
 
     error: Array

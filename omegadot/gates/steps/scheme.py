@@ -31,7 +31,7 @@ from omegadot.written import written
 
 GATE = "scheme"
 BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
-CHANGES = ": steps turn just as far as where its formula changes, and rounding decides which it is"
+OPENED = "beyond rounding, within what the scheme itself leaves open"
 NOTHING = Likeness(float("nan"), "omega", float("nan"))
 
 
@@ -144,7 +144,8 @@ def _declared_row(
         return _row(found, "info", BLOWN_UP)
     if found.agree:
         note = f"equals {integrator.scheme}, to {written(found.distance, 2)}"
-        return _row(found, "pass", f"{note}{CHANGES if measured.opened else ''}")
+        rounded = all(map(measured.equals_by_rounding, CHANNELS))
+        return _row(found, "pass", note if rounded else f"{note}, {OPENED}")
     others = _equalled(like_schemes(truth, measured.sweep, state))
     instead = f"equals {others}" if others else "steps otherwise"
     text = f"declares {integrator.scheme}, but {instead}: {found.channel} diverges from it"
