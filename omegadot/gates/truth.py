@@ -42,10 +42,12 @@ class Companion:
     state: State
     growth: Array
     omega_dot: Array
+    scheme: str = ""
 
     def until(self, count: int) -> Companion:
         """Its first samples."""
-        return Companion(self.state[:count], self.growth[:count], self.omega_dot[:count])
+        first = (self.state[:count], self.growth[:count], self.omega_dot[:count])
+        return Companion(*first, self.scheme)
 
 
 # Companions by scheme over the steps of a sweep: of these schemes, or of all that may be stepped.

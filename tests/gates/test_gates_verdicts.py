@@ -147,6 +147,9 @@ def test_one_sample_that_is_no_number_fails(place: int) -> None:
     # Finer steps may show that this one is too large; as long as they do not, it fails.
     fine = judge(evidence(error, None, None, ObservedOrder(1.0, True)), "euler", 1)
     assert fine == Finding("beyond", "not judged: it blows up at so large a step")
+    # But not where a scheme is declared that does not overflow there: it is another one then.
+    left = judge(evidence(error, error, None, SLOW, ObservedOrder(2.0, True)), "euler", 1)
+    assert left == Finding("unexplained", "not finite")
     hidden = judge(evidence(error, None, None, ObservedOrder(1.0, False, 0.0, SATURATE)), "e", 1)
     assert hidden == Finding("unsettled", "not finite")
 

@@ -21,6 +21,7 @@ from omegadot.workers.engine_end.worker import failure
 from omegadot.workers.wire import one_line
 
 EULER = Integrator("euler", "semi-implicit-euler", {"omega": 1, "energy": None})
+SPATIAL = replace(EULER, coordinates="body-spatial")
 ENGINE = Description("engine", "1.0", (EULER,), features=frozenset({"free"}))
 BODY = Body(np.array(1.0), np.zeros(3), np.eye(3))
 
@@ -42,7 +43,7 @@ def test_what_is_right_passes_as_it_is() -> None:
 class WithSteps:
     """An adapter without the parameter."""
 
-    description = replace(ENGINE, integrators=(replace(EULER, knob="accuracy"),))
+    description = replace(ENGINE, integrators=(replace(EULER, scheme=None, knob="accuracy"),))
 
     def run(self, *_: Any) -> None: ...
 
@@ -166,6 +167,14 @@ def test_as_many_bodies_as_were_loaded(bodies: Any, text: str) -> None:
         ({"integrators": (replace(EULER, finest_accuracy="x"),)}, "the finest accuracy of euler"),
         ({"integrators": (replace(EULER, scheme=1),)}, "the scheme of euler"),
         ({"integrators": (replace(EULER, scheme="mine"),)}, "'mine', which the reference lacks"),
+        (
+            {"integrators": (replace(EULER, knob="accuracy"),)},
+            "of an error-controlled integrator are no scheme's",
+        ),
+        (
+            {"integrators": (replace(SPATIAL, scheme="munthe-kaas-rk4"),)},
+            "in which the reference does not step it; give one of com-world, origin-world, or",
+        ),
         ({"integrators": (replace(EULER, orders={"omega": -3}),)}, "in omega is -3; give a whole"),
         ({"integrators": (replace(EULER, orders={"omega": 0}),)}, "in omega is 0; give a whole"),
         (

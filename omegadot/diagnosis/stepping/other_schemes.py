@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT
 from omegadot.diagnosis.stepping.slips import slipped
 from omegadot.diagnosis.stepping.step_ends import (
     End,
@@ -58,6 +59,17 @@ def other_schemes(reported: ReportedRun) -> list[str]:
             names = " or ".join(found)
             return [f"it is stepped by {names}, though {reported.integrator.scheme} is declared"]
     return []
+
+
+def explicit_schemes(reported: ReportedRun) -> list[str]:
+    """Explicit schemes that the reference has not and that make the run; all that fit."""
+    way, declared = reported.integrator.coordinates, reported.integrator.scheme
+    return [
+        f"it is stepped by {name}, though {declared} is declared"
+        for name, scheme in EXPLICIT.items()
+        if way in scheme.coordinates
+        and reported.is_made(partial(ReportedRun.stepped, scheme=scheme))
+    ]
 
 
 def _ended(end: End, run: ReportedRun, system: System | None = None) -> State:

@@ -10,7 +10,12 @@ from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.fitted import damped, longer
 from omegadot.diagnosis.stepping.limits import asleep, clipped, held, speed, still, turn_held
 from omegadot.diagnosis.stepping.other_equations import other_equations
-from omegadot.diagnosis.stepping.other_schemes import other_ends, other_schemes, slips
+from omegadot.diagnosis.stepping.other_schemes import (
+    explicit_schemes,
+    other_ends,
+    other_schemes,
+    slips,
+)
 from omegadot.gates.bounds.scales import norm
 from omegadot.harness.judging.judged_run import is_finite
 
@@ -27,11 +32,14 @@ def stepping_causes(reported: ReportedRun, equations: bool) -> Iterator[str]:
     if not is_steppable(reported):
         return
     yield from filter(None, (asleep(reported), still(reported)))
-    if reported.is_declared:
-        yield from other_schemes(reported)
+    others = other_schemes(reported) if reported.is_declared else []
+    yield from others
     yield from other_ends(reported)
     yield from filter(None, (turn_held(reported),))
-    yield from slips(reported)
+    slipped = slips(reported)
+    yield from slipped
+    if reported.is_declared and not others and not slipped:  # a slip may make the same steps
+        yield from explicit_schemes(reported)
     with_number = (longer, damped, clipped, held, speed)
     yield from filter(None, (cause(reported) for cause in with_number))
     yield from other_equations(reported) if equations else ()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from omegadot.gates.bounds.opened import opened_by_scheme
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.measured_run import CHANNELS, ROTATION
 from omegadot.gates.truth import SchemeKey, Truth
@@ -62,5 +63,7 @@ def like_schemes(truth: Truth, sweep: Sweep, state: State) -> dict[SchemeKey, Li
             faster = yardstick.faster(own.state, timestep)
             bounds = yardstick.round_off(timestep, sweep.sample_steps, own.growth, faster)
             distances = {c: yardstick.distance(c, state, own.state) for c in CHANNELS}
-            found[key] = likeness(distances, {c: 2.0 * bounds[c] for c in CHANNELS})
+            opened = opened_by_scheme(yardstick, sweep, own, bounds["omega"])
+            beside = {c: 2.0 * bounds[c] + opened.get(c, 0.0) for c in CHANNELS}
+            found[key] = likeness(distances, beside)
     return found

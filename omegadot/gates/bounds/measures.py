@@ -92,6 +92,14 @@ class Yardstick:
         moments = np.linalg.eigvalsh(np.asarray(moving_inertia(self.system), dtype=float))
         return float(self.rate * np.sqrt(moments[-1] / moments[0]))
 
+    @property
+    def by_momentum(self) -> float:
+        """``|J omega| / lambda`` over the rate: how far omega turns as the momentum is off by all.
+
+        J's least eigenvalue is lambda.
+        """
+        return self._momentum
+
     def with_eps(self, eps: float) -> Yardstick:
         """The same sizes for imitations in another precision.
 
@@ -223,6 +231,16 @@ class Yardstick:
             "position": reach,
             **self.invariant_round_off(theta, speed, reach, swift),
         }
+
+    def apart_by(self, theta: Array, times: Array) -> dict[str, Array]:
+        """(n,) per channel: how far apart motions are whose attitude and omega are by theta, rad.
+
+        times: (n,) s, over which a velocity that is off moves the place.
+        """
+        speed = theta * self.rate * self.scale.lever
+        reach = theta * self.scale.lever + times * speed
+        own = {"omega": theta, "attitude": theta, "position": reach}
+        return {**own, **self.invariant_round_off(theta, speed, reach)}
 
     def invariant_round_off(
         self, theta: Array, speed: Array, reach: Array, swift: Array | float | None = None

@@ -8,6 +8,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.gates.bounds.measures import INVARIANT_CHANNELS, TRAJECTORY_UNITS
+from omegadot.gates.bounds.opened import opened_by_scheme
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.excess import excess_of
@@ -36,6 +37,7 @@ class MeasuredRun:
     """One engine's run, measured. All arrays are (n,) at the sample times, by channel.
 
     gained: whether the energy is larger (1) than the exact one or smaller (-1), where it is known.
+    opened: see `opened_by_scheme`; empty where it leaves nothing open.
     single: whether the engine works in single precision.  of_momentum: what rounding may grow to
     where the scheme is not known, and may step the angular momentum.  stiffness: see `Evidence`.
     """
@@ -49,11 +51,18 @@ class MeasuredRun:
     single: bool = field(default=False, kw_only=True)
     of_momentum: dict[str, Array] = field(default_factory=dict, kw_only=True)
     stiffness: float = field(default=0.0, kw_only=True)
+    opened: dict[str, Array] = field(default_factory=dict, kw_only=True)
 
     @property
     def beside_scheme(self) -> dict[str, Array]:
         """How far rounding may take it from its scheme's run: each of the two may be off."""
-        return {channel: OF_EITHER * bound for channel, bound in self.round_off.items()}
+        bounds = self.round_off.items()
+        return {c: OF_EITHER * bound + self.opened.get(c, 0.0) for c, bound in bounds}
+
+    def equals_by_rounding(self, channel: str) -> bool:
+        """Whether rounding alone tells it from its scheme's run in a channel."""
+        bound = OF_EITHER * self.round_off[channel]
+        return bool(np.all(self.against_scheme[channel] <= bound))
 
     @property
     def saturating_error(self) -> Array:
@@ -81,6 +90,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
     faster = yardstick.faster(own.state, sweep.timestep) if own else 1.0
     how = (sweep.timestep, sweep.sample_steps, growth, faster)
     bounds = yardstick.round_off(*how)
+    opened = opened_by_scheme(yardstick, sweep, own, bounds["omega"]) if own else {}
     momentum = yardstick.of_momentum().round_off(*how) if own is None else bounds
     return MeasuredRun(
         sweep=sweep,
@@ -92,6 +102,7 @@ def measure(truth: Truth, sweep: Sweep, state: State, own: Companion | None) -> 
         single=yardstick.eps > EPS,
         of_momentum={channel: _sizes(bound) for channel, bound in momentum.items()},
         stiffness=sweep.timestep * yardstick.thin_rate,
+        opened=opened,
     )
 
 
@@ -134,7 +145,8 @@ def evidence_of(
             excess = max(excess, excess_of(own, known, declared + part))
     bound, floor = measured.round_off[channel], measured.floor.get(channel)
     stiffness = min(run.stiffness for run in measured_runs)
-    more = (excess, finer >= FEWEST_STEPS, highest, measured.of_momentum.get(channel), stiffness)
+    of_momentum, opened = measured.of_momentum.get(channel), measured.opened.get(channel)
+    more = (excess, finer >= FEWEST_STEPS, highest, of_momentum, stiffness, opened)
     return Evidence(measured.error[channel], bound, left, tuple(orders), floor, *more)
 
 

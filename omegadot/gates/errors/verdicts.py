@@ -69,6 +69,7 @@ class Evidence:
     of_momentum: (n,), what rounding may grow to where the angular momentum may be what is stepped.
     stiffness: ``h |omega| sqrt(J / lambda)`` of the finest step. Above one the body's thin axis may
     turn by more than a radian in a step, on which a sound scheme may err without any order.
+    opened: (n,), what the scheme itself leaves open between its runs.
     """
 
     error: Array
@@ -81,11 +82,14 @@ class Evidence:
     highest: float = np.inf
     of_momentum: Array | None = None
     stiffness: float = 0.0
+    opened: Array | None = None
 
     @property
     def equals_scheme(self) -> bool:
         """Whether rounding alone, of either, tells the run from the reference's of its scheme."""
-        return self.left is not None and bool(np.all(self.left <= OF_EITHER * self.round_off))
+        opened = 0.0 if self.opened is None else self.opened
+        bound = OF_EITHER * self.round_off + opened
+        return self.left is not None and bool(np.all(self.left <= bound))
 
     @property
     def may_be_rounding(self) -> bool:
@@ -112,6 +116,8 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
         largest = float(np.max(evidence.left[bounded]))
         until = "" if bounded.all() else ", until the scheme blows up"
         return Finding("explained", f"explained by {scheme}, to {written(largest, 2)}{until}")
+    if not known and evidence.left is not None:  # the declared scheme does not overflow here
+        return Finding("unexplained", NOT_FINITE)
     if evidence.floor is not None and np.all(evidence.error <= evidence.round_off + evidence.floor):
         return Finding("beyond", "not judged: below the resolvable floor of this motion")
     finite = bool(np.all(np.isfinite(evidence.error)))

@@ -13,7 +13,6 @@ from omegadot.gates.errors.measured_run import (
     Declared,
     MeasuredRun,
     errors_of,
-    evidence_of,
 )
 from omegadot.gates.errors.orders import (
     ORDER_TOLERANCE,
@@ -32,6 +31,7 @@ from omegadot.written import written
 
 GATE = "scheme"
 BLOWN_UP = "not judged: the scheme itself blows up at so large a step"
+OPENED = "beyond rounding, within what the scheme itself leaves open"
 NOTHING = Likeness(float("nan"), "omega", float("nan"))
 
 
@@ -107,27 +107,17 @@ def comparison_keys(integrator: Integrator, system: System) -> list[SchemeKey]:
     ]
 
 
-def match_row(
-    truth: Truth,
-    integrator: Integrator,
-    measured: MeasuredRun,
-    state: State,
-    measured_runs: list[MeasuredRun],
-) -> Row:
+def match_row(truth: Truth, integrator: Integrator, measured: MeasuredRun, state: State) -> Row:
     """The largest distance from the declared scheme, in parts of its round-off bound.
 
-    An engine that declares a scheme and steps another fails, even where its error shrinks as it
-    should: its declaration is wrong. A remaining distance passes where it shrinks faster than the
-    scheme's own error by an order at least: that is the same scheme, less finely computed.
-    For an engine that declares none, the row names the schemes that it equals.
+    A declared scheme is a claim on every step, and this run alone decides it: an engine that steps
+    another fails, however fast the difference vanishes with the step. Two schemes of order p always
+    differ by terms of that order or a higher one, so that an order tells nothing of which is
+    stepped. For an engine that declares none, the row names the schemes that it equals.
     """
     if measured.against_scheme:
         found = likeness(measured.against_scheme, measured.beside_scheme)
-        row = _declared_row(truth, integrator, measured, state, found)
-        if row.verdict == "fail" and _left_is_of_higher_order(measured, measured_runs, integrator):
-            note = f"equals {integrator.scheme} but for terms that vanish faster than its error"
-            return _row(found, "info", note)
-        return row
+        return _declared_row(truth, integrator, measured, state, found)
     if integrator.scheme is not None:
         note = f"the reference has no run of {integrator.scheme} to hold this against"
         return _row(NOTHING, "info", note)
@@ -143,22 +133,6 @@ def _equalled(alike: Mapping[SchemeKey, Likeness]) -> str:
     return " and ".join(dict.fromkeys(key.scheme for key, one in alike.items() if one.agree))
 
 
-def _left_is_of_higher_order(
-    measured: MeasuredRun, measured_runs: list[MeasuredRun], integrator: Integrator
-) -> bool:
-    """Whether, in every channel, what is left of the scheme is rounding or of a higher order."""
-    for channel in CHANNELS:
-        evidence = evidence_of(measured, measured_runs, channel, integrator.orders.get(channel))
-        if evidence.left is None or evidence.equals_scheme:
-            continue
-        left, declared = evidence.orders[-1], integrator.orders.get(channel)
-        if left is None or declared is None or not left.resolved or evidence.excess > 1.0:
-            return False
-        if left.value < declared + 1 - ORDER_TOLERANCE:
-            return False
-    return True
-
-
 def _row(found: Likeness, verdict: str, note: str) -> Row:
     return Row(GATE, found.channel, "match", found.share, "1", 1.0, verdict, note)
 
@@ -169,7 +143,9 @@ def _declared_row(
     if np.isnan(found.share):
         return _row(found, "info", BLOWN_UP)
     if found.agree:
-        return _row(found, "pass", f"equals {integrator.scheme}, to {written(found.distance, 2)}")
+        note = f"equals {integrator.scheme}, to {written(found.distance, 2)}"
+        rounded = all(map(measured.equals_by_rounding, CHANNELS))
+        return _row(found, "pass", note if rounded else f"{note}, {OPENED}")
     others = _equalled(like_schemes(truth, measured.sweep, state))
     instead = f"equals {others}" if others else "steps otherwise"
     text = f"declares {integrator.scheme}, but {instead}: {found.channel} diverges from it"

@@ -87,7 +87,7 @@ def _judge_steps(
             continue
         if integrator.knob == "fixed-accuracy":
             findings = accuracy.fixed(findings)
-        match = scheme.match_row(truth, integrator, measured, state, known)
+        match = scheme.match_row(truth, integrator, measured, state)
         orders = scheme.order_rows(seen, declared, measured, min(r.stiffness for r in known))
         if integrator.knob == "fixed-accuracy":
             orders = accuracy.fixed_orders(orders)

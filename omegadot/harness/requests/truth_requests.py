@@ -56,8 +56,8 @@ def case_companions(
         answer = _requested(reference, case, "companion", **fields)
         if answer.ok:
             for sweep, run in zip(sweeps, answer.result, strict=True):
-                companion = Companion(State(**run["state"]), run["growth"], run["omega_dot"])
-                found[key, sweep.timestep] = companion
+                parts = (State(**run["state"]), run["growth"], run["omega_dot"])
+                found[key, sweep.timestep] = Companion(*parts, key.scheme)
     return found
 
 

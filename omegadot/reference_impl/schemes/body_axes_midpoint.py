@@ -50,5 +50,6 @@ SCHEME = Scheme(
     special={"torque-free": {"omega": 2, "attitude": 2, "angular_momentum": 2}},
     source="MuJoCo's changelog, versions 3.7.0 and 3.11.0, the linear velocity by its steps",
     solved_to=3e-13,
+    solved_torque=1e-13,
     coordinates=IN_WORLD,
 )

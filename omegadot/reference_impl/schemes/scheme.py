@@ -19,6 +19,17 @@ Step = Callable[[Motion, Array, Array, float | Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
+class FormulaChange:
+    """turn: rad, of a step, at which its formula changes.  jump: rad, what the two differ by there.
+
+    Where a turn is that to rounding, either formula is the scheme's.
+    """
+
+    turn: float
+    jump: float
+
+
+@dataclass(frozen=True)
 class Scheme:
     """A named scheme.
 
@@ -26,7 +37,9 @@ class Scheme:
     special: where a simpler system does better, per kind of system (see `kinds_of`); None stands
     for a channel without truncation error, in which only rounding is left.
     solved_to: relative residual at which engines stop solving the step's equation; 0 at rounding.
+    solved_torque: N m, the residual torque at which they stop in any case.
     coordinates: those of one body in which it can be stepped.
+    change: of the formula of its turn, where it has two.
     """
 
     name: str
@@ -36,7 +49,9 @@ class Scheme:
     special: Mapping[str, Mapping[str, int | None]] = field(default_factory=dict)
     source: str = ""
     solved_to: float = 0.0
+    solved_torque: float = 0.0
     coordinates: tuple[Coordinates, ...] = (*IN_WORLD, "body-spatial")
+    change: FormulaChange | None = None
 
     def order(
         self, channel: str, system: System, coordinates: Coordinates = "com-world"

@@ -13,7 +13,7 @@ from omegadot.reference_impl.rotations import (
     rotation_matrix,
 )
 from omegadot.reference_impl.schemes.motion import Motion
-from omegadot.reference_impl.schemes.scheme import IN_WORLD, Scheme, every_channel
+from omegadot.reference_impl.schemes.scheme import IN_WORLD, FormulaChange, Scheme, every_channel
 from omegadot.reference_impl.system import Array
 
 SHORT = 1e-3  # rad
@@ -85,4 +85,5 @@ SCHEME = Scheme(
     special={"free": {"linear_momentum": None}},
     source="DART (dart/math/Geometry.cpp, expMapRot and logMap), confirmed by its steps",
     coordinates=IN_WORLD,
+    change=FormulaChange(SHORT, SHORT**3 / 6 + SHORT**4 / 4),  # see `_turned_short`
 )

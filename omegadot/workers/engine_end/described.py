@@ -111,6 +111,7 @@ def _check_integrator(integrator: Integrator) -> None:
             f"the coordinates of {integrator.name} are {integrator.coordinates!r}; "
             f"give one of {', '.join(COORDINATES)}"
         )
+    _check_scheme_is_held(integrator)
     expect(f"the note of {integrator.name}", integrator.note, str)
     expect(f"one_step of {integrator.name}", integrator.one_step, bool)
     expect(f"the orders of {integrator.name}", integrator.orders, dict)
@@ -122,6 +123,25 @@ def _check_integrator(integrator: Integrator) -> None:
             )
         if order is not None:
             _check_order(f"the order of {integrator.name} in {channel}", order)
+
+
+def _check_scheme_is_held(integrator: Integrator) -> None:
+    """A scheme that the reference cannot step as declared would be held against nothing."""
+    if integrator.scheme is None:
+        return
+    if integrator.knob != "timestep":
+        raise AnswerError(
+            f"{integrator.name} declares the scheme {integrator.scheme} and the knob "
+            f"{integrator.knob}; the steps of an error-controlled integrator are no scheme's: give "
+            "the scheme None"
+        )
+    known = SCHEMES[integrator.scheme].coordinates
+    if integrator.coordinates not in known:
+        raise AnswerError(
+            f"{integrator.name} declares the scheme {integrator.scheme} in the coordinates "
+            f"{integrator.coordinates}, in which the reference does not step it; give one of "
+            f"{', '.join(known)}, or the scheme None"
+        )
 
 
 def _check_order(what: str, order: Any) -> None:
