@@ -120,8 +120,10 @@ def _making(
 
 def _states_less(one: Change, other: Change) -> bool:
     """Whether it changes a part of the other's slots in the same way."""
-    same = one.sources == other.sources
-    return same and ({*one.slots} < {*other.slots} or (one.slots == other.slots and other.cold))
+    if one.sources != other.sources:
+        return False
+    later = one.slots == other.slots and other.cold and not one.cold
+    return later or {*one.slots} < {*other.slots}
 
 
 def _known(name: str, shown: Sequence[_Beginning]) -> Iterator[Scheme]:

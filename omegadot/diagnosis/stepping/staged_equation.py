@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.diagnosis.stepping.stage_changes import Change, Source
+from omegadot.diagnosis.stepping.stage_changes import Change
+from omegadot.diagnosis.stepping.stage_sets import Source
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import weight
