@@ -15,7 +15,7 @@ from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.share_laws import laws_of
 from omegadot.diagnosis.stepping.share_points import points_of
 from omegadot.diagnosis.stepping.solved import solved_causes
-from omegadot.diagnosis.stepping.stage_slips import stage_slips
+from omegadot.diagnosis.stepping.stage_slips import slips_in_stages, stage_slips
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
 
@@ -76,6 +76,7 @@ def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
         terms.append((name, one.share))
         texts += either([f"in the steps, {text.format(name)}" for text in laws_of(points)])
     texts = texts or old_operands(by, [run], least=1)
+    texts = texts or slips_in_stages(by.scheme.name, [run], least=1)
     if len(texts) > 1:
         return []
     return texts or solved_causes(by, [run]) or place_causes(by, [run])

@@ -22,25 +22,26 @@ EXPLAINS = 0.8  # of the runs that fail
 LEAST_RUNS = 3  # of which one shows a mistake that is made in every run
 
 
-def stage_slips(
-    integrator: Integrator, by: SchemeOf | None, runs: Sequence[KeptRun], least: int = LEAST_RUNS
-) -> list[str]:
+def stage_slips(integrator: Integrator, by: SchemeOf | None, runs: Sequence[KeptRun]) -> list[str]:
     """The change in some stages that makes all runs; none where none does, or too many do.
 
     by: the scheme that is declared or found. Where none is declared, and this one has no such
     change, the others of the order that is declared are tried.
     """
-    own = [by.scheme.name] if by is not None and by.scheme.name in STAGED else []
-    found = [text for name in own for text in _of_scheme(name, runs, least)]
+    own = [by.scheme.name] if by is not None else []
+    found = [text for name in own for text in slips_in_stages(name, runs)]
     if not found and integrator.scheme is None:
         order = integrator.orders.get("omega")
         others = [n for n in STAGED if order in (None, scheme_named(n).orders["omega"])]
-        every = (_of_scheme(name, runs, least) for name in others if name not in own)
+        every = (slips_in_stages(name, runs) for name in others if name not in own)
         found = [text for texts in every for text in texts]
     return either(found) if len(found) <= MOST_NAMED else []
 
 
-def _of_scheme(name: str, runs: Sequence[KeptRun], least: int) -> list[str]:
+def slips_in_stages(name: str, runs: Sequence[KeptRun], least: int = LEAST_RUNS) -> list[str]:
+    """The changes in some stages of this scheme of which each makes all runs; often none."""
+    if name not in STAGED:
+        return []
     short = sorted(
         (run for run in runs if run.sweep.every <= MOST_STEPS), key=lambda run: run.sweep.every
     )
