@@ -16,6 +16,7 @@ from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT
 from omegadot.diagnosis.stepping.kept_run import CHANNELS, KeptRun, SchemeOf
 from omegadot.diagnosis.stepping.memory import EARLIER, PLACES, Memory
 from omegadot.diagnosis.stepping.slips import OF_SCHEME
+from omegadot.diagnosis.stepping.staged_steps import STAGED
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.inertia import lever
@@ -58,8 +59,9 @@ def old_operands(by: SchemeOf, runs: Sequence[KeptRun], least: int = LEAST_RUNS)
     name = by.scheme.name
     if name not in STEPPED or by.coordinates != "com-world":
         return []
-    # within a step of these schemes the slips know the places
-    places = PLACES[:3] if name in OF_SCHEME and name not in EXPLICIT else PLACES
+    # within a step of these schemes the slips and the changes of single stages know the places
+    within = name in STAGED or (name in OF_SCHEME and name not in EXPLICIT)
+    places = PLACES[:3] if within else PLACES
     shows = [run for run in runs if run.fails and not run.sound(by)[:MOST_SAMPLES].all()]
     failing = len(shows)
     if failing < least:

@@ -15,6 +15,7 @@ from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.share_laws import laws_of
 from omegadot.diagnosis.stepping.share_points import points_of
 from omegadot.diagnosis.stepping.solved import solved_causes
+from omegadot.diagnosis.stepping.stage_slips import slips_in_stages, stage_slips
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
 
@@ -51,12 +52,14 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
     """What makes all runs of an integrator together; none where none does."""
     failing = {run.name for run in runs if run.fails}
     with np.errstate(all="ignore"):
-        by = scheme_of(integrator, runs) if len(failing) >= SCENARIOS else None
-        if by is None:
+        if len(failing) < SCENARIOS:
             return []
-        chosen = [run.short for run in _chosen(runs)]
+        by, chosen = scheme_of(integrator, runs), [run.short for run in _chosen(runs)]
+        if by is None:
+            return stage_slips(integrator, by, chosen)
         found = length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
+        found = found or stage_slips(integrator, by, chosen)
         return found or solved_causes(by, runs) or place_causes(by, runs)
 
 
@@ -73,6 +76,7 @@ def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
         terms.append((name, one.share))
         texts += either([f"in the steps, {text.format(name)}" for text in laws_of(points)])
     texts = texts or old_operands(by, [run], least=1)
+    texts = texts or slips_in_stages(by.scheme.name, [run], least=1)
     if len(texts) > 1:
         return []
     return texts or solved_causes(by, [run]) or place_causes(by, [run])
