@@ -108,7 +108,7 @@ class CaseCauses:
             return Subject(of_states=True) if failed == {("model", "state")} and unknown else None
         if ("equation", "residual") not in failed or any(gate == "model" for gate, _ in failed):
             return None
-        one = self._across.chosen(self._case.name, FORWARD)
+        one = self._across.acting(self._case.name, FORWARD)
         return Subject(one) if one is not None or text.startswith(UNKNOWN) else None
 
     def _of_steps(self, own: IntegratorCauses, text: str) -> Subject | None:
@@ -121,7 +121,7 @@ class CaseCauses:
                 Subject(integrator=own.integrator, by_length=True) if not is_named(text) else None
             )
         where = (self._case.name, source_of(own.integrator.name))
-        one = self._across.chosen(*where)
+        one = self._across.acting(*where)
         if one is not None and self._across.cause(*where) in text:
             return Subject(one, own.integrator)
         moves = text in (moves_by_cause(steps), *kinematic_causes(steps))

@@ -66,6 +66,7 @@ class Observations:
             if one.base is None:
                 continue
             both = one.known & one.base.known & (one.wrong != one.base.wrong)
-            if np.any(both & (of(one.traits) != of(one.base.traits))):
+            here, there = of(one.traits), of(one.base.traits)
+            if np.any(both & (here != there) & ~np.isnan(here) & ~np.isnan(there)):
                 return True
         return False

@@ -56,7 +56,7 @@ def kind_that_sorts(seen: Observations) -> str:
             texts = [
                 worded(text, bool(column[wrong & ~np.isnan(column)][0])) for text, column in found
             ]
-            texts = plainest(_about_either(texts))
+            texts = plainest(_about_either(_signed(texts)))
             decided = [t for t, _ in found if seen.decided_by_one_change(_of(tier, t))]
             return texts[0] if len(texts) == 1 and decided else ""
     return ""
@@ -127,9 +127,17 @@ def _sorts(column: Array, wrong: Flags) -> bool:
     """Whether it holds where the fault shows, and nowhere else; or the other way about."""
     said = ~np.isnan(column)
     here, there = column[said & wrong], column[said & ~wrong]
-    if min(len(here), len(there)) < LEAST:
+    sides = ((len(here), np.count_nonzero(wrong)), (len(there), np.count_nonzero(~wrong)))
+    if any(own < LEAST or 2 * own < every for own, every in sides):
         return False
     return bool(np.all(here == here[0]) and np.all(there == 1.0 - here[0]))
+
+
+def _signed(texts: list[str]) -> list[str]:
+    """Where no component is zero, what is negative is not positive."""
+    other = {"is not positive": "is negative", "is not negative": "is positive"}
+    also = {t: t.replace(no, yes) for t in texts for no, yes in other.items() if no in t}
+    return [t for t in texts if also.get(t) not in texts]
 
 
 def _about_either(texts: list[str]) -> list[str]:

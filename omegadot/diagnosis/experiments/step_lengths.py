@@ -25,11 +25,14 @@ APART = 3.0  # times: by which two rates distinguish a turn from a length
 
 @dataclass(frozen=True)
 class Jump:
-    """Between two lengths (s) of steps from a state of rate rad/s; above: longer ones are worse."""
+    """Between two lengths of steps, s; above: longer ones are worse.
+
+    turn: rad, between which the turn of such a step lies, by omega at its start or its end.
+    """
 
     low: float
     high: float
-    rate: float
+    turn: tuple[float, float]
     above: bool
 
 
@@ -52,10 +55,7 @@ def limit_of_length(
     if one is None or two is None or one.above is not two.above:
         return ""
     length = max(one.low, two.low), min(one.high, two.high)
-    turn = (
-        max(one.low * one.rate, two.low * two.rate),
-        min(one.high * one.rate, two.high * two.rate),
-    )
+    turn = max(one.turn[0], two.turn[0]), min(one.turn[1], two.turn[1])
     if (length[0] < length[1]) is (turn[0] < turn[1]):
         return ""  # both, or neither
     if turn[0] < turn[1]:
@@ -79,10 +79,12 @@ def _jump(
             return None
         steps = np.abs(np.diff(np.log(errors)))
         k = int(np.argmax(steps))
-        if np.exp(steps[k]) < JUMP:
+        if np.count_nonzero(np.exp(steps) >= JUMP) != 1:
             return None
         low, high, above = float(lengths[k]), float(lengths[k + 1]), bool(errors[k + 1] > errors[k])
-    return Jump(low, high, rate, above)
+    end = exact_solution(case.system, start, np.array([0.0, high])).state[1]
+    rates = sorted((rate, float(norm(end.angular_velocity))))
+    return Jump(low, high, (low * rates[0], high * rates[1]), above)
 
 
 def _errors(

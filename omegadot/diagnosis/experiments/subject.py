@@ -34,6 +34,7 @@ from omegadot.gates.states.model import state_rows
 from omegadot.harness.drive import Driver
 from omegadot.reference_impl.system import State
 
+TRIED = 4  # systems of which lengths of step are tried
 STATES = 40  # of each scenario that are looked at
 
 
@@ -125,8 +126,13 @@ def _length_of(
     """A length of step, or a turn in one, from or up to which the steps are wrong."""
     if subject.integrator is None:
         return ""
-    for one in (one for one in steps if one.system is case.system):
-        return limit_of_length(driver, case, subject.integrator, one.states, eps)
+    own = [one for one in steps if one.system is case.system]
+    for one in (*own, *(o for o in steps if o.system is not case.system))[:TRIED]:
+        scenario = case.scenario.model_copy(update={"name": f"{case.name}-by-length"})
+        here = replace(case, scenario=scenario, system=one.system)
+        found = limit_of_length(driver, here, subject.integrator, one.states, eps)
+        if found:
+            return found
     return ""
 
 

@@ -20,7 +20,7 @@ from omegadot.reference_impl.loads import damping_torque, gravity_torque
 from omegadot.reference_impl.system import Array, State, System
 
 START = ("the first", "at the start")  # of a run, of which an answer at a state knows nothing
-NEGATIVE = "component is negative"
+SIGNS = (("negative", -1.0), ("positive", 1.0))
 UNDEFINED = np.nan  # either way is right
 ANY, SEVERAL = (
     "a torque acts (applied, of damping or of the weight)",
@@ -61,8 +61,8 @@ def traits_of(system: System, states: State) -> Traits:
         plain[text] = held.astype(float)
     w = states.angular_velocity
     for k, axis in enumerate("xyz"):
-        signed = np.where(w[:, k] == 0.0, UNDEFINED, w[:, k] < 0.0)
-        particular[f"omega's {axis} {NEGATIVE}"] = signed
+        for sign, way in SIGNS:
+            particular[f"omega's {axis} component is {sign}"] = (way * w[:, k] > 0.0).astype(float)
     with np.errstate(all="ignore"):
         sizes = features_of_states(system, states) | further_features(system, states)
     for text, (size, unit) in whole.sizes.items():
@@ -92,7 +92,7 @@ def _torques(system: System, states: State) -> dict[str, Array]:
 
 
 def _signs(system: System) -> Iterator[tuple[str, bool | None]]:
-    """Of every component of a vector; of zero it is not defined."""
+    """Of every component of a vector; zero has neither sign."""
     body, load = system.body, system.load
     for what, vector in {
         "gravity's": load.gravity,
@@ -102,11 +102,13 @@ def _signs(system: System) -> Iterator[tuple[str, bool | None]]:
         "the pivot's": np.zeros(3) if load.pivot is None else load.pivot,
     }.items():
         for value, axis in zip(np.asarray(vector, dtype=float), "xyz", strict=True):
-            yield f"{what} {axis} {NEGATIVE}", None if value == 0.0 else bool(value < 0.0)
-    products = np.asarray(body.inertia, dtype=float)
+            for sign, way in SIGNS:
+                yield f"{what} {axis} component is {sign}", bool(way * value > 0.0)
+    tensor = np.asarray(body.inertia, dtype=float)
     for i, j in ((0, 1), (0, 2), (1, 2)):
-        value, text = products[i, j], f"the product {'xyz'[i]}{'xyz'[j]} of the inertia"
-        yield f"{text} is negative", None if value == 0.0 else bool(value < 0.0)
+        value, text = tensor[i, j], f"the product {'xyz'[i]}{'xyz'[j]} of the inertia"
+        for sign, way in SIGNS:
+            yield f"{text} is {sign}", bool(way * value > 0.0)
         yield f"{text} is not zero", bool(value != 0.0)
 
 

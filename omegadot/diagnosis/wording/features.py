@@ -192,6 +192,10 @@ def _negated(text: str) -> str:
     }
     if text.endswith(" acts") or " acts" in text:
         return "no " + text.removeprefix("a ")
-    if text.endswith("component is negative"):  # of a component of zero neither is said
-        return text.replace("is negative", "is positive")
+    if text.endswith((" is negative", " is positive", " is not zero")) and "scalar" not in text:
+        return (
+            text.replace(" is not ", " is ")
+            if " not " in text
+            else text.replace(" is ", " is not ")
+        )
     return known.get(text, f"it does not hold that {text}")
