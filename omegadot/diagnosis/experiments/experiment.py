@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from omegadot.diagnosis.experiments.sorting import (
     pair_that_sorts,
 )
 from omegadot.harness.requests.variations import other_bodies, other_loads, other_states
+from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.system import State
 
 ON_A_LINE, ROUNDS, HALVINGS, LINES = 9, 4, 9, 3
@@ -37,27 +39,33 @@ class Experiment:
             self._with_other_states(one)
             for _, system in other_loads(one.system):
                 self._add(self._judge.trial(system, one.states, one))
-        found = kind_that_sorts(self.seen)
-        if found or not self._parted:
-            return found or self._by_bodies(bases)
-        return self._by_bodies(bases)
+        return kind_that_sorts(self.seen) or self._by_bodies(bases)
 
     def _by_bodies(self, bases: Sequence[Trial]) -> str:
         for one in bases[:1] if self._parted else bases:
-            for _, system in other_bodies(one.system):
-                self._add(self._judge.trial(system, one.states, one))
+            base = self._about_its_centre(one)
+            for _, system in other_bodies(base.system):
+                self._add(self._judge.trial(system, base.states, base))
         found = kind_that_sorts(self.seen)
         return found or self._by_limits() or pair_that_sorts(self.seen)
+
+    def _about_its_centre(self, one: Trial) -> Trial:
+        """The same held at the centre of mass, about which its inertia is then what is asked for.
+
+        As it is where it is free, or where the fault goes with the lever.
+        """
+        load, body = one.system.load, one.system.body
+        if load.pivot is None or not np.any(lever(one.system)):
+            return one
+        system = replace(one.system, load=replace(load, pivot=np.asarray(body.center_of_mass)))
+        held = self._judge.trial(system, one.states, one)
+        same = held is not None and np.array_equal(held.wrong, one.wrong) and self._add(held)
+        return held if same and held is not None else one
 
     @property
     def seen(self) -> Observations:
         """Drawn and requested."""
         return Observations(self.trials)
-
-    @property
-    def always(self) -> bool:
-        """Whether it shows wherever it would."""
-        return bool(self.trials) and bool(np.all(self.seen.wrong))
 
     @property
     def _parted(self) -> bool:

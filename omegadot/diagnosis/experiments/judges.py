@@ -19,6 +19,7 @@ from omegadot.diagnosis.equations.evidence import (
 from omegadot.diagnosis.experiments.observed import Flags, Trial
 from omegadot.diagnosis.stepping.kinematics import shows_in_motion
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
+from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case
 from omegadot.gates.states.model import state_rows
 from omegadot.gates.steps.accuracy import finest_of, tolerated_by
@@ -39,8 +40,9 @@ def shown_in(evidence: Evidence, one: Candidate | None) -> Shown:
     """
     shares = evidence.shares(evidence.true)
     wrong, right = ~(shares <= BEYOND_ROUNDING), shares <= 1.0
-    if one is None:
-        return wrong, wrong | right
+    if one is None:  # what scales omega-dot, or turns it, shows where there is one
+        moved = norm(evidence.true.angular) > BEYOND_ROUNDING * evidence.angular_bound
+        return wrong, wrong | (right & moved)
     made = one.predicted(evidence)
     if made is None:
         return wrong, np.zeros_like(wrong)

@@ -17,8 +17,8 @@ from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.solutions.exact_solution import exact_solution
 from omegadot.reference_impl.system import Array, State
 
-TURNS = (2.0**-8, 1.0)  # rad, of the shortest and the longest step
-LENGTHS, ROUNDS, PARTS = 25, 4, 8
+TURNS = (2.0**-14, 1.0)  # rad, of the shortest and the longest step
+LENGTHS, ROUNDS, PARTS = 40, 4, 8
 JUMP = 3.0  # times: no smooth error changes by as much within the last of the parts
 APART = 3.0  # times: by which two rates distinguish a turn from a length
 

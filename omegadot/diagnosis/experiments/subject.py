@@ -91,7 +91,7 @@ def conditions_of(
         return Conditions(_length_of(subject, driver, case, steps, eps))
     one = _experiment_of(subject, driver, case, scenes, steps, eps)
     found = one.condition()
-    if not found and subject.integrator is not None and one.always:
+    if not found and subject.integrator is not None:
         found = _length_of(subject, driver, case, steps, eps)
     return Conditions(found, one)
 

@@ -187,6 +187,8 @@ def _negated(text: str) -> str:
         "the moments of inertia are unequal": "the moments of inertia are equal",
         "the centre of mass lies off the origin": "the centre of mass lies at the origin",
         "the pivot lies off the origin": "the pivot lies at the origin",
+        "omega is zero": "omega is not zero",
+        "the quaternion's scalar part is negative": "the quaternion's scalar part is not negative",
         "the body moves at the start": "the body does not move at the start",
         "the first attitude is not the identity": "the first attitude is the identity",
     }
