@@ -234,8 +234,10 @@ class Steps:
 
     def request(self, one: Case, _: str, states: State, timesteps: Array, **__: object) -> Answer:
         start, ends = states[0], list[State]()
-        for h in timesteps[0]:
-            exact = exact_solution(one.system, start, np.array([0.0, h])).state[1]
+        times = np.concatenate([[0.0], timesteps[0]])
+        every = exact_solution(one.system, start, times).state[1:]
+        for k, h in enumerate(timesteps[0]):
+            exact = every[k]
             turn = h * start.angular_velocity
             less = 0.5 if self.where(float(np.linalg.norm(turn)), float(h)) else 1.0
             q = quaternion_product(start.orientation, exp_quaternion(less * turn))
