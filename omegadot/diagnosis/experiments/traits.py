@@ -100,6 +100,7 @@ def _signs(system: System) -> Iterator[tuple[str, bool | None]]:
         "the world torque's": load.torque_world,
         "the centre of mass's": body.center_of_mass,
         "the pivot's": np.zeros(3) if load.pivot is None else load.pivot,
+        "the lever's": np.zeros(3) if load.pivot is None else lever(system),
     }.items():
         for value, axis in zip(np.asarray(vector, dtype=float), "xyz", strict=True):
             for sign, way in SIGNS:

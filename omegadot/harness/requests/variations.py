@@ -38,6 +38,8 @@ def other_loads(system: System) -> Iterator[tuple[str, System]]:
     elif np.any(lever(system)):
         on_it = replace(load, pivot=np.asarray(system.body.center_of_mass))
         yield "lever", replace(system, load=on_it)
+        across = replace(system.body, center_of_mass=load.pivot - lever(system))
+        yield "turned lever", replace(system, bodies=(across,))
 
 
 def other_bodies(system: System) -> Iterator[tuple[str, System]]:
