@@ -40,6 +40,8 @@ def other_loads(system: System) -> Iterator[tuple[str, System]]:
         yield "lever", replace(system, load=on_it)
         across = replace(system.body, center_of_mass=load.pivot - lever(system))
         yield "turned lever", replace(system, bodies=(across,))
+        beyond = np.asarray(system.body.center_of_mass) + lever(system)
+        yield "pivot beyond", replace(system, load=replace(load, pivot=beyond))
 
 
 def other_bodies(system: System) -> Iterator[tuple[str, System]]:
