@@ -16,6 +16,8 @@ from omegadot.diagnosis.equations.wrong_equation import (
     scene_of,
 )
 from omegadot.diagnosis.equations.wrong_torque import torque_causes
+from omegadot.diagnosis.experiments.conditioned import UNKNOWN, condition_in
+from omegadot.diagnosis.experiments.subject import Subject
 from omegadot.diagnosis.integrator import IntegratorCauses
 from omegadot.diagnosis.kept_case import opposite_steps, source_of
 from omegadot.diagnosis.models.misread_state import known_state
@@ -23,6 +25,9 @@ from omegadot.diagnosis.models.wrong_lever import lever_causes
 from omegadot.diagnosis.models.wrong_model import model_causes
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import batch_cause, kept_causes
+from omegadot.diagnosis.stepping.kinematics import kinematic_causes, moves_by_cause
+from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
+from omegadot.diagnosis.wording.kinds import is_named
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case
 from omegadot.gates.rows import Row
@@ -91,6 +96,51 @@ class CaseCauses:
             own = None if integrator is None else self._integrators[integrator]
             found = own.sentences() if own is not None and not self._explains_runs else []
             return found or (self._shared() if self._shared_rows else [])
+
+    def subject(self, integrator: str | None, text: str) -> Subject | None:
+        """What the cause that `sentences` names is about; None where no condition is looked for."""
+        own = None if integrator is None else self._integrators[integrator]
+        if own is not None and not self._explains_runs:
+            return self._of_steps(own, text)
+        failed = {(row.gate, row.metric) for row in self._shared_rows}
+        if {gate for gate, _ in failed} == {"model"}:
+            unknown = text.startswith(UNKNOWN) or bool(condition_in(text))
+            return Subject(of_states=True) if failed == {("model", "state")} and unknown else None
+        if ("equation", "residual") not in failed or any(gate == "model" for gate, _ in failed):
+            return None
+        one = self._across.acting(self._case.name, FORWARD)
+        return Subject(one) if one is not None or text.startswith(UNKNOWN) else None
+
+    def _of_steps(self, own: IntegratorCauses, text: str) -> Subject | None:
+        """Of the steps as they vanish, or of longer ones where these are right, or all wrong."""
+        steps, unknown = own.steps, text.startswith(UNKNOWN)
+        if steps is None:
+            return None
+        if steps.sound:
+            return (
+                Subject(integrator=own.integrator, by_length=True) if not is_named(text) else None
+            )
+        where = (self._case.name, source_of(own.integrator.name))
+        one = self._across.acting(*where)
+        if one is not None and self._across.cause(*where) in text:
+            return Subject(one, own.integrator)
+        moves = text in (moves_by_cause(steps), *kinematic_causes(steps))
+        return Subject(None, own.integrator, text=text * moves) if moves or unknown else None
+
+    @property
+    def case(self) -> Case:
+        """The case."""
+        return self._case
+
+    @property
+    def eps(self) -> float:
+        """Of the engine's precision."""
+        return eps_of(self._answers.precision)
+
+    def steps_of(self, integrator: str) -> VanishingSteps | None:
+        """The steps of an integrator as they vanish; None without any."""
+        own = self._integrators.get(integrator)
+        return None if own is None else own.steps
 
     def fails(self, integrator: str | None) -> bool:
         """Whether a run of the integrator fails, or what all runs share."""

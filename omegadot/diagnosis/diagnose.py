@@ -10,11 +10,13 @@ fits one scenario and is contradicted by another is not named.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
 from omegadot.diagnosis.case_causes import CaseCauses
+from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditions_of
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.wording.kinds import beside_others, is_named
 from omegadot.gates.case import Case
@@ -23,19 +25,28 @@ from omegadot.gates.states.equation import (
     evaluation_states_of,
 )
 from omegadot.gates.truth import Truth
-from omegadot.harness.drive import CaseResult
+from omegadot.harness.drive import CaseResult, Driver
 from omegadot.harness.judging.engine import shared_rows
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase
 
+MOST_EXPERIMENTS = 6  # causes of one engine whose conditions are looked for
+Ask = Callable[[str, Callable[[Driver], Conditions]], Conditions]
+
 
 class Causes:
-    """Causes over the scenarios of a run, of which each engine's are kept in small arrays."""
+    """Causes over the scenarios of a run, of which each engine's are kept in small arrays.
+
+    ask: has a call made with an engine's driver, where more may be requested of the engines; the
+    condition of a cause is then looked for by experiments.
+    """
 
     def __init__(self) -> None:
+        self.ask: Ask | None = None
         self._engines: dict[str, EngineOverScenarios] = {}
         self._cases: dict[str, dict[str, CaseCauses]] = {}
         self._texts: dict[tuple[str, str, str | None], str] = {}
+        self._conditions: dict[tuple[str, tuple[object, ...]], Conditions] = {}
 
     def add(self, judged: JudgedCase, found: EngineCase, seed: int) -> CaseCauses:
         """One more case of an engine. It must have an exact trajectory."""
@@ -48,7 +59,7 @@ class Causes:
                 engine, judged.case, judged.truth, states, found.result, found.shared, found.runs
             )
         self._cases.setdefault(name, {})[judged.case.name] = causes
-        self._texts = {}  # what was found before may not hold any more
+        self._texts, self._conditions = {}, {}  # what was found before may not hold any more
         return causes
 
     def text(self, engine: str, case: str, run: JudgedRun | None) -> str:
@@ -72,8 +83,34 @@ class Causes:
     def _text(self, engine: str, case: str, integrator: str | None) -> str:
         key = (engine, case, integrator)
         if key not in self._texts:
-            self._texts[key] = "; ".join(self._cases[engine][case].sentences(integrator))
+            text = "; ".join(self._cases[engine][case].sentences(integrator))
+            self._texts[key] = self._conditioned(engine, case, integrator, text) if text else ""
         return self._texts[key]
+
+    def _conditioned(self, engine: str, case: str, integrator: str | None, text: str) -> str:
+        """The cause on the condition that experiments find; they are made once for each cause."""
+        own = self._cases[engine][case]
+        subject = own.subject(integrator, text) if self.ask is not None else None
+        if subject is None or self.ask is None:
+            return text
+        key = (engine, subject.key)
+        if key not in self._conditions:
+            if sum(name == engine for name, _ in self._conditions) >= MOST_EXPERIMENTS:
+                return text
+            call = partial(self._conditions_of, engine, own, subject)
+            self._conditions[key] = self.ask(engine, call)
+        return self._conditions[key].of(text)
+
+    def _conditions_of(
+        self, engine: str, own: CaseCauses, subject: Subject, driver: Driver
+    ) -> Conditions:
+        """Made on the engine's own thread."""
+        name = subject.integrator.name if subject.integrator is not None else ""
+        every = (one.steps_of(name) for one in self._cases[engine].values())
+        steps = [one for one in every if one is not None]
+        scenes = self._engines[engine].across.scenes
+        with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+            return conditions_of(subject, driver, own.case, scenes, steps, own.eps)
 
 
 def causes_over(cases: Sequence[JudgedCase], seed: int) -> CausesOf:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.known import scenarios_in_common
 from omegadot.diagnosis.in_steps import StepCauses
 from omegadot.diagnosis.kept_case import kept_case
@@ -60,6 +61,11 @@ class IntegratorCauses:
         self.steps = self._kept.steps
         self._in_steps = StepCauses(self._across, over, self._kept, self._of_trajectories)
         self._of_runs: RunCauses | None = None
+
+    @property
+    def integrator(self) -> Integrator:
+        """The integrator, as the engine declares it."""
+        return self._integrator
 
     def release(self, wanted: bool) -> None:
         """Work out what needs the trajectories, where it is wanted, and let go of them."""

@@ -118,9 +118,9 @@ def check(
             for one in suite.checks:
                 results[one] = suite.result_of(one)
                 count.advance()
+            results = suite.settled(results)
         finally:
             suite.finish()
-        results = {one: result.settled for one, result in results.items()}
         failing = _shrunk(engine, selection, results, report) if shrink else []
     tally = Tally()
     for one, result in results.items():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
@@ -23,7 +24,10 @@ from omegadot.commands.check.result import (
 )
 from omegadot.commands.check.select import Selection
 from omegadot.diagnosis.diagnose import Causes
+from omegadot.diagnosis.experiments.subject import Conditions
 from omegadot.gates.case import Case
+from omegadot.harness.drive import Driver
+from omegadot.harness.engines import outcome_of
 from omegadot.harness.outcome import RunRequest
 from omegadot.harness.runner import Runner
 
@@ -88,6 +92,26 @@ class Suite:
                 whole = updated(stored, self.figures[subject.name], subject)
                 written.append(write_baseline(folder, subject.name, whole))
         return written
+
+    def settled(self, results: Mapping[Check, Result]) -> dict[Check, Result]:
+        """The results with causes that hold on all scenarios, on conditions found by experiment.
+
+        Every scenario has been run. Engines are asked only where a check fails.
+        """
+        self._causes.ask = self._ask
+        return {one: result.settled for one, result in results.items()}
+
+    def _ask(self, engine: str, call: Callable[[Driver], Conditions]) -> Conditions:
+        """A call with an engine's driver, on the engine's own thread."""
+        if self._runner is None:
+            self._start()
+        assert self._runner is not None
+        engines = self._runner.engines
+        try:
+            return outcome_of(engines.submit(engine, partial(call, engines.drivers[engine])))
+        except BaseException:
+            engines.stop()  # no one waits for what it is busy with
+            raise
 
     def finish(self) -> None:
         """End the workers; they are started again if another result is requested."""

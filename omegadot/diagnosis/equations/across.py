@@ -58,6 +58,10 @@ class Across:
         """The first of the candidates that `cause` names; None where it names none."""
         return self._cause(name, source).candidate
 
+    def acting(self, name: str, source: str) -> Candidate | None:
+        """The same, or what acts at some states alone; None where nothing of the kind is named."""
+        return self.chosen(name, source) or self._at_states.acting.get((name, source))
+
     def explained(self, name: str, source: str) -> set[str]:
         """The scenarios that `chosen` explains."""
         return {*self._cause(name, source).names, name}

@@ -28,6 +28,7 @@ class AtSomeStates:
         self._scenes = scenes
         self._wrong: dict[str, Searched] = {}  # by source: scenarios of the wrong states alone
         self._conditions: dict[tuple[tuple[str, ...], str], str] = {}
+        self.acting: dict[tuple[str, str], Candidate] = {}  # by scenario and source: what is named
 
     def add(self, scene: Scene) -> None:
         """One more scenario."""
@@ -52,6 +53,7 @@ class AtSomeStates:
         text = worded(sorted_ or best, source, self._scenes)
         if not text:
             return ""
+        self.acting[scene.name, source] = (sorted_ or best)[0].candidate
         if not sorted_:
             return f"{text}, but not always"
         return f"{text}, but only where {where[sorted_[0].candidate.key]}"

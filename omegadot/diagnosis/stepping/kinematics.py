@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import SLACK
 from omegadot.diagnosis.stepping.vanishing_steps import STILL, VanishingSteps, better
@@ -60,6 +61,18 @@ def _wrong_rates(steps: VanishingSteps) -> dict[str, dict[str, Array]]:
         "the position moves the wrong way": -v,
     }
     return {"attitude": attitude, "position": position}
+
+
+def shows_in_motion(steps: VanishingSteps, text: str) -> NDArray[np.bool_]:
+    """(m,): where a cause in what attitude or position move by makes them move otherwise.
+
+    One that is not known here scales their rate, or leaves them still.
+    """
+    channel = "position" if "position" in text else "attitude"
+    limit, named = steps.rates[channel], _wrong_rates(steps).get(channel, {})
+    known = (rate for own, rate in named.items() if text.endswith(own))
+    apart = norm(limit.expected - next(known, np.zeros_like(limit.expected)))
+    return np.asarray(apart > CLEAR * SLACK * np.min(limit.bound, axis=0))
 
 
 def least_step(stays_below: Collection[tuple[float, float]]) -> str:

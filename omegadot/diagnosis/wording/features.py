@@ -148,10 +148,10 @@ def in_common(
     plain = [one for one in kinds if COMPONENT not in one[0]]
     kinds = plain or [(text, holds) for text, holds in kinds if holds]
     every = [(one.kinds, wrong) for one, wrong in tried]
-    texts = [[_worded(*one) for one in each] for each in decided(kinds, every)]
-    found = [" and ".join(_plainest(each)) for each in texts]
+    texts = [[worded(*one) for one in each] for each in decided(kinds, every)]
+    found = [" and ".join(plainest(each)) for each in texts]
     if kinds or ways < ODDS * 2 * len(shown[0].sizes):
-        return _plainest(found)
+        return plainest(found)
     wrong_and_right = [[one.inertia for one in group] for group in (shown, others)]
     shown = [*shown, *(one for one, wrong in tried if wrong)]
     others = [*others, *(one for one, wrong in tried if not wrong)]
@@ -165,7 +165,7 @@ def in_common(
     return found or inertias_in_common(wrong_and_right[0], wrong_and_right[1], more)
 
 
-def _plainest(found: list[str]) -> list[str]:
+def plainest(found: list[str]) -> list[str]:
     """Without what goes with a plainer condition anyhow: only free bodies move at the start."""
     for text, follow in FOLLOWS.items():
         if text in found:
@@ -173,7 +173,8 @@ def _plainest(found: list[str]) -> list[str]:
     return found
 
 
-def _worded(text: str, holds: bool) -> str:
+def worded(text: str, holds: bool) -> str:
+    """A sentence, or its negation."""
     return text if holds else _negated(text)
 
 
@@ -186,9 +187,17 @@ def _negated(text: str) -> str:
         "the moments of inertia are unequal": "the moments of inertia are equal",
         "the centre of mass lies off the origin": "the centre of mass lies at the origin",
         "the pivot lies off the origin": "the pivot lies at the origin",
+        "omega is zero": "omega is not zero",
+        "the quaternion's scalar part is negative": "the quaternion's scalar part is not negative",
         "the body moves at the start": "the body does not move at the start",
         "the first attitude is not the identity": "the first attitude is the identity",
     }
     if text.endswith(" acts") or " acts" in text:
         return "no " + text.removeprefix("a ")
+    if text.endswith((" is negative", " is positive", " is not zero")) and "scalar" not in text:
+        return (
+            text.replace(" is not ", " is ")
+            if " not " in text
+            else text.replace(" is ", " is not ")
+        )
     return known.get(text, f"it does not hold that {text}")

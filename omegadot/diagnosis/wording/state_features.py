@@ -29,6 +29,8 @@ def features_of_states(system: System, states: State) -> Numbers:
         "|omega|": (norm(w), "rad/s"),
         "the angle from the identity": (turned, "rad"),
         "the quaternion's scalar part": (q[:, 0], ""),
+        "the sine of the pitch, 2 (w y - x z),": (-turn[:, 2, 0], ""),
+        "the size of the sine of the pitch, |2 (w y - x z)|,": (np.abs(turn[:, 2, 0]), ""),
         "the kinetic energy of rotation": (energy, "J"),
         "the linear speed": (norm(v), "m/s"),
         "the distance from the world's origin": (norm(x), "m"),

@@ -1,0 +1,40 @@
+"""A cause with the condition that experiments have found."""
+
+from __future__ import annotations
+
+import re
+
+UNKNOWN = "none is known"
+END = r"(?= \(\S+; other numbers|; |$)"
+# What is said of some scenarios where no condition is known, or by what scenarios alone show.
+OF_SOME = re.compile(
+    rf", not on \d+ others? that would show it|, but not always|, but only where .*?{END}"
+)
+ALONE = re.compile(rf"; it is so in scenarios alone where .*?{END}")
+WHERE = re.compile(rf", but only where (.*?){END}")
+
+
+def conditioned(text: str, condition: str) -> str:
+    """The cause, on this condition; as it is where there is none."""
+    if not condition:
+        return text
+    if text.startswith(UNKNOWN):
+        return f"{ALONE.sub('', text)}; it is so only where {condition}"
+    plain = OF_SOME.sub("", text)
+    either = "either " in plain or "; " in plain
+    return (
+        f"{plain}; it is so only where {condition}"
+        if either
+        else f"{plain}, but only where {condition}"
+    )
+
+
+def condition_in(text: str) -> str:
+    """The condition that a cause already has; "" without any."""
+    found = WHERE.search(text)
+    return found.group(1) if found else ""
+
+
+def without_condition(text: str) -> str:
+    """The same where its condition is contradicted."""
+    return WHERE.sub(", but not always", text)
