@@ -26,7 +26,7 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.engine import shared_rows
 from omegadot.harness.judging.judged_run import JudgedRun
-from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase
+from omegadot.harness.outcome import EngineCase, JudgedCase
 
 
 class Causes:
@@ -74,30 +74,6 @@ class Causes:
         if key not in self._texts:
             self._texts[key] = "; ".join(self._cases[engine][case].sentences(integrator))
         return self._texts[key]
-
-
-def causes_over(cases: Sequence[JudgedCase], seed: int) -> CausesOf:
-    """The causes of every engine on every case of a run, each held against all of its cases.
-
-    An engine's cases are looked at when its first failure is.
-    """
-    causes, known = Causes(), set[str]()
-
-    def causes_of_case(judged: JudgedCase, found: EngineCase) -> Cause:
-        name = found.engine.name
-
-        def cause(run: JudgedRun | None) -> str:
-            if name not in known:
-                known.add(name)
-                for one in cases:
-                    for own in one.engines if one.truth is not None else ():
-                        if own.engine.name == name:
-                            causes.add(one, own, seed)
-            return causes.text(name, judged.case.name, run)
-
-        return cause
-
-    return causes_of_case
 
 
 def diagnose(
