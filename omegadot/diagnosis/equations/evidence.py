@@ -64,6 +64,11 @@ class Evidence:
         return forward_dynamics(self.system, self.states)
 
     @cached_property
+    def solve(self) -> Array:
+        """The inverse of the moving inertia, (3, 3)."""
+        return inverse(moving_inertia(self.system))
+
+    @cached_property
     def sound(self) -> NDArray[np.bool_]:
         """(n,): the states at which the engine is right."""
         return self.shares(self.true) <= 1.0
