@@ -153,6 +153,10 @@ def changed(form: Form, **parts: Array) -> Form:
 def same_form(one: Form, other: Form) -> bool:
     """Whether two hypotheses come to one equation on a system."""
     pairs = zip(vars(one).values(), vars(other).values(), strict=True)
-    return all(
-        np.allclose(a, b, rtol=1e-12, atol=1e-14 * float(np.max(np.abs(a)))) for a, b in pairs
-    )
+    return all(a is b or _same(a, b) for a, b in pairs)
+
+
+def _same(a: Array, b: Array) -> bool:
+    """As ``np.allclose`` has it, of finite numbers, in a fifth of its time."""
+    allowed = 1e-14 * np.abs(a).max() + 1e-12 * np.abs(b)
+    return bool((np.abs(a - b) <= allowed).all())
