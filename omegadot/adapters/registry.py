@@ -9,7 +9,6 @@ import shlex
 import shutil
 import sys
 from collections.abc import Callable
-from importlib.metadata import entry_points
 from pathlib import Path
 from types import ModuleType
 from typing import Any, cast
@@ -41,6 +40,8 @@ class AdapterError(ValueError):
 
 def registered() -> dict[str, str]:
     """Every engine name with its ``module:Class`` target; entry points add to our own."""
+    from importlib.metadata import entry_points  # no worker asks: it is given the target itself
+
     found = {point.name: point.value for point in entry_points(group=ENTRY_POINT_GROUP)}
     return {**found, **OURS}
 

@@ -28,7 +28,7 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult, Driver
 from omegadot.harness.judging.engine import shared_rows
 from omegadot.harness.judging.judged_run import JudgedRun
-from omegadot.harness.outcome import Cause, CausesOf, EngineCase, JudgedCase
+from omegadot.harness.outcome import EngineCase, JudgedCase
 
 MOST_EXPERIMENTS = 6  # causes of one engine whose conditions are looked for
 Ask = Callable[[str, Callable[[Driver], Conditions]], Conditions]
@@ -111,30 +111,6 @@ class Causes:
         scenes = self._engines[engine].across.scenes
         with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
             return conditions_of(subject, driver, own.case, scenes, steps, own.eps)
-
-
-def causes_over(cases: Sequence[JudgedCase], seed: int) -> CausesOf:
-    """The causes of every engine on every case of a run, each held against all of its cases.
-
-    An engine's cases are looked at when its first failure is.
-    """
-    causes, known = Causes(), set[str]()
-
-    def causes_of_case(judged: JudgedCase, found: EngineCase) -> Cause:
-        name = found.engine.name
-
-        def cause(run: JudgedRun | None) -> str:
-            if name not in known:
-                known.add(name)
-                for one in cases:
-                    for own in one.engines if one.truth is not None else ():
-                        if own.engine.name == name:
-                            causes.add(one, own, seed)
-            return causes.text(name, judged.case.name, run)
-
-        return cause
-
-    return causes_of_case
 
 
 def diagnose(

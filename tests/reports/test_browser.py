@@ -1,7 +1,6 @@
 """The page in a real browser: charts are drawn, nothing is complained of, names stay text."""
 
 import pytest
-from chromium import Chromium
 from synthetic_record import build, scenario_entry
 
 from omegadot.reports.page.page import draw_page
@@ -14,12 +13,6 @@ OVER_TIME = "((place) => document.querySelector(`[data-place='${place}']`))"
 # The runs in its attitude error, its fourth chart over time.
 LINES = """[...document.querySelector("[data-place='3']").data].filter((t) => t.meta).map(
     (t) => ({name: t.name, end: t.y.at(-1), colour: t.line.color, dash: t.line.dash}))"""
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
-        yield chromium
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,6 @@
 
 import pytest
 from axe_check import LOOKS, VIOLATIONS, axe
-from chromium import Chromium
 from synthetic_record import build, metric, task, with_metrics
 
 from omegadot.reports.page.page import draw_page
@@ -27,12 +26,6 @@ def path(tmp_path_factory):
     file = tmp_path_factory.mktemp("axe") / "report.html"
     file.write_text(draw_page(record), encoding="utf-8")
     return file
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
-        yield chromium
 
 
 def opened(browser, path, **look):

@@ -1,19 +1,12 @@
 """What stands on a narrow screen, or in a narrow table, can be read there."""
 
 import pytest
-from chromium import Chromium
 from synthetic_record import build
 
 from omegadot.reports.page.page import draw_page
 
 READY = "document.querySelector('#why table')?.dataset.ready === 'yes'"
 PHONE = {"width": 390, "height": 844}
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
-        yield chromium
 
 
 @pytest.fixture(scope="module")

@@ -1,19 +1,12 @@
 """The printed page: what stands on its sheets, read out of the PDF itself."""
 
 import pytest
-from chromium import Chromium
 from pdf_text import printed_pages
 from synthetic_record import build
 
 from omegadot.reports.page.page import draw_page
 
 READY = "document.querySelector('#why table')?.dataset.ready === 'yes'"
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
-        yield chromium
 
 
 @pytest.fixture(scope="module")

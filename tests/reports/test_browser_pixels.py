@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from chromium import Chromium
 from synthetic_record import build
 
 from omegadot.reference_impl.rotations import normalize, rotate, rotate_inverse
@@ -40,13 +39,12 @@ APART = [
 
 
 @pytest.fixture(scope="module")
-def page(tmp_path_factory):
+def page(browser, tmp_path_factory):
     file = tmp_path_factory.mktemp("page") / "report.html"
     file.write_text(draw_page(build(("sphere",), steps=(0.01,))), encoding="utf-8")
-    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
-        chromium.open(file, height=900)
-        chromium.wait("document.getElementById('view-box')?.dataset.ready === '1'")
-        yield chromium
+    browser.open(file, height=900)
+    browser.wait("document.getElementById('view-box')?.dataset.ready === '1'")
+    return browser
 
 
 def plain(solid):

@@ -1,19 +1,12 @@
 """What the 3-D view writes and draws beside the bodies: it is seen, and not cut off."""
 
 import pytest
-from chromium import Chromium
 from synthetic_record import build
 
 from omegadot.reports.page.page import draw_page
 from omegadot.reports.page.templating import asset
 
 SCRIPTS = ("unpack", "view_trajectory", "view_shapes", "view_scene", "view_canvas", "view_stage")
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
-        yield chromium
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,6 @@ import math
 
 import numpy as np
 import pytest
-from chromium import Chromium
 from synthetic_record import build, scenario_entry
 
 from omegadot.reference_impl.rotations import (
@@ -33,12 +32,6 @@ HANDLE = [
     {"shape": "cylinder", "radius": 0.01, "length": 0.05, "density": 1.0,
      "position": [0.0, 0.0, 0.035]},
 ]  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
-        yield chromium
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,6 @@ import json
 from dataclasses import replace
 
 import pytest
-from chromium import Chromium
 from synthetic_record import build, scenario_entry
 
 from omegadot.reports.page.page import draw_page
@@ -16,12 +15,6 @@ RANGES += "(c) => [...c._fullLayout.xaxis.range].map((v) => Number(v.toPrecision
 HOSTILE = "it's <b>bold</b>; rm -rf $HOME"
 CARD = "document.getElementById('card')"
 COMMANDS = f"[...{CARD}.querySelectorAll('.command code')].map((c) => c.textContent)"
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with Chromium(tmp_path_factory.mktemp("profile")) as chromium:
-        yield chromium
 
 
 @pytest.fixture(scope="module")

@@ -217,7 +217,7 @@ def test_an_entry_point_may_name_a_command(tmp_path: Path, monkeypatch: pytest.M
     (tmp_path / "bolt_package.py").write_text("COMMAND = 'node bolt.js'\n", encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
     point = EntryPoint("bolt", "bolt_package:COMMAND", registry.ENTRY_POINT_GROUP)
-    monkeypatch.setattr(registry, "entry_points", lambda group: [point])
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda group: [point])
     assert registry.factory_of(registry.registered()["bolt"]) == "node bolt.js"
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from omegadot import __version__
 from omegadot.adapters.registry import PROGRAM, registered
 from omegadot.diagnosis.clusters import clusters_of_run
-from omegadot.diagnosis.diagnose import causes_over
+from omegadot.diagnosis.over_engines import causes_over
 from omegadot.gates.case import Case
 from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase, Outcome, RunRequest

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from omegadot.commands.score.settings import Reading
 from omegadot.commands.score.table import Table, TraceError
@@ -11,6 +12,9 @@ from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import conjugate, quaternion_product
 from omegadot.reference_impl.system import Array
 from omegadot.written import written
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 # Farther from a rotation than this it was misread; nearer, it has drifted, and that is measured.
 MOST_OFF = 0.1
@@ -22,6 +26,19 @@ def wxyz(rotation: Rotation) -> Array:
     """(..., 4), as the project writes quaternions."""
     found: Array = np.roll(rotation.as_quat(), 1, axis=-1)
     return found
+
+
+def of_matrix(matrix: Array) -> Array:
+    """(..., 4), of rotation matrices (..., 3, 3)."""
+    from scipy.spatial.transform import Rotation  # most logs go without it, and it imports slowly
+
+    return wxyz(Rotation.from_matrix(matrix))
+
+
+def _of_angles(order: str, angles: Array) -> Array:
+    from scipy.spatial.transform import Rotation
+
+    return wxyz(Rotation.from_euler(order, angles))
 
 
 def _from_quaternions(table: Table, q: Array, opened: Array) -> Angles:
@@ -62,7 +79,7 @@ def _from_matrices(table: Table, nine: Array, opened: Array) -> Angles:
             f"(its columns are off unit length or right angles by {written(off[worst], 2)})."
         )
     left, _, right = np.linalg.svd(nine.reshape(-1, 3, 3))
-    return wxyz(Rotation.from_matrix(left @ right)), np.sqrt(2.0) * norm(opened)
+    return of_matrix(left @ right), np.sqrt(2.0) * norm(opened)
 
 
 def attitude_of(reading: Reading) -> Angles | None:
@@ -72,7 +89,7 @@ def attitude_of(reading: Reading) -> Angles | None:
         q, opened = _from_quaternions(reading.table, *parts)
     elif parts := reading.group("e"):
         unit = how.scale_of("angle")
-        q = wxyz(Rotation.from_euler(how.euler, unit * parts[0]))
+        q = _of_angles(how.euler, unit * parts[0])
         opened = np.asarray(unit * np.sum(parts[1], axis=-1))  # the openings add up
     elif parts := reading.group("r"):
         q, opened = _from_matrices(reading.table, *parts)
@@ -84,11 +101,13 @@ def attitude_of(reading: Reading) -> Angles | None:
         q = quaternion_product(wxyz(world_turn(reading)), q)
     axes = (how.world_axes, how.body_axes)
     if not all(np.array_equal(turned, np.eye(3)) for turned in axes):
-        world, body = (wxyz(Rotation.from_matrix(turned)) for turned in axes)
+        world, body = (of_matrix(turned) for turned in axes)
         q = quaternion_product(quaternion_product(world, q), conjugate(body))
     return q, opened
 
 
 def world_turn(reading: Reading) -> Rotation:
     """How far the trace's world has turned at each sample since the start: ``exp(rate t)``."""
+    from scipy.spatial.transform import Rotation
+
     return Rotation.from_rotvec(reading.times[:, None] * reading.how.world_rate)

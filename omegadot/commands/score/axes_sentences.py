@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from omegadot.commands.score.attitude import wxyz
 from omegadot.commands.score.judged import Judged
@@ -43,6 +42,8 @@ def _short(values: Array) -> str:
 
 
 def _turned(found: Judged, turned: Turned) -> str:
+    from scipy.spatial.transform import Rotation
+
     factor, unit = factor_of(found, "attitude")
     late = found.shift is not None and found.shift.of == "omega" and found.shift.explains
     left = (

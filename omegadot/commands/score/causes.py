@@ -13,7 +13,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 from omegadot.commands.score.measured import Measured, distance, filled
 from omegadot.commands.score.wrong_steps import causes_in_steps
@@ -165,6 +164,8 @@ def _apart(found: Measured, one: State, other: State, rows: Rows, channels: list
 
 def _solved(mistake: Mistake, times: Array) -> State | None:
     """By Dormand and Prince's method of order 8; None where it does not get there."""
+    from scipy.integrate import solve_ivp
+
     q, v = to_coordinates(mistake.system, mistake.initial, "com-world")
     motion = motion_over(mistake.system, "com-world", mistake.acceleration)
     count, evaluations = len(q), iter(range(MOST_EVALUATIONS))

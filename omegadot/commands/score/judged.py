@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from omegadot.commands.score.attitude import wxyz
+from omegadot.commands.score.attitude import of_matrix
 from omegadot.commands.score.causes import causes_of_trace
 from omegadot.commands.score.clock import check_clock, check_duration
 from omegadot.commands.score.declared import Declared, declared_of
@@ -162,7 +161,7 @@ def _angles(reading: Reading) -> Angles:
     """The Euler angles that the trace's simulator may have stepped: those of the trace, or ZYX."""
     how = reading.how
     world, body = (
-        None if np.array_equal(axes, np.eye(3)) else wxyz(Rotation.from_matrix(axes))
+        None if np.array_equal(axes, np.eye(3)) else of_matrix(axes)
         for axes in (how.world_axes, how.body_axes)
     )
     stepped = "e1" in reading.columns and how.attitude_is == "world-from-body"

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 from rich.table import Table
 from rich.text import Text
 
 from omegadot.commands.run.print_run import exit_code
-from omegadot.commands.score.detection.detect import Detected
-from omegadot.commands.score.detection.reading import Reading
 from omegadot.commands.score.judged import Judged
 from omegadot.commands.score.own_units import in_own_unit
 from omegadot.commands.score.score import ScoreResult
@@ -21,6 +20,10 @@ from omegadot.reports.record.record import PAGE
 from omegadot.reports.record.run_json import dump_json
 from omegadot.reports.text.text_grid import plain_console
 from omegadot.written import written
+
+if TYPE_CHECKING:
+    from omegadot.commands.score.detection.detect import Detected
+    from omegadot.commands.score.detection.reading import Reading
 
 STYLES = {"pass": "green", "fail": "bold red", "info": "default"}
 WIDTH_WHEN_PIPED = 200

@@ -9,15 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from omegadot.commands.score.measured import Measured, partial
 from omegadot.commands.score.shift import Shift
 from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 # What leaves this part of the error or less is what was wrong. Errors of a scheme grow much like a
 # turning world, which therefore must leave less. A simpler cause is preferred up to a factor more.
@@ -65,6 +68,8 @@ def turned_world(found: Measured, shift: Shift | None) -> Turned | None:
     error, bound = found.error["attitude"], found.bound["attitude"]
     if np.all(error <= bound):
         return None
+    from scipy.spatial.transform import Rotation
+
     late = shift is not None and shift.of == "omega" and shift.explains
     rows = slice(shift.first, None) if shift and late else slice(None)
     moved = trace.times[rows] + (shift.seconds if shift and late else 0.0)
@@ -89,6 +94,8 @@ def turned_world(found: Measured, shift: Shift | None) -> Turned | None:
 
 def _tried(exact: Rotation, own: Rotation, times: Array, before: float) -> Iterator[Turned]:
     """The simplest first."""
+    from scipy.spatial.transform import Rotation
+
     world = exact * own.inv()
     for kind, apart in (("world", world), ("body", own.inv() * exact)):
         mean = apart.mean()
@@ -114,6 +121,8 @@ def _with_own_axis(rate: Array) -> list[Array]:
 
 def _rate(world: Rotation, times: Array) -> Array:
     """(3,) rad/s: the rate for which ``exp(rate t)`` is nearest, by Gauss-Newton from its steps."""
+    from scipy.spatial.transform import Rotation
+
     steps = (world[1:] * world[:-1].inv()).as_rotvec() / np.diff(times)[:, None]
     rate = np.median(steps, axis=0)
     for _ in range(MOST_ITERATIONS):
@@ -146,6 +155,8 @@ def origin_given(found: Measured) -> bool:
     position, c = found.trace.position, found.case.system.body.center_of_mass
     if position is None or partial(position) or not np.any(c):
         return False
+    from scipy.spatial.transform import Rotation
+
     turn = Rotation.from_quat(np.roll(normalize(found.truth.state.orientation), -1, axis=-1))
     left = norm(position + turn.apply(c) - found.truth.state.position)
     error, bound = found.error["position"], found.bound["position"]

@@ -64,6 +64,11 @@ class Evidence:
         return forward_dynamics(self.system, self.states)
 
     @cached_property
+    def solve(self) -> Array:
+        """The inverse of the moving inertia, (3, 3)."""
+        return inverse(moving_inertia(self.system))
+
+    @cached_property
     def sound(self) -> NDArray[np.bool_]:
         """(n,): the states at which the engine is right."""
         return self.shares(self.true) <= 1.0
@@ -111,7 +116,10 @@ class Evidence:
 
     def fits(self, candidate: Acceleration, slack: float | Array = SLACK) -> bool:
         """Whether a candidate is the engine's at every state."""
-        return bool(np.all(self.shares(candidate) <= slack))
+        angular = _share(norm(self.found.angular - candidate.angular), self.angular_bound)
+        if not np.all(angular <= slack):  # most are not, and the rest need not be worked out
+            return False
+        return self.linear_is_apart or bool(np.all(self.shares(candidate) <= slack))
 
     def visible(self, candidate: Acceleration) -> bool:
         """Whether a candidate differs from the right equation beyond rounding."""
@@ -177,8 +185,10 @@ class Evidence:
 
 def _share(apart: Array, bound: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(apart == 0.0, 0.0, apart / bound)
-    return np.where(np.isnan(share), np.inf, share)
+        share: Array = apart / bound
+    share[apart == 0.0] = 0.0
+    share[np.isnan(share)] = np.inf
+    return share
 
 
 def of_forward_dynamics(

@@ -67,16 +67,16 @@ class Tried:
     @cached_property
     def _changes(self) -> dict[int, Array]:
         """What each changes at a few states, in bounds, of those that change anything."""
-        few, found, kept = self._few, dict[int, Array](), list[Array]()
+        few, found = self._few, dict[int, Array]()
         usable = [k for k, form in enumerate(self._forms) if form is not None]
         tried = accelerations(stacked([f for k in usable if (f := self._forms[k])]), few.states)
+        kept = np.empty((len(usable), 6 * len(few.angular_bound)))
         for lane, k in enumerate(usable):
             made = replace(few.true, **{name: one[lane] for name, one in vars(tried).items()})
             change = few.weighted(made, few.true)
-            new = not any(np.max(np.abs(change - other)) <= SLACK for other in kept)
-            if np.max(np.abs(change)) > SLACK and new:
-                found[k] = change
-                kept.append(change)
+            apart = np.max(np.abs(change - kept[: len(found)]), axis=-1)
+            if np.max(np.abs(change)) > SLACK and np.all(apart > SLACK):
+                kept[len(found)] = found[k] = change
         return found
 
     def pairs(self) -> list[Candidate]:

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from omegadot.gates.bounds.scales import ROUNDINGS_PER_EVALUATION
 from omegadot.reference_impl.rotations import attitude_angle, normalize
@@ -99,10 +98,14 @@ def _same(ways: Sequence[Misread]) -> bool:
 
 
 def _angles(order: str, q: Array) -> Array:
+    from scipy.spatial.transform import Rotation  # its import takes as long as half of a command's
+
     return np.asarray(Rotation.from_quat(np.roll(q, -1, axis=-1)).as_euler(order))
 
 
 def _attitudes(order: str, angles: Array) -> Array:
+    from scipy.spatial.transform import Rotation
+
     made = Rotation.from_euler(order, angles).as_quat()
     return np.asarray(np.roll(made, 1, axis=-1))
 

@@ -37,7 +37,7 @@ def eps_of(precision: str) -> float:
 
 def norm(vectors: Array) -> Array:
     """Euclidean length over the last axis, (..., n) to (...)."""
-    length: Array = np.sqrt(np.sum(vectors * vectors, axis=-1))
+    length: Array = np.sqrt(np.add.reduce(vectors * vectors, -1))
     return length
 
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from math import cos, sin
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from omegadot.reference_impl.arithmetic.components import Numbers, cross3
 from omegadot.reference_impl.rotations import conjugate, quaternion_product
@@ -65,6 +64,8 @@ def angle_rates(chart: Angles) -> Callable[[Numbers, Numbers], list[float]]:
 
     ``ω = ė₃ k + ė₂ R₃ᵀ j + ė₁ R₃ᵀ R₂ᵀ i``, solved for ė. ZeroDivisionError at the singularity.
     """
+    from scipy.spatial.transform import Rotation
+
     i, j, k = _axes(chart)
     body = None if chart.body is None else Rotation.from_quat(np.roll(chart.body, -1))
     matrix = None if body is None else body.inv().as_matrix().tolist()
@@ -96,6 +97,8 @@ def angle_rates(chart: Angles) -> Callable[[Numbers, Numbers], list[float]]:
 
 def angles_of(q: Array, chart: Angles) -> Array:
     """The angles (3,) rad of world_R_body, a unit quaternion (4,) between the scenario's axes."""
+    from scipy.spatial.transform import Rotation
+
     world, body = (NO_TURN if turn is None else turn for turn in (chart.world, chart.body))
     own = quaternion_product(quaternion_product(conjugate(world), q), body)
     found: Array = Rotation.from_quat(np.roll(own, -1)).as_euler(chart.sequence)

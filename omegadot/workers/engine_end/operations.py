@@ -11,8 +11,6 @@ import numpy as np
 
 from omegadot.adapters.protocol import Adapter, Trajectory, UnsupportedError
 from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.solutions.companion import Steps, companion
-from omegadot.reference_impl.solutions.exact_solution import exact_solution
 from omegadot.reference_impl.stepping import stack
 from omegadot.reference_impl.system import Acceleration, State
 from omegadot.workers.engine_end.checked import (
@@ -133,6 +131,9 @@ def _first_steps(adapter: Adapter, request: Request) -> Any:
 
 def _solve(_: Adapter, request: Request) -> Any:
     """The exact states, their floor, and exact omega-dot; no engine takes part."""
+    # No engine's worker solves, and it starts sooner without what this needs.
+    from omegadot.reference_impl.solutions.exact_solution import exact_solution
+
     system, initial = system_from(request["system"]), State(**request["initial"])
     found = exact_solution(system, initial, request["times"])
     omega_dot = forward_dynamics(system, found.state).angular
@@ -141,6 +142,8 @@ def _solve(_: Adapter, request: Request) -> Any:
 
 def _companion(_: Adapter, request: Request) -> Any:
     """The reference stepping one scheme over a sweep, with the growth of rounding."""
+    from omegadot.reference_impl.solutions.companion import Steps, companion
+
     system, initial = system_from(request["system"]), State(**request["initial"])
     plan = [Steps(**step) for step in request["plan"]]
     how = (request["scheme"], request["rate"], plan, request["coordinates"])

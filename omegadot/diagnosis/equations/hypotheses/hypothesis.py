@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from omegadot.diagnosis.equations.equation_form import Form, form_of
+from omegadot.diagnosis.equations.equation_form import Form, changed, form_of
 from omegadot.diagnosis.models.tensors import SPHERE, UNIT
 from omegadot.reference_impl.inertia import parallel_axis
 from omegadot.reference_impl.system import Array, Body, Load, System
@@ -88,7 +88,7 @@ def of_body(text: str, part: str, change: Callable[[Body, System], dict[str, Any
 
 def of_form(text: str, part: str, change: Callable[[Form, System], dict[str, Any]]) -> Hypothesis:
     """Another equation: which of its parts are others."""
-    return Hypothesis(text, part, form=lambda form, system: replace(form, **change(form, system)))
+    return Hypothesis(text, part, form=lambda form, system: changed(form, **change(form, system)))
 
 
 def diagonal(matrix: Array) -> Array:

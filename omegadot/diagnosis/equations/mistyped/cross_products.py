@@ -18,7 +18,7 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import weight
 from omegadot.reference_impl.rotations import rotate, rotate_inverse
-from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array
 
 AXES = "xyz"
@@ -128,7 +128,7 @@ def _lines(k: int, uses: tuple[str, ...]) -> Callable[[Evidence], Array]:
 
     def torques(e: Evidence) -> Array:
         made = _summed_products(e, uses)
-        return np.asarray(made * apply(inverse(moving_inertia(e.system)), axis))
+        return np.asarray(made * apply(e.solve, axis))
 
     def levers(e: Evidence) -> Array:
         w = e.states.angular_velocity

@@ -16,10 +16,10 @@ from omegadot.diagnosis.equations.operators.operands import pushed
 from omegadot.diagnosis.equations.readings import Reading
 from omegadot.diagnosis.wording.digits import listed
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.inertia import lever, moving_inertia
+from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.loads import weight
 from omegadot.reference_impl.rotations import rotate_inverse
-from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array
 
 TORQUE, WEIGHT, MOVED = "torque", "weight", "moved"
@@ -62,7 +62,7 @@ def _torque(e: Evidence, more: Array, uses: tuple[str, ...]) -> Array:
 def _lines(matrices: Matrices, uses: tuple[str, ...]) -> Callable[[Evidence], Array]:
     def angular(e: Evidence) -> Array:
         more = matrices(e.states.orientation)
-        return apply(inverse(moving_inertia(e.system)), _torque(e, more, uses))
+        return apply(e.solve, _torque(e, more, uses))
 
     def linear(e: Evidence) -> Array:
         q, more = e.states.orientation, matrices(e.states.orientation)

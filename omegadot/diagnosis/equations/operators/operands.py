@@ -16,7 +16,7 @@ from omegadot.reference_impl.motion import (
     forward_dynamics,
 )
 from omegadot.reference_impl.rotations import normalize, rotate_inverse
-from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 
@@ -41,7 +41,7 @@ class Operand:
 
 def pushed(e: Evidence, torque: Array) -> Acceleration:
     """The right accelerations with one more torque, (n, 3) N m in body axes."""
-    return turned(e, e.true.angular + apply(inverse(moving_inertia(e.system)), torque))
+    return turned(e, e.true.angular + apply(e.solve, torque))
 
 
 def turned(e: Evidence, angular: Array) -> Acceleration:
