@@ -20,7 +20,7 @@ from omegadot.diagnosis.experiments.conditioned import UNKNOWN, condition_in
 from omegadot.diagnosis.experiments.subject import Subject
 from omegadot.diagnosis.integrator import IntegratorCauses
 from omegadot.diagnosis.kept_case import opposite_steps, source_of
-from omegadot.diagnosis.models.misread_state import known_state
+from omegadot.diagnosis.models.misread_state import known_state, misreading_in
 from omegadot.diagnosis.models.wrong_lever import lever_causes
 from omegadot.diagnosis.models.wrong_model import model_causes
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
@@ -105,7 +105,10 @@ class CaseCauses:
         failed = {(row.gate, row.metric) for row in self._shared_rows}
         if {gate for gate, _ in failed} == {"model"}:
             unknown = text.startswith(UNKNOWN) or bool(condition_in(text))
-            return Subject(of_states=True) if failed == {("model", "state")} and unknown else None
+            if failed != {("model", "state")} or not unknown:
+                return None
+            misread = misreading_in(text, self._case.system)
+            return Subject(of_states=True, misreading=misread)
         if ("equation", "residual") not in failed or any(gate == "model" for gate, _ in failed):
             return None
         one = self._across.acting(self._case.name, FORWARD)

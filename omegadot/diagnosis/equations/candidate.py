@@ -73,13 +73,16 @@ class Candidate:
         own = {one.part.partition(":")[0] for one in self.fixed}
         return own | ({self.family.part} if self.family else set())
 
-    def text(self, system: System) -> str:
-        """The cause as text, with the numbers of this system."""
+    def text(self, system: System, alone: bool = True) -> str:
+        """The cause as text, with the numbers of this system.
+
+        alone: whether it is of this system alone, where the gravity that it comes to is shown.
+        """
         if self.reading is not None:
             return self.reading.text
         if self.terms is not None and self.numbers is not None:
             return self.terms.text(system, self.numbers)
-        texts = [_with_gravity(one, system) for one in self.fixed]
+        texts = [_with_gravity(one, system) if alone else one.text.strip() for one in self.fixed]
         if self.family is not None and self.numbers is not None:
             texts.append(self.family.text(system, self.numbers))
         return ", and ".join(texts)

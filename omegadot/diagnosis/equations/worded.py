@@ -58,7 +58,7 @@ def _only_omega_dot(whole: Sequence[Held], source: str) -> bool:
 def _text_of(held: Held, source: str) -> str:
     """One cause; where its numbers are others on each scenario, those of the first."""
     one = held.candidate
-    text = one.text(held.shown[0].evidence[source].system)
+    text = one.text(held.shown[0].evidence[source].system, alone=len(held.shown) == 1)
     if one.family is not None and one.numbers is not None and not one.fixed:
         pairs = [(held.shown[0].system, one.numbers), *((s.system, p) for s, p in held.numbers)]
         alike = one.family.alike(pairs)
@@ -101,7 +101,7 @@ def on_some(held: Sequence[Held], own: bool = False) -> Named:
         condition = one.condition()
         if condition:
             evidence = next(iter(one.shown[0].evidence.values()))
-            text = one.law or one.candidate.text(evidence.system)
+            text = one.law or one.candidate.text(evidence.system, alone=len(one.shown) == 1)
             text = f"{text}, but only where {condition}"
             if one.numbers and not one.law:
                 text = f"{text} ({one.shown[0].name}; other numbers on {len(one.numbers)} more)"

@@ -17,6 +17,7 @@ from omegadot.diagnosis.equations.evidence import (
     of_forward_dynamics,
 )
 from omegadot.diagnosis.experiments.observed import Flags, Trial
+from omegadot.diagnosis.models.misread_state import would_show
 from omegadot.diagnosis.stepping.kinematics import shows_in_motion
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.gates.bounds.scales import norm
@@ -140,22 +141,37 @@ class StepsJudge(Judge):
 
 @dataclass
 class StateJudge(Judge):
-    """Of states that are set and read back, of which a request takes one."""
+    """Of states that are set and read back, of which a request takes one.
 
+    misreading: the cause, where it is one that shows at some states alone.
+    """
+
+    misreading: str = ""
     at_once: int = 1
     left: int = 3 * MOST  # which nothing is stepped or solved for
 
     def shown(self, case: Case, states: State) -> Shown | None:
         """By the gate's own rows."""
-        wrong = list[bool]()
+        wrong, known = list[bool](), list[bool]()
         for one in _each(states):
             answer = self.driver.request(case, "model", state=one, before=states[0])
             if not answer.ok:
                 self.left = self.left if answer.outcome in ("raised", "unsupported") else 0
                 return None
-            rows = state_rows(case, one, State(**answer.result["state"]), self.eps)
-            wrong.append(any(row.verdict == "fail" for row in rows))
-        return np.array(wrong), np.ones(len(wrong), dtype=bool)
+            back = State(**answer.result["state"])
+            wrong.append(not reads_back(case, one, back, self.eps))
+            known.append(shows(self.misreading, case, one, self.eps))
+        return np.array(wrong), np.array(known)
+
+
+def reads_back(case: Case, requested: State, back: State, eps: float) -> bool:
+    """Whether a state that was set is what is read back."""
+    return all(row.verdict != "fail" for row in state_rows(case, requested, back, eps))
+
+
+def shows(misreading: str, case: Case, state: State, eps: float) -> bool:
+    """Whether the fault would be seen at this state; of an unknown one it is taken to be."""
+    return not misreading or would_show(misreading, case, state, eps)
 
 
 def _each(states: State) -> Iterator[State]:

@@ -22,15 +22,16 @@ from omegadot.diagnosis.experiments.judges import (
     Judge,
     StateJudge,
     StepsJudge,
+    reads_back,
     shown_in,
     shown_in_steps,
+    shows,
 )
 from omegadot.diagnosis.experiments.observed import Trial
 from omegadot.diagnosis.experiments.sorting import contradicted
 from omegadot.diagnosis.experiments.step_lengths import limit_of_length
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.gates.case import Case
-from omegadot.gates.states.model import state_rows
 from omegadot.harness.drive import Driver
 from omegadot.reference_impl.system import State
 
@@ -42,13 +43,14 @@ STATES = 40  # of each scenario that are looked at
 class Subject:
     """A fault of forward dynamics, of the steps of an integrator, or of states read back.
 
-    candidate: the cause, where one is named; what it would show is then known. text: the cause of
-    the motion in the steps, where that is named.
+    candidate: the cause, where one is named; what it would show is then known. misreading: that of
+    states, text: of the motion in the steps, where these are named.
     """
 
     candidate: Candidate | None = None
     integrator: Integrator | None = None
     of_states: bool = False
+    misreading: str = ""
     text: str = ""
     by_length: bool = False
 
@@ -57,7 +59,7 @@ class Subject:
         """What it is, on whichever scenario."""
         own = self.candidate.key if self.candidate is not None else ()
         name = self.integrator.name if self.integrator is not None else ""
-        return (own, name, self.of_states, self.text, self.by_length)
+        return (own, name, self.of_states, self.misreading, self.text, self.by_length)
 
 
 @dataclass(frozen=True)
@@ -107,7 +109,8 @@ def _experiment_of(
     how, one = (driver, case, eps), subject.candidate
     judge: Judge
     if subject.of_states:
-        return Experiment(StateJudge(*how), [*_of_states(case, scenes, eps)])
+        judge = StateJudge(*how, misreading=subject.misreading)
+        return Experiment(judge, _of_states(subject.misreading, case, scenes, eps))
     if subject.integrator is None:
         judge = ForwardJudge(*how, one)
         every = [s.evidence[FORWARD] for s in scenes.values() if FORWARD in s.evidence]
@@ -136,14 +139,15 @@ def _length_of(
     return ""
 
 
-def _of_states(case: Case, scenes: Mapping[str, Scene], eps: float) -> list[Trial]:
+def _of_states(misreading: str, case: Case, scenes: Mapping[str, Scene], eps: float) -> list[Trial]:
     found = list[Trial]()
     for scene in scenes.values():
         if scene.states is None:
             continue
         requested, back = scene.states
-        rows = state_rows(replace(case, system=scene.system), requested, back, eps)
-        wrong = np.array([any(row.verdict == "fail" for row in rows)])
+        here = replace(case, system=scene.system)
+        wrong = not reads_back(here, requested, back, eps)
+        known = shows(misreading, here, requested, eps)
         one = State(*(f[None] for f in vars(requested).values()))
-        found.append(Trial(scene.system, one, wrong, np.ones(1, dtype=bool)))
+        found.append(Trial(scene.system, one, np.array([wrong]), np.array([known])))
     return found

@@ -145,6 +145,19 @@ def _unknown_map(across: Across, every: Sequence[_Round]) -> str:
     return unknown_map(maps) if all(map(_is_omega, every)) else ""
 
 
+def misreading_in(text: str, system: System) -> str:
+    """The misreading that a cause on this system names; "" where it names none of these."""
+    return next((w.statement for w in _ways(system) if text.startswith(w.statement)), "")
+
+
+def would_show(misreading: str, case: Case, state: State, eps: float) -> bool:
+    """Whether a misreading makes another state of this one, on this system."""
+    way = next((w for w in _ways(case.system) if w.statement == misreading), None)
+    if way is None:
+        return False  # of a pivot, and there is none
+    return any(row.verdict == "fail" for row in state_rows(case, state, way.right(state), eps))
+
+
 def known_state(across: Across, case: Case, eps: float) -> str:
     """What is seen of all states that do not read back, where no cause fits; "" where all do."""
     every = _every(across, case, eps)

@@ -116,7 +116,7 @@ def PivotSlightlyOff(load: Load) -> Load:
     return replace(load, pivot=None if load.pivot is None else load.pivot + ASIDE)
 
 
-@other_load("gravity-oblique", named="gravity is (")
+@other_load("gravity-oblique", named=("gravity is (", "gravity's components are permuted"))
 def GravityAxesPermuted(load: Load) -> Load:
     """Gravity's components stand under the wrong axes: y up for z up."""
     return replace(load, gravity=np.roll(load.gravity, 1))
