@@ -111,6 +111,8 @@ class CaseCauses:
             return Subject(of_states=True, misreading=misread)
         if ("equation", "residual") not in failed or any(gate == "model" for gate, _ in failed):
             return None
+        if FORWARD not in self._across.scenes[self._case.name].evidence:
+            return None  # the residual is of inverse dynamics
         one = self._across.acting(self._case.name, FORWARD)
         return Subject(one) if one is not None or text.startswith(UNKNOWN) else None
 

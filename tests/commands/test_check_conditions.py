@@ -27,3 +27,11 @@ def test_a_check_that_passes_costs_no_experiment(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(diagnose, "conditions_of", refused)
     assert omegadot.check("reference", scenarios="t-handle", random=0, shrink=False).passed
+
+
+def test_wrong_inverse_dynamics_alone_end_in_a_cause() -> None:
+    """Caught: an error in the search for a condition, of forward dynamics that are not there."""
+    found = omegadot.check(f"{FILE}:InverseAlone", scenarios="t-handle", random=0, shrink=False)
+    (message,) = found.failures.values()
+    assert "inverse dynamics" in message.message
+    assert "gyroscopic term" in message.message

@@ -10,7 +10,7 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import torque
 from omegadot.reference_impl.symmetric import apply, inverse
-from omegadot.reference_impl.system import Acceleration, State
+from omegadot.reference_impl.system import Acceleration, Array, State
 
 
 class EarlyReturn(ReferenceAdapter):
@@ -28,3 +28,19 @@ class EarlyReturn(ReferenceAdapter):
         none = ~np.any(torque(self.system, states), axis=-1, keepdims=True)
         lost = apply(inverse(tensor), cross(w, apply(tensor, w)))
         return Acceleration(sound.angular + np.where(none, lost, 0.0), sound.linear)
+
+
+class InverseAlone(ReferenceAdapter):
+    """Without forward dynamics; inverse dynamics leave the gyroscopic term out."""
+
+    @property
+    def description(self) -> Description:
+        whole = super().description
+        kept = tuple(i for i in whole.integrators if i.name == "lie-rk4")
+        features = whole.features - {"forward_dynamics"}
+        return Description("inversealone", "1.0", kept, features=features)
+
+    def inverse_dynamics(self, states: State, accelerations: Acceleration) -> Array:
+        w, tensor = states.angular_velocity, moving_inertia(self.system)
+        whole = super().inverse_dynamics(states, accelerations)
+        return whole - cross(w, apply(tensor, w))
