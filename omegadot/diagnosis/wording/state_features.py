@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.energy import rotational_kinetic_energy
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.momentum import angular_momentum
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import normalize, rotation_matrix
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Array, State, System
 
 Numbers = dict[str, tuple[Array, str]]
@@ -80,8 +82,11 @@ def _dynamic(system: System, states: State) -> Numbers:
         rate = norm(forward_dynamics(system, states).angular)
         energy = rotational_kinetic_energy(system, states)
         energy = energy + 0.5 * system.body.mass * norm(states.linear_velocity) ** 2
+        w = states.angular_velocity
+        about = 0.5 * np.sum(w * apply(moving_inertia(system), w), axis=-1)
         momentum = norm(angular_momentum(system, states))
     return {
+        "the kinetic energy of rotation, about the pivot where there is one,": (about, "J"),
         "the kinetic energy": (energy, "J"),
         "the kinetic energy over the mass": (energy / system.body.mass, "J/kg"),
         "the size of the angular momentum": (momentum, "kg m^2/s"),
