@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from omegadot.diagnosis.reported.run import ReportedRun
-from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT
+from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT, scheme_named
 from omegadot.diagnosis.stepping.slips import slipped
 from omegadot.diagnosis.stepping.step_ends import (
     End,
@@ -85,9 +85,12 @@ def other_ends(reported: ReportedRun) -> list[str]:
 def slips_of(reported: ReportedRun, name: str) -> list[str]:
     """A scheme with one slip in it, whatever is declared or guessed; what states less first.
 
-    All that fit: some differ in what this motion does not have.
+    All that fit: some differ in what this motion does not have. None where the scheme fits as it
+    is.
     """
     first = reported.until(2)  # the first interval rules out most of them
+    if name and reported.is_made(partial(ReportedRun.stepped, scheme=scheme_named(name))):
+        return []
     return [
         f"it is stepped by {name}, but {text}"
         for text, scheme in slipped(name).items()

@@ -10,6 +10,7 @@ import numpy as np
 from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
 from omegadot.diagnosis.stepping.on_quaternion import Rate, Rows, at_unit, on_quaternion
 from omegadot.diagnosis.stepping.tableau_slips import tableau_slips, wrong_signs
+from omegadot.diagnosis.stepping.unit_slips import unit_slips
 from omegadot.reference_impl.rotations import quaternion_product
 from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.schemes.scheme import Step
@@ -173,6 +174,10 @@ EULER: dict[str, Step] = {
     "the turn of a step is taken by the third-order series of the exponential": _by_series(3),
 }
 OF_SCHEME = {"rk4-quaternion": RUNGE_KUTTA, "semi-implicit-euler": EULER, **tableau_slips()}
+# Their steps end with a quaternion that is made unit.
+ON_QUATERNION = [name for name in OF_SCHEME if "quaternion" in name]
+for _name in ON_QUATERNION:
+    OF_SCHEME[_name] = {**OF_SCHEME[_name], **unit_slips(scheme_named(_name).step)}
 
 
 def slipped(name: str) -> dict[str, Scheme]:

@@ -32,6 +32,7 @@ OF_ONE_RUN = (
     *("the last step is missing", "left over", "one before", "does not begin at", "its sign"),
     "the same at every sample of a run",
 )
+AT_STEPS = ", at steps of"
 # One number in every run, or it is another cause.
 CONSTANTS = ("low-pass", "it is filtered", "every time is too", "every time is scaled by")
 SAME = 0.01  # relative, of such a number; it has three digits
@@ -41,7 +42,7 @@ SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
 
 def kind_of(text: str) -> str:
     """A cause without its numbers, and without where it shows."""
-    for end in (", but only where", ", at steps of", ", on "):
+    for end in (", but only where", AT_STEPS, ", on "):
         text = text.partition(end)[0]
     if any(one in text for one in CONSTANTS):
         return text
@@ -122,6 +123,9 @@ def over_run(text: str, by_scenario: Mapping[str, Sequence[str]]) -> str:
     alike = {n: t for n, texts in by_scenario.items() for t in texts if kind_of(t) == kind}
     if len(set(alike.values())) < 2:
         return text
+    plain = {one.partition(AT_STEPS)[0] for one in alike.values()}
+    if len(plain) == 1:  # at some steps it is hidden on some scenarios
+        return plain.pop()
     first, shown = next(iter(alike.items()))
     others = sum(one != shown for one in alike.values())
     return f"{shown} ({first}; other numbers on {others} more)"
