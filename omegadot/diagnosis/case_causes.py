@@ -15,7 +15,6 @@ from omegadot.diagnosis.equations.wrong_equation import (
     is_of_a_load,
     scene_of,
 )
-from omegadot.diagnosis.equations.wrong_torque import torque_causes
 from omegadot.diagnosis.experiments.conditioned import UNKNOWN, condition_in
 from omegadot.diagnosis.experiments.subject import Subject
 from omegadot.diagnosis.integrator import IntegratorCauses
@@ -217,13 +216,17 @@ class CaseCauses:
 
     def _of_torques(self) -> list[str]:
         """Of inverse dynamics: by themselves, as in the steps, or as a wrong term would make it."""
+        name, torque = self._case.name, self._answers.inverse.result["torque"]
+        if INVERSE not in self._across.scenes[name].evidence:
+            lost = int(np.count_nonzero(~np.isfinite(torque).all(-1)))
+            return [
+                f"the torque of inverse dynamics is not finite at {lost} of {len(torque)} states"
+            ]
         same = self._of_steps_as_well()
         if same:
             return [same]
-        states, answers, name = self._states, self._answers, self._case.name
-        known = (self._case.system, states.random, states.acceleration)
-        found = torque_causes(*known, answers.inverse.result["torque"], eps_of(answers.precision))
-        formula = "" if found else self._across.of_inverse_dynamics(name)
+        found = self._across.of_torque(name)
+        formula = "" if found else self._across.formula_of_torque(name)
         term = "" if found or formula else self._across.cause(name, INVERTED)
         return found or [f"in inverse dynamics, {term}" if term else formula] * bool(
             term or formula

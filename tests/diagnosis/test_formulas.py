@@ -238,5 +238,5 @@ def test_a_torque_that_inverse_dynamics_add_is_found() -> None:
         evidence = of_inverse_dynamics(system, x, requested, torque)
         features = features_of(system, one.initial)
         across.add(Scene(one.name, system, features, {INVERSE: evidence}))
-    (text,) = {across.of_inverse_dynamics(one.name) for one in EVERY}
+    (text,) = {across.formula_of_torque(one.name) for one in EVERY}
     assert text.startswith("inverse dynamics are wrong: a torque k omega-dot x I_c omega is added")

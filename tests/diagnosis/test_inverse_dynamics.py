@@ -122,3 +122,28 @@ def test_what_is_wrong_on_one_scenario_alone_names_no_term() -> None:
         return gravity_turned(s, x, a) if heavy else 0.7 * gyroscopic_turned(s, x, a)
 
     assert set(map(tuple, named(own, (TOPS[0], TOPS[1])).values())) == {()}
+
+
+def about_centre(s: System, x: State, _: Acceleration) -> Array:
+    moved, w = moving_inertia(s) - s.body.inertia, x.angular_velocity
+    return np.asarray(-cross(w, w @ np.asarray(moved).T))
+
+
+def test_an_equation_with_one_thing_wrong_is_named_on_all_scenarios() -> None:
+    """Caught: "the gyroscopic term scaled by 1.8", which fits one symmetric top alone."""
+    text = "the gyroscopic term is formed with the inertia about the centre of mass"
+    found = named(about_centre, TOPS)
+    assert len({one.name for one in TOPS if found[one.name]}) > 1
+    for one in found.values():
+        assert not one or one[0].startswith(f"in inverse dynamics, {text}")
+
+
+def test_a_torque_that_is_not_finite_is_stated() -> None:
+    """Caught: an error in the search for causes."""
+
+    def lost(_: System, x: State, __: Acceleration) -> Array:
+        first = np.arange(len(x.angular_velocity))[:, None] == 0
+        return np.where(first, np.nan, 0.0 * x.angular_velocity)
+
+    due = ["the torque of inverse dynamics is not finite at 1 of 60 states"]
+    assert set(map(tuple, named(lost, FEW).values())) == {tuple(due)}

@@ -20,6 +20,7 @@ from omegadot.diagnosis.equations.pivot_inertia import pivot_inertia
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
 from omegadot.diagnosis.equations.solve_matrix import solve_matrix
 from omegadot.diagnosis.equations.worded import Named, named, on_some
+from omegadot.diagnosis.equations.wrong_inverse import WrongInverse
 
 Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
 
@@ -32,6 +33,7 @@ class Across:
         self._searched, self._formulas = Searched(self._all), Formulas(self._all)
         self._at_states, self._carried = AtSomeStates(self._all), Carried(self._all)
         self._left_over, self._mistyped = LeftOver(), Mistyped(self._all)
+        self._inverse = WrongInverse()
         self._named: dict[tuple[str, str], Named] = {}
         self._known: dict[tuple[str, tuple[str, ...]], str] = {}
         self._rules: dict[tuple[Rule, str], str] = {}
@@ -47,6 +49,8 @@ class Across:
         self._formulas.add()
         self._at_states.add(scene)
         self._left_over.add(scene)
+        if INVERSE in scene.evidence:
+            self._inverse.add(scene.name, scene.evidence[INVERSE])
         self._carried, self._mistyped = Carried(self._all), Mistyped(self._all)
         self._named, self._known, self._rules = {}, {}, {}
 
@@ -91,7 +95,11 @@ class Across:
                 self._known[source, kinds] = known_over(off, right, source, along, kinds)
         return self._known[source, kinds]
 
-    def of_inverse_dynamics(self, name: str) -> str:
+    def of_torque(self, name: str) -> list[str]:
+        """What the torque of inverse dynamics leaves out, counts twice or is made of in error."""
+        return self._inverse.causes(name)
+
+    def formula_of_torque(self, name: str) -> str:
         """The formula of a wrong torque; "" where none holds on the whole run."""
         scene = self.scenes[name]
         if INVERSE not in scene.evidence or not scene.evidence[INVERSE].clear:

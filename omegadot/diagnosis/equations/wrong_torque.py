@@ -9,6 +9,7 @@ import numpy as np
 from omegadot.diagnosis.equations.evidence import BEYOND_ROUNDING, SLACK
 from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orders
 from omegadot.diagnosis.wording.digits import factor
+from omegadot.diagnosis.wording.kinds import MOST_NAMED, either
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm, torque_size
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
@@ -18,13 +19,19 @@ from omegadot.reference_impl.rotations import rotate, rotate_inverse
 from omegadot.reference_impl.symmetric import apply, inverse
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
-MOST_NAMED = 3  # causes between which nothing decides
-
 
 def torque_causes(
     system: System, states: State, requested: Acceleration, torque: Array, eps: float = EPS
 ) -> list[str]:
     """What the torque of inverse dynamics leaves out or counts, forward dynamics being sound."""
+    found = fitting_torques(system, states, requested, torque, eps)
+    return either(found) if len(found) <= MOST_NAMED else []
+
+
+def fitting_torques(
+    system: System, states: State, requested: Acceleration, torque: Array, eps: float = EPS
+) -> list[str]:
+    """Every cause that fits one system; many are one where it lacks what would tell them apart."""
     true, w = inverse_dynamics(system, states, requested), states.angular_velocity
     bound = ROUNDINGS_PER_EVALUATION * eps * torque_size(system, states, requested)
     if np.all(norm(torque - true) <= BEYOND_ROUNDING * bound):
@@ -78,9 +85,7 @@ def torque_causes(
             k = _share(torque - true, alone, bound)
             if k is not None and fits(true + k * alone):
                 found.append(_worded(f"the {'xyz'[axis]} component of {what}", 1.0 + k))
-    if len(found) > MOST_NAMED:
-        return []
-    return ["either " + ", or ".join(found)] if len(found) > 1 else found
+    return found
 
 
 def _share(rest: Array, term: Array, bound: Array) -> float | None:

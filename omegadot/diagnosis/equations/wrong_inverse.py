@@ -1,0 +1,98 @@
+"""Causes in inverse dynamics that hold on all scenarios of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.diagnosis.equations.equation_form import Form, form_of
+from omegadot.diagnosis.equations.evidence import SLACK, Evidence
+from omegadot.diagnosis.equations.hypotheses import hypotheses, wrong_form
+from omegadot.diagnosis.equations.wrong_torque import fitting_torques
+from omegadot.diagnosis.wording.kinds import MOST_NAMED, either
+from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.motion import inverse_dynamics
+from omegadot.reference_impl.rotations import rotate_inverse
+from omegadot.reference_impl.symmetric import apply, inverse
+from omegadot.reference_impl.system import Array, System
+
+
+class WrongInverse:
+    """The evidence of inverse dynamics so far, by scenario, and what fits each."""
+
+    def __init__(self) -> None:
+        self._evidence: dict[str, Evidence] = {}
+        self._fits: dict[str, list[str]] = {}
+        self._forms: list[str] | None = None
+
+    def add(self, name: str, evidence: Evidence) -> None:
+        """Of one more scenario."""
+        self._evidence[name], self._forms = evidence, None
+
+    def causes(self, name: str) -> list[str]:
+        """What explains this scenario and every other that fails; what fits this one, else.
+
+        A term of the torque, or the equation with one thing wrong, turned about.
+        """
+        own = self._of(name)
+        failing = [other for other, one in self._evidence.items() if one.clear]
+        common = [text for text in own if all(text in self._of(other) for other in failing)]
+        if not common:
+            if self._forms is None:
+                with np.errstate(all="ignore"):
+                    self._forms = _forms([one for one in self._evidence.values() if one.finite])
+            common = self._forms
+        found = common or own
+        return either(found) if len(found) <= MOST_NAMED else []
+
+    def _of(self, name: str) -> list[str]:
+        if name not in self._fits:
+            one = self._evidence[name]
+            torque = inverse_dynamics(one.system, one.states, one.true)
+            torque = torque + apply(moving_inertia(one.system), _off(one))
+            self._fits[name] = fitting_torques(one.system, one.states, one.true, torque, one.eps)
+        return self._fits[name]
+
+
+def _off(evidence: Evidence) -> Array:
+    """(n, 3): by how much omega-dot would be another, by the error of the torque."""
+    return np.asarray(evidence.found.angular - evidence.true.angular)
+
+
+def _forms(every: Sequence[Evidence]) -> list[str]:
+    """The equations with one thing wrong whose torques are the engine's on all scenarios."""
+    wrong = [one for one in every if one.clear]
+    if not wrong:
+        return []
+    left: list[str] | None = None
+    for one in (*wrong, *(other for other in every if not other.clear)):
+        known = _wrong_forms(one.system)
+        fits = [text for text, form in known.items() if np.all(_is_of(one, form))]
+        # where a hypothesis has no meaning, or makes no difference, it is as right as the equation
+        absent = [] if one.clear or left is None else [t for t in left if t not in known]
+        left = [t for t in (fits if left is None else left) if t in {*fits, *absent}]
+        if not left:
+            return []
+    return [f"in inverse dynamics, {text}" for text in left or []]
+
+
+def _wrong_forms(system: System) -> Mapping[str, Form]:
+    right = form_of(system)
+    made = {one.text.strip(): wrong_form([one], system, right) for one in hypotheses(system)}
+    return {text: form for text, form in made.items() if form is not None}
+
+
+def _is_of(evidence: Evidence, form: Form) -> NDArray[np.bool_]:
+    """(n,): whether ``solve^-1 a + omega x (spin omega) - arm x weight`` is what is answered."""
+    states, requested = evidence.states, evidence.true.angular
+    w = states.angular_velocity
+    weight = rotate_inverse(states.orientation, form.weight) + form.weight_body
+    made = apply(np.linalg.inv(form.solve), requested) + cross(w, apply(form.spin, w))
+    made = made - cross(form.arm, weight)
+    true = inverse_dynamics(evidence.system, states, evidence.true)
+    off = apply(inverse(moving_inertia(evidence.system)), made - true)
+    return np.asarray(norm(_off(evidence) - off) <= SLACK * evidence.angular_bound)
