@@ -21,6 +21,7 @@ from omegadot.reference_impl.system import Array
 from omegadot.written import written
 
 SLIGHT = BEYOND_ROUNDING * AMPLIFIED * ROUNDINGS_PER_EVALUATION  # times the rounding of a number
+SMALL = 1e-3  # of what is beyond a limit: one as near to zero as this is zero
 CLOSE = 1e-2  # relative: a change that is in proportion
 QUANTITIES = (
     ("angular_velocity", "omega", "rad/s"),
@@ -194,11 +195,17 @@ def _limit(
         if np.ptp(ends) <= near < np.min(beyond) and len(ends) > 1:
             end = float(np.median(ends)) if abs(np.median(ends)) > near else 0.0
             side = "above" if np.all(was[jumped, k] < end) else "below"
-            return f"{what} along {'xyz'[k]} is held {side} {written(end)} {unit}"
-    limit = float(np.median(held[jumped]))
-    scaled = was * np.minimum(1.0, limit / np.where(size > 0.0, size, 1.0))[:, None]
+            known = bool(end) or near <= SMALL * float(np.min(beyond))
+            limit = (
+                f"{written(end)} {unit}"
+                if known
+                else f"a limit within {written(near, 1)} {unit} of 0"
+            )
+            return f"{what} along {'xyz'[k]} is held {side} {limit}"
+    most = float(np.median(held[jumped]))
+    scaled = was * np.minimum(1.0, most / np.where(size > 0.0, size, 1.0))[:, None]
     if np.all(norm(now - scaled) <= 10 * allowed):
-        return f"{what} is held below {written(limit)} {unit}"
+        return f"{what} is held below {written(most)} {unit}"
     largest = float(np.max(np.abs(now[jumped])))
     if np.all(norm(now - np.clip(was, -largest, largest)) <= 10 * allowed):
         return f"each component of {what} is held within {written(largest)} {unit}"

@@ -22,7 +22,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     over_diagonal,
     own_inertia,
 )
-from omegadot.reference_impl.system import Array, System
+from omegadot.reference_impl.system import Array, Load, System
 
 
 def torque_hypotheses() -> Iterator[Hypothesis]:
@@ -74,11 +74,24 @@ def torque_hypotheses() -> Iterator[Hypothesis]:
                 "torque",
                 given(signs, lambda k, one: applied(one, lambda t: k * t)),
             )
+        for frame, other in (("body", "world"), ("world", "body")):
+            component, names = f"the {AXES[axis]} component", (f"torque_{frame}", f"torque_{other}")
+            yield of_load(
+                f"{component} of the torque in {frame} axes acts in {other} axes",
+                "torque",
+                given(axis, *names, _component_moved),
+            )
+            for what, times in (("has the wrong sign", -1.0), ("is missing", 0.0)):
+                yield of_load(
+                    f"{component} of the torque in {frame} axes {what}",
+                    "torque",
+                    given(axis, names[0], times, _component_scaled),
+                )
     for order in permutations(range(3)):
         if order != (0, 1, 2):
-            names = ", ".join(AXES[k] for k in order)
+            shown = ", ".join(AXES[k] for k in order)
             yield of_load(
-                f"the applied torque's components are permuted: x, y, z hold those of {names}",
+                f"the applied torque's components are permuted: x, y, z hold those of {shown}",
                 "torque",
                 given(order, lambda k, one: applied(one, lambda t: t[list(k)])),
             )
@@ -105,6 +118,12 @@ def torque_hypotheses() -> Iterator[Hypothesis]:
             return {"torque_body": ratio @ form.torque_body, "turned": ratio}
 
         yield of_form(f"the applied torque {text}", "torque", change)
+        for frame, changed in (("body", "torque_body"), ("world", "turned")):
+            yield of_form(
+                f"the torque in {frame} axes {text}",
+                "torque",
+                given(change, changed, lambda c, k, f, s: {k: c(f, s)[k]}),
+            )
     for sign in (1.0, -1.0):
         yield of_form(
             "the applied torque turns the body about its origin, so that it moves the centre of "
@@ -118,6 +137,16 @@ def torque_hypotheses() -> Iterator[Hypothesis]:
         "torque",
         lambda f, s: _about_origin(f, s) | _moves_center(s, 1.0),
     )
+
+
+def _component_moved(axis: int, of: str, to: str, load: Load) -> dict[str, Array]:
+    """One component of a torque is taken as that along the same axis of the other frame."""
+    alone = np.where(np.arange(3) == axis, getattr(load, of), 0.0)
+    return {of: getattr(load, of) - alone, to: getattr(load, to) + alone}
+
+
+def _component_scaled(axis: int, of: str, times: float, load: Load) -> dict[str, Array]:
+    return {of: np.where(np.arange(3) == axis, times * getattr(load, of), getattr(load, of))}
 
 
 def _moves_center(system: System, sign: float) -> dict[str, Any]:
