@@ -9,6 +9,7 @@ from in_process import builtin, judged, truth_of
 
 from omegadot.adapters.protocol import Integrator, Trajectory
 from omegadot.adapters.reference.adapter import ReferenceAdapter
+from omegadot.gates.bounds.opened import opened_by_scheme
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.rows import Row
 from omegadot.gates.steps.scheme import OPENED
@@ -85,3 +86,16 @@ def test_a_turn_that_is_off_the_change_has_one_formula() -> None:
         assert finest(turn, JUMP if exact else 0.0, 1.0).verdict == "fail"
         row = finest(turn, 0.0, 0.0, steps=NAME)
         assert (row.verdict, OPENED in row.note) == ("pass", False)
+
+
+def test_nothing_is_left_open_from_where_growth_is_infinite() -> None:
+    """Caught: bounds that are no numbers, infinity times no lever, and an engine accused."""
+    case = spinning(SHORT)
+    truth, sweep = truth_of(case, (NAME,)), case.sweeps[-1]
+    own = truth.companion(Integrator(NAME, NAME, {}), sweep)
+    assert own is not None
+    grown = replace(own, growth=np.where(np.arange(len(own.growth)) > 5, np.inf, own.growth))
+    theta = np.where(np.isfinite(grown.growth), 1e-12, np.inf)
+    left = opened_by_scheme(truth.yardstick, sweep, grown, theta)
+    assert left["omega"][5] > 0.0
+    assert all(np.isfinite(values).all() for values in left.values())

@@ -154,6 +154,19 @@ def test_one_sample_that_is_no_number_fails(place: int) -> None:
     assert hidden == Finding("unsettled", "not finite")
 
 
+def test_an_overflow_is_no_other_scheme_where_rounding_is_as_large_as_the_motion() -> None:
+    """Caught: an engine accused that overflows a sample before the run of its scheme does."""
+    bounds = np.array([0.0, 1e-15, 1e-3, 1e2])
+    error, left = np.array([0.0, 0.0, 0.0, np.inf]), np.array([0.0, 0.0, 1e-4, np.inf])
+    seen = Evidence(error, bounds, left, (SLOW,))
+    assert judge(seen, "euler", 1).kind == "beyond"
+    # not where it has left the scheme before, nor where rounding is still small
+    apart = replace(seen, left=np.array([0.0, 0.0, 1e-2, np.inf]))
+    assert judge(apart, "euler", 1).kind == "unexplained"
+    small = replace(seen, round_off=np.array([0.0, 1e-15, 1e-3, 1e-2]))
+    assert judge(small, "euler", 1).kind == "unexplained"
+
+
 def test_an_error_that_finer_steps_do_not_explain_fails() -> None:
     seen = replace(evidence([0.0, 1.0, 1.0], None, None, ObservedOrder(1.0, True)), excess=1.1)
     assert judge(seen, "euler", 1) == Finding(

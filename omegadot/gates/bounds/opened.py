@@ -29,8 +29,9 @@ def opened_by_scheme(
     left = left + _unsolved(scheme, yardstick, sweep.timestep) * sweep.sample_steps
     if not left.any():
         return {}
-    # growth may be infinite where nothing is left open
-    apart = np.where(left > 0.0, left * own.growth, 0.0)
+    # from where growth is infinite, so is the bound of rounding
+    growth = np.where(np.isfinite(own.growth), own.growth, 0.0)
+    apart = left * growth
     return yardstick.apart_by(apart, sweep.timestep * sweep.sample_steps)
 
 
@@ -56,7 +57,7 @@ def _by_change(
         return np.zeros(len(theta))
     turns = sweep.timestep * norm(own.state.angular_velocity)
     window = 2.0 * theta * sweep.timestep * yardstick.rate
-    near = np.abs(turns - scheme.change.turn) <= window
+    near = (np.abs(turns - scheme.change.turn) <= window) & np.isfinite(window)
     # of the steps between two samples, those that end at the later one
     steps = np.where(near, np.diff(sweep.sample_steps, prepend=0), 0)
     return scheme.change.jump * np.cumsum(steps)

@@ -8,10 +8,11 @@ with the step at the declared order). Otherwise it fails.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.errors.orders import ORDER_TOLERANCE, ObservedOrder, is_whole
 from omegadot.reference_impl.system import Array
 from omegadot.written import written
@@ -92,6 +93,24 @@ class Evidence:
         return self.left is not None and bool(np.all(self.left <= bound))
 
     @property
+    def lost_by_rounding(self) -> bool:
+        """Whether the run equals the scheme's up to where one rounding is as large as the motion.
+
+        From there the one may overflow and the other not yet.
+        """
+        lost = ~np.isfinite(self.error)
+        first = int(np.argmax(lost))
+        if self.left is None or first < 2 or not lost[first]:
+            return False
+        magnified = bool(EPS * self.round_off[first] > self.round_off[1])
+        return magnified and self._until(first).equals_scheme
+
+    def _until(self, count: int) -> Evidence:
+        opened = None if self.opened is None else self.opened[:count]
+        left = None if self.left is None else self.left[:count]
+        return replace(self, left=left, round_off=self.round_off[:count], opened=opened)
+
+    @property
     def may_be_rounding(self) -> bool:
         """Whether an unknown scheme may have made the error by rounding the angular momentum."""
         return self.of_momentum is not None and bool(np.all(self.error <= self.of_momentum))
@@ -116,6 +135,8 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
         largest = float(np.max(evidence.left[bounded]))
         until = "" if bounded.all() else ", until the scheme blows up"
         return Finding("explained", f"explained by {scheme}, to {written(largest, 2)}{until}")
+    if not known and evidence.lost_by_rounding:
+        return Finding("beyond", "not judged: the scheme itself blows up at so large a step")
     if not known and evidence.left is not None:  # the declared scheme does not overflow here
         return Finding("unexplained", NOT_FINITE)
     if evidence.floor is not None and np.all(evidence.error <= evidence.round_off + evidence.floor):
