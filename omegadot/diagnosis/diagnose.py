@@ -16,6 +16,7 @@ from functools import partial
 import numpy as np
 
 from omegadot.diagnosis.case_causes import CaseCauses
+from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditions_of
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.wording.kinds import beside_others, is_named
@@ -47,6 +48,7 @@ class Causes:
         self._cases: dict[str, dict[str, CaseCauses]] = {}
         self._texts: dict[tuple[str, str, str | None], str] = {}
         self._conditions: dict[tuple[str, tuple[object, ...]], Conditions] = {}
+        self._asked: dict[str, Asked] = {}
 
     def add(self, judged: JudgedCase, found: EngineCase, seed: int) -> CaseCauses:
         """One more case of an engine. It must have an exact trajectory."""
@@ -109,8 +111,9 @@ class Causes:
         every = (one.steps_of(name) for one in self._cases[engine].values())
         steps = [one for one in every if one is not None]
         scenes = self._engines[engine].across.scenes
+        asked = self._asked.setdefault(engine, Asked(driver))
         with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-            return conditions_of(subject, driver, own.case, scenes, steps, own.eps)
+            return conditions_of(subject, asked, own.case, scenes, steps, own.eps)
 
 
 def diagnose(

@@ -15,6 +15,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
 from omegadot.diagnosis.equations.hypotheses import hypotheses
+from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.conditioned import (
     condition_in,
     conditioned,
@@ -82,7 +83,7 @@ def experiment(where: Where, cases: tuple[Case, ...], named: bool = True) -> tup
         states = random_states(each, 40, [3])
         evidence = of_forward_dynamics(each.system, states, toy.found(each.system, states))
         drawn.append(Trial(each.system, states, *shown_in(evidence, one)))
-    judge = ForwardJudge(cast(Driver, toy), cases[0], EPS, one)
+    judge = ForwardJudge(Asked(cast(Driver, toy)), cases[0], EPS, one)
     return Experiment(judge, drawn).condition(), toy
 
 
@@ -192,7 +193,7 @@ def test_an_engine_that_does_not_answer_is_asked_no_more() -> None:
     late = SimpleNamespace(request=lambda *_, **__: Answer("timeout", "late"))
     states = random_states(TOP, 10, [3])
     evidence = of_forward_dynamics(TOP.system, states, toy.found(TOP.system, states))
-    judge = ForwardJudge(cast(Driver, late), TOP, EPS, missing())
+    judge = ForwardJudge(Asked(cast(Driver, late)), TOP, EPS, missing())
     one = Trial(TOP.system, states, *shown_in(evidence, missing()))
     assert Experiment(judge, [one]).condition() == ""
     assert judge.asked == 1
@@ -259,7 +260,7 @@ def test_a_turn_in_a_step_is_told_from_its_length(
     start = random_states(FREE, 2, [1])
     start.angular_velocity[:] = [[0.2, -0.5, 0.7], [2.0, 4.0, -3.0]]
     integrator = Integrator("one", None, {})
-    found = limit_of_length(cast(Driver, Steps(where)), FREE, integrator, start, EPS)
+    found = limit_of_length(Asked(cast(Driver, Steps(where))), FREE, integrator, start, EPS)
     assert found.startswith(text)
     low, high = map(float, re.findall(r"between (\S+) and (\S+)", found)[0])
     assert low < limit * (1.0 + 1e-9)
@@ -270,7 +271,7 @@ def test_steps_that_are_of_one_formula_have_no_limit() -> None:
     start = random_states(FREE, 2, [1])
     start.angular_velocity[:] = [[0.2, -0.5, 0.7], [2.0, 4.0, -3.0]]
     for always in (True, False):
-        driver = cast(Driver, Steps(lambda *_, always=always: always))
+        driver = Asked(cast(Driver, Steps(lambda *_, always=always: always)))
         assert limit_of_length(driver, FREE, Integrator("one", None, {}), start, EPS) == ""
 
 
@@ -287,3 +288,23 @@ def test_a_cause_has_one_condition() -> None:
     assert (
         conditioned("either a, or b", "it rains") == "either a, or b; it is so only where it rains"
     )
+
+
+def test_an_engine_that_has_hung_is_asked_no_more() -> None:
+    """Caught: minutes of silence, of nine time limits for each of six causes."""
+
+    class Hanging:
+        requests = 0
+
+        def request(self, *_: object, **__: object) -> Answer:
+            self.requests += 1
+            return Answer("ok" if self.requests < 3 else "timeout", result={})
+
+    toy = Hanging()
+    asked = Asked(cast(Driver, toy))
+    outcomes = [asked.request(TOP, "forward").outcome for _ in range(5)]
+    assert outcomes == ["ok", "ok", "timeout", "timeout", "timeout"]
+    assert toy.requests == 3
+    judge = ForwardJudge(asked, TOP, EPS, missing())
+    assert judge.trial(TOP.system, random_states(TOP, 2, [1])) is None
+    assert toy.requests == 3

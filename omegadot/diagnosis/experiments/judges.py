@@ -16,6 +16,7 @@ from omegadot.diagnosis.equations.evidence import (
     Evidence,
     of_forward_dynamics,
 )
+from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.observed import Flags, Trial
 from omegadot.diagnosis.models.misread_state import would_show
 from omegadot.diagnosis.stepping.kinematics import shows_in_motion
@@ -25,7 +26,6 @@ from omegadot.gates.case import Case
 from omegadot.gates.states.model import state_rows
 from omegadot.gates.steps.accuracy import finest_of, tolerated_by
 from omegadot.gates.steps.probe import probe_at
-from omegadot.harness.drive import Driver
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.system import Acceleration, State, System
 
@@ -78,7 +78,7 @@ class Judge:
     at_once: the states that one request takes at little cost.
     """
 
-    driver: Driver
+    driver: Asked
     case: Case
     eps: float
     candidate: Candidate | None = None
@@ -88,7 +88,7 @@ class Judge:
 
     def trial(self, system: System, states: State, base: Trial | None = None) -> Trial | None:
         """What comes of it; None where there is no answer, or no request is left."""
-        if self.left <= 0:
+        if self.left <= 0 or self.driver.lost is not None:
             return None
         self.left, self.asked = self.left - 1, self.asked + 1
         name = f"{self.case.name}-experiment-{self.asked}"
@@ -100,7 +100,7 @@ class Judge:
 
     @abstractmethod
     def shown(self, case: Case, states: State) -> Shown | None:
-        """Where the fault shows; None without an answer, after which no more is requested."""
+        """Where the fault shows; None without an answer."""
 
 
 class ForwardJudge(Judge):
@@ -110,7 +110,6 @@ class ForwardJudge(Judge):
         """By the difference from the equation, or by a cause."""
         answer = self.driver.request(case, "forward", states=states)
         if not answer.ok:
-            self.left = self.left if answer.outcome in ("raised", "unsupported") else 0
             return None
         found = Acceleration(**answer.result)
         return shown_in(of_forward_dynamics(case.system, states, found, self.eps), self.candidate)
@@ -132,7 +131,6 @@ class StepsJudge(Judge):
         how = {"integrator": one.name, "accuracy": finest, **vars(probe)}
         answer = self.driver.request(case, "first_steps", **how)
         if not answer.ok:
-            self.left = self.left if answer.outcome in ("raised", "unsupported") else 0
             return None
         stepped = State(**answer.result)
         steps = vanishing_steps(case.system, probe, stepped, self.eps, tolerated_by(one))
@@ -156,7 +154,6 @@ class StateJudge(Judge):
         for one in _each(states):
             answer = self.driver.request(case, "model", state=one, before=states[0])
             if not answer.ok:
-                self.left = self.left if answer.outcome in ("raised", "unsupported") else 0
                 return None
             back = State(**answer.result["state"])
             wrong.append(not reads_back(case, one, back, self.eps))

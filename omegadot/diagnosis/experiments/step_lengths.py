@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.wording.digits import limits
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case
 from omegadot.gates.steps.accuracy import finest_of
-from omegadot.harness.drive import Driver
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle
 from omegadot.reference_impl.solutions.exact_solution import exact_solution
@@ -37,7 +37,7 @@ class Jump:
 
 
 def limit_of_length(
-    driver: Driver, case: Case, integrator: Integrator, states: State, eps: float
+    driver: Asked, case: Case, integrator: Integrator, states: State, eps: float
 ) -> str:
     """``a step turns the body by less than a limit between A and B rad``; "" where none is seen.
 
@@ -66,7 +66,7 @@ def limit_of_length(
 
 
 def _jump(
-    driver: Driver, case: Case, integrator: Integrator, start: State, eps: float
+    driver: Asked, case: Case, integrator: Integrator, start: State, eps: float
 ) -> Jump | None:
     """Where the error of one step from a state jumps; None where it does not, or in two places."""
     rate = float(norm(start.angular_velocity))
@@ -88,7 +88,7 @@ def _jump(
 
 
 def _errors(
-    driver: Driver, case: Case, integrator: Integrator, start: State, lengths: Array, eps: float
+    driver: Asked, case: Case, integrator: Integrator, start: State, lengths: Array, eps: float
 ) -> Array | None:
     """(k,): how far a step of each length is from the exact motion, relative to what it changes."""
     try:

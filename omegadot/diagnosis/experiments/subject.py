@@ -11,6 +11,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.equations.held import Scene
+from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.conditioned import (
     condition_in,
     conditioned,
@@ -32,7 +33,6 @@ from omegadot.diagnosis.experiments.sorting import contradicted
 from omegadot.diagnosis.experiments.step_lengths import limit_of_length
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.gates.case import Case
-from omegadot.harness.drive import Driver
 from omegadot.reference_impl.system import State
 
 TRIED = 4  # systems of which lengths of step are tried
@@ -82,7 +82,7 @@ class Conditions:
 
 def conditions_of(
     subject: Subject,
-    driver: Driver,
+    driver: Asked,
     case: Case,
     scenes: Mapping[str, Scene],
     steps: Sequence[VanishingSteps],
@@ -100,7 +100,7 @@ def conditions_of(
 
 def _experiment_of(
     subject: Subject,
-    driver: Driver,
+    driver: Asked,
     case: Case,
     scenes: Mapping[str, Scene],
     steps: Sequence[VanishingSteps],
@@ -124,7 +124,7 @@ def _experiment_of(
 
 
 def _length_of(
-    subject: Subject, driver: Driver, case: Case, steps: Sequence[VanishingSteps], eps: float
+    subject: Subject, driver: Asked, case: Case, steps: Sequence[VanishingSteps], eps: float
 ) -> str:
     """A length of step, or a turn in one, from or up to which the steps are wrong."""
     if subject.integrator is None:
