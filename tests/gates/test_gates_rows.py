@@ -83,6 +83,16 @@ def test_errors_of_a_trajectory() -> None:
         assert found["unexplained_max"].verdict == "info"
 
 
+def test_an_error_that_fails_early_names_the_sample() -> None:
+    """Caught: "0.18 times its bound" of a failure, by a bound that grows along the run."""
+    early = measured([1.0, 0.1, 2.0, 4.0, 9.0], error=[0.0, 0.5, 0.5, 0.5, 0.5])
+    rows = trajectory.rows(early, dict.fromkeys(CHANNELS, BAD))
+    (row,) = (one for one in rows if (one.channel, one.metric) == ("position", "error_max"))
+    assert row.note == f"{BAD.note}; at t = 1 s it is 5 times its bound there"
+    sound = trajectory.rows(early, dict.fromkeys(CHANNELS, FINE))
+    assert {one.note for one in sound if one.metric == "error_max"} == {FINE.note}
+
+
 def test_without_a_scheme_nothing_is_left_of_it() -> None:
     rows = trajectory.rows(measured(0.1), dict.fromkeys(CHANNELS, FINE))
     assert {row.metric for row in rows} == {"error_max", "error_end"}

@@ -143,13 +143,20 @@ def judge(evidence: Evidence, scheme: str | None, declared: int | None) -> Findi
         return Finding("beyond", "not judged: below the resolvable floor of this motion")
     finite = bool(np.all(np.isfinite(evidence.error)))
     if declared is None:
-        return Finding("unexplained", "declared conserved, and it drifts" if finite else NOT_FINITE)
+        return Finding("unexplained", _drifts(scheme) if finite else NOT_FINITE)
     found = _by_order(evidence, declared)
     if finite:
         return found
     if found.kind == "consistent":
         return Finding("beyond", "not judged: it blows up at so large a step")
     return BLOWN_UP_UNSEEN if found.open else Finding("unexplained", NOT_FINITE)
+
+
+def _drifts(scheme: str | None) -> str:
+    """Of a channel without truncation error: by what is declared of it."""
+    if scheme is None:
+        return "declared conserved, as no order is given for it, and it drifts"
+    return f"{scheme} has no error in it here but rounding, and it drifts"
 
 
 def _by_order(evidence: Evidence, declared: int) -> Finding:

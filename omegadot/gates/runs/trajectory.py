@@ -47,8 +47,8 @@ def rows(measured: MeasuredRun, findings: dict[str, Finding]) -> list[Row]:
     for channel, unit in TRAJECTORY_UNITS.items():
         finding, bound = findings[channel], float(np.max(measured.round_off[channel]))
         error = float(np.max(measured.error[channel]))
-        verdict = finding.verdict
-        found.append(Row(GATE, channel, "error_max", error, unit, bound, verdict, finding.note))
+        note = finding.note + _where_worse(measured, channel) * (finding.verdict == "fail")
+        found.append(Row(GATE, channel, "error_max", error, unit, bound, finding.verdict, note))
         end = float(measured.error[channel][-1])
         found.append(Row(GATE, channel, "error_end", end, unit))
         if channel in measured.against_scheme:
@@ -56,6 +56,20 @@ def rows(measured: MeasuredRun, findings: dict[str, Finding]) -> list[Row]:
             bound = float(np.max(measured.beside_scheme[channel]))
             found.append(Row(GATE, channel, "unexplained_max", left, unit, bound))
     return found
+
+
+def _where_worse(measured: MeasuredRun, channel: str) -> str:
+    """Of an error that is largest late, where its bound is: at which sample it is far off."""
+    error, bounds = measured.error[channel], measured.round_off[channel]
+    if not np.max(error) <= np.max(bounds):
+        return ""
+    with np.errstate(all="ignore"):
+        shares = np.where((error > 0.0) & (bounds > 0.0), error / bounds, 0.0)
+    worst = int(np.argmax(shares))
+    at = f"at t = {written(measured.sweep.times[worst], 4)} s"
+    return f"; {at} it is {written(shares[worst], 2)} times its bound there" * bool(
+        shares[worst] > 1
+    )
 
 
 def reported_rows(truth: Truth, measured: MeasuredRun, state: State, precision: str) -> list[Row]:

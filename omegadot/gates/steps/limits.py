@@ -100,9 +100,12 @@ class Limit:
         if size <= float(np.max(self.bound[:, place])):
             return f"it is {written(apart, 2)} {unit} instead of nothing"
         nearest = int(np.argmin(norm(self.found - self.expected)[:, place]))
-        rates = (written(norm(self.found[nearest, place]), 2), written(size, 2))
-        instead = f" ({rates[0]} {unit} instead of {rates[1]})" if rates[0] != rates[1] else ""
-        return f"the relative error is {written(apart / size, 2)}{instead}"
+        acting = float(norm(self.found[nearest, place]))
+        rates = (written(acting, 2), written(size, 2))
+        # sizes that differ by less than the vectors do are not what is wrong
+        turned = ", in another direction" * (abs(acting - size) < 0.5 * apart)
+        instead = f" ({rates[0]} {unit} instead of {rates[1]}{turned})"
+        return f"the relative error is {written(apart / size, 2)}{instead * (rates[0] != rates[1])}"
 
 
 @dataclass(frozen=True)
