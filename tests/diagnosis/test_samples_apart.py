@@ -42,6 +42,19 @@ def test_attitudes_in_full_are_not_packed(sound: ReportedRun) -> None:
     assert "packed" not in precision_reported(replace(sound, state=state))
 
 
+@pytest.mark.parametrize("field", ["position", "linear_velocity"])
+def test_places_in_single_precision_are_named(sound: ReportedRun, field: str) -> None:
+    """Caught: "the run does not begin at the state it is given", of a log in single precision."""
+    single = getattr(sound.state, field).astype(np.float32).astype(float)
+    what = field.replace("_", " ")
+    found = precision_reported(replace(sound, state=replace(sound.state, **{field: single})))
+    assert found == f"the {what} is reported in single precision"
+    further = (1.0 + 1e-5) * single
+    kept = replace(sound.state, **{field: further.astype(np.float32).astype(float)})
+    found = precision_reported(replace(sound, state=kept))
+    assert found == f"the {what} is kept in single precision"
+
+
 @pytest.mark.parametrize(("shift", "when"), [(1, "after"), (-1, "before")])
 def test_some_samples_of_another_step_are_named(sound: ReportedRun, shift: int, when: str) -> None:
     """Caught: "the run is wrong once", of a clock that is summed up and compared with n h."""

@@ -6,10 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.wording.digits import listed
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.runs.trajectory import grain_of
 from omegadot.reference_impl.system import Array, State
 
+EPS_SINGLE = float(np.finfo(np.float32).eps)
+MOTION = {"orientation": "attitude", "angular_velocity": "omega"}
+PLACES = {"position": "the position", "linear_velocity": "the linear velocity"}
 MOST_DECIMALS = 11
 DECIMAL = {
     "angular_velocity": "omega",
@@ -26,8 +30,9 @@ MOST_DIGITS = 15  # seventeen determine every double, and sixteen most
 def precision_reported(reported: ReportedRun) -> str:
     """Attitude or omega of every sample after the start are numbers of single precision.
 
-    Places are not looked at: they may follow, in double, from what is kept. Numbers that are all
-    multiples of one step are rounded to it, whatever their size.
+    Places may follow, in double, from what is kept; where they alone are single, it is they that
+    are so reported or kept. Numbers that are all multiples of one step are rounded to it, whatever
+    their size.
     """
     if rounded := _grain_reported(reported) or _packed_reported(reported):
         return rounded
@@ -37,17 +42,29 @@ def precision_reported(reported: ReportedRun) -> str:
         moves = bool(np.ptp(kept, axis=0).any())  # a body put to sleep has zeros
         return moves and np.array_equal(kept, kept.astype(np.float32).astype(float))
 
-    fields = {"orientation": "attitude", "angular_velocity": "omega"}
-    found = [
-        s for f, s in fields.items() if single(reported.state, f) and not single(reported.own, f)
-    ]
+    found, places = (
+        [s for f, s in fields.items() if single(reported.state, f) and not single(reported.own, f)]
+        for fields in (MOTION, PLACES)
+    )
+    if places and not found:
+        return _places_single(reported, places)
     what = "state" if len(found) == 2 else "".join(found)
-    eps = float(np.finfo(np.float32).eps)
     pairs = zip(vars(reported.state).values(), vars(reported.own).values(), strict=True)
-    if found and all(np.all(np.abs(a - b) <= eps * np.abs(b)) for a, b in pairs):
+    if found and all(np.all(np.abs(a - b) <= EPS_SINGLE * np.abs(b)) for a, b in pairs):
         return f"the {what} is reported in single precision, and kept in double"
     single_is_due = reported.truth.yardstick.eps > EPS
     return f"the {what} is kept in single precision" if found and not single_is_due else ""
+
+
+def _places_single(reported: ReportedRun, places: list[str]) -> str:
+    """Of places alone, in a run of double precision."""
+    if reported.truth.yardstick.eps > EPS:
+        return ""
+    names = [field for field, what in PLACES.items() if what in places]
+    pairs = [(getattr(reported.state, f)[1:], getattr(reported.own, f)[1:]) for f in names]
+    rounded = all(np.all(np.abs(a - b) <= EPS_SINGLE * np.abs(b)) for a, b in pairs)
+    verb = "are" if len(places) > 1 else "is"
+    return f"{listed(places)} {verb} {'reported' if rounded else 'kept'} in single precision"
 
 
 def _grain_reported(reported: ReportedRun) -> str:
