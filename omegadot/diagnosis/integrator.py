@@ -19,6 +19,7 @@ from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
+from omegadot.diagnosis.stepping.where_stepped import where_stepped
 from omegadot.diagnosis.wording.kinds import (
     agreed,
     either,
@@ -93,8 +94,18 @@ class IntegratorCauses:
         together = self._over.together(self._integrator) if failing else []
         if any(map(is_named, together)):
             return together
-        own = self._of_case()
+        own = [self._where(text) for text in self._of_case()]
         return own if any(map(is_named, own)) else together or own
+
+    def _where(self, text: str) -> str:
+        """A cause in every step, with the scenarios on which alone it acts."""
+        places, key = self._over.places, (text, len(self._over.kept))
+        if key not in places:
+            features = {name: one.features for name, one in self._across.scenes.items()}
+            with np.errstate(all="ignore"):
+                kept = self._over.kept
+                places[key] = where_stepped(text, self._integrator, kept, features)
+        return places[key]
 
     def _of_case(self) -> list[str]:
         """Of the steps as they vanish and of the run itself.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.diagnosis.wording.features import COMPONENT, Features, features_of
+from omegadot.diagnosis.wording.features import ANY_TORQUE, COMPONENT, Features, features_of
 from omegadot.diagnosis.wording.inertia_features import ABOUT
 from omegadot.diagnosis.wording.state_features import (
     Numbers,
@@ -22,10 +22,7 @@ from omegadot.reference_impl.system import Array, State, System
 START = ("the first", "at the start")  # of a run, of which an answer at a state knows nothing
 SIGNS = (("negative", -1.0), ("positive", 1.0))
 UNDEFINED = np.nan  # either way is right
-ANY, SEVERAL = (
-    "a torque acts (applied, of damping or of the weight)",
-    "several torques act (applied, of damping or of the weight)",
-)
+SEVERAL = "several torques act (applied, of damping or of the weight)"
 
 
 @dataclass(frozen=True)
@@ -85,7 +82,7 @@ def _torques(system: System, states: State) -> dict[str, Array]:
     count = sum(np.any(part != 0.0, axis=-1).astype(float) for part in parts)
     pulled = bool(load.pivot is not None and np.any(load.gravity) and np.any(lever(system)))
     return {
-        ANY: (count > 0.0).astype(float),
+        ANY_TORQUE: (count > 0.0).astype(float),
         SEVERAL: (count > 1.0).astype(float),
         "the weight exerts a torque about the pivot": np.full(len(zero), float(pulled)),
     }

@@ -32,6 +32,9 @@ FOLLOWS = {
 }
 
 
+ANY_TORQUE = "a torque acts (applied, of damping or of the weight)"
+
+
 @dataclass(frozen=True)
 class Features:
     """kinds: sentences that hold for a scenario, or do not.  sizes: numbers of it, with units.
@@ -42,6 +45,12 @@ class Features:
     kinds: dict[str, bool]
     sizes: dict[str, tuple[float, str]]
     inertia: OfInertia = field(default_factory=dict)
+
+
+def _weighs(system: System) -> bool:
+    """Whether the weight exerts a torque about a pivot."""
+    load = system.load
+    return load.pivot is not None and bool(np.any(load.gravity) and np.any(lever(system)))
 
 
 def features_of(system: System, initial: State) -> Features:
@@ -56,6 +65,7 @@ def features_of(system: System, initial: State) -> Features:
         "the body is pivoted": pivoted,
         "the body is damped": bool(np.any(load.damping)),
         "a torque acts": any(driven),
+        ANY_TORQUE: any(driven) or bool(np.any(load.damping)) or _weighs(system),
         "a torque in body axes acts": driven[0],
         "a torque in world axes acts": driven[1],
         "gravity acts": pulled,

@@ -42,7 +42,7 @@ SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
 
 def kind_of(text: str) -> str:
     """A cause without its numbers, and without where it shows."""
-    for end in (", but only where", AT_STEPS, ", on "):
+    for end in (", but only where", ", not on", AT_STEPS, ", on "):
         text = text.partition(end)[0]
     if any(one in text for one in CONSTANTS):
         return text

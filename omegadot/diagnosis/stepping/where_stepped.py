@@ -1,0 +1,67 @@
+"""On which scenarios alone a step ends wrongly or has a slip in it, where others would show it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
+from omegadot.diagnosis.stepping.other_schemes import ENDS
+from omegadot.diagnosis.stepping.slips import slipped
+from omegadot.diagnosis.stepping.step_ends import kept_ends, with_end
+from omegadot.diagnosis.wording.features import Features, in_common
+from omegadot.diagnosis.wording.kinds import AT_STEPS
+from omegadot.reference_impl.schemes import Scheme
+from omegadot.reference_impl.system import System
+
+OF_SLIP = re.compile("it is stepped by (.+?), but (.+)")
+
+
+def where_stepped(
+    text: str,
+    integrator: Integrator,
+    runs: Sequence[KeptRun],
+    features: Mapping[str, Features],
+) -> str:
+    """A cause in every step, with where it acts; as it is where it acts wherever it would show.
+
+    runs: of all scenarios, sound and failing.  A sound run would show it, where steps with it do
+    not lead from its samples to the next, and steps without it do.
+    """
+    plain, mark, tail = text.partition(AT_STEPS)
+    failing = {run.name for run in runs if run.fails}
+    by, against = scheme_of(integrator, runs), list[str]()
+    for name in dict.fromkeys(run.name for run in runs if run.name not in failing):
+        longest = max((r for r in runs if r.name == name), key=lambda run: run.sweep.timestep)
+        pair = _with_and_without(plain, by, longest.system)
+        way = by.coordinates if by is not None else integrator.coordinates
+        if pair is None or way not in pair[0].coordinates:
+            return text
+        with_it, without = (longest.short.sound(SchemeOf(one, way)) for one in pair)
+        if not np.all(with_it) and np.all(without):
+            against.append(name)
+    if not against:
+        return text
+    shown, others = ([features[n] for n in names if n in features] for names in (failing, against))
+    common = in_common(shown, others)
+    count = f"{len(against)} other{'s' * (len(against) > 1)}"
+    where = f", but only where {common[0]}" if len(common) == 1 else ""
+    return f"{plain}{where or f', not on {count} that would show it'}{mark}{tail}"
+
+
+def _with_and_without(
+    text: str, by: SchemeOf | None, system: System
+) -> tuple[Scheme, Scheme] | None:
+    """The scheme with what the text names in every step, and as it is; None of another cause."""
+    slip = OF_SLIP.fullmatch(text)
+    if slip is not None:
+        known = slipped(slip[1]).get(slip[2])
+        return None if known is None else (known, scheme_named(slip[1]))
+    end = (ENDS | kept_ends(system)).get(text)
+    if end is None or by is None:
+        return None
+    return with_end(by.scheme, end), by.scheme
