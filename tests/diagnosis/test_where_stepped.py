@@ -25,6 +25,8 @@ MORE = (
     case("top-light", {"gravity": GRAVITY, "pivot": PIVOT}, 0.6),
     case("top-damped", {"gravity": GRAVITY, "pivot": PIVOT, "damping": 0.2}, 1.9),
     case("damped-light", {"damping": 0.1}, 0.5),
+    case("weightless", {"pivot": PIVOT}, 0.8),
+    case("falling", {"gravity": GRAVITY}, 1.2),
 )
 EVERY = (*CASES, *MORE)
 
@@ -52,7 +54,7 @@ def test_what_acts_on_one_kind_of_scenarios_is_said_to() -> None:
 
 
 def test_where_no_condition_sorts_the_others_are_counted() -> None:
-    assert where({"driven", "top", "free"}) == f"{TEXT}, not on 7 others that would show it"
+    assert where({"driven", "top", "free"}) == f"{TEXT}, not on 9 others that would show it"
 
 
 def test_what_acts_everywhere_and_other_causes_are_left_as_they_are() -> None:

@@ -49,7 +49,7 @@ def where_stepped(
     shown, others = ([features[n] for n in names if n in features] for names in (failing, against))
     common = in_common(shown, others)
     count = f"{len(against)} other{'s' * (len(against) > 1)}"
-    where = f", but only where {common[0]}" if len(common) == 1 else ""
+    where = f", but only where {' or where '.join(common)}" if 0 < len(common) < 3 else ""
     return f"{plain}{where or f', not on {count} that would show it'}{mark}{tail}"
 
 
