@@ -132,6 +132,14 @@ class CaseCauses:
         return Subject(None, own.integrator, text=text * moves) if moves or unknown else None
 
     @property
+    def of_forward_dynamics(self) -> bool:
+        """Whether answers of forward dynamics fail, and the body and states are right."""
+        failed = {row.gate for row in self._shared_rows}
+        known = FORWARD in self._across.scenes[self._case.name].evidence
+        channels = {row.channel for row in self._shared_rows}
+        return failed == {"equation"} and known and channels != {"torque"}
+
+    @property
     def case(self) -> Case:
         """The case."""
         return self._case

@@ -16,7 +16,9 @@ from functools import partial
 import numpy as np
 
 from omegadot.diagnosis.case_causes import CaseCauses
+from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.experiments.asked import Asked
+from omegadot.diagnosis.experiments.judges import changes_by_itself
 from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditions_of
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.wording.kinds import beside_others, is_named
@@ -31,6 +33,10 @@ from omegadot.harness.judging.engine import shared_rows
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.harness.outcome import EngineCase, JudgedCase
 
+CHANGES = (
+    "omega-dot of the same states is another when it is requested again at once: it is drawn at "
+    "random, or depends on the requests before"
+)
 MOST_EXPERIMENTS = 6  # causes of one engine whose conditions are looked for
 Ask = Callable[[str, Callable[[Driver], Conditions]], Conditions]
 
@@ -49,6 +55,7 @@ class Causes:
         self._texts: dict[tuple[str, str, str | None], str] = {}
         self._conditions: dict[tuple[str, tuple[object, ...]], Conditions] = {}
         self._asked: dict[str, Asked] = {}
+        self._unsteady: dict[str, bool] = {}
 
     def add(self, judged: JudgedCase, found: EngineCase, seed: int) -> CaseCauses:
         """One more case of an engine. It must have an exact trajectory."""
@@ -92,6 +99,8 @@ class Causes:
     def _conditioned(self, engine: str, case: str, integrator: str | None, text: str) -> str:
         """The cause on the condition that experiments find; they are made once for each cause."""
         own = self._cases[engine][case]
+        if integrator is None and own.of_forward_dynamics and self._changes(engine, own):
+            return CHANGES
         subject = own.subject(integrator, text) if self.ask is not None else None
         if subject is None or self.ask is None:
             return text
@@ -102,6 +111,19 @@ class Causes:
             call = partial(self._conditions_of, engine, own, subject)
             self._conditions[key] = self.ask(engine, call)
         return self._conditions[key].of(text)
+
+    def _changes(self, engine: str, own: CaseCauses) -> bool:
+        """Whether an engine's omega-dot changes by itself: then no cause of it is one."""
+        if engine not in self._unsteady and self.ask is not None:
+            evidence = self._engines[engine].across.scenes[own.case.name].evidence[FORWARD]
+
+            def call(driver: Driver) -> Conditions:
+                asked = self._asked.setdefault(engine, Asked(driver))
+                changes = changes_by_itself(asked, own.case, evidence.states, own.eps)
+                return Conditions(CHANGES if changes else "")
+
+            self._unsteady[engine] = bool(self.ask(engine, call).condition)
+        return self._unsteady.get(engine, False)
 
     def _conditions_of(
         self, engine: str, own: CaseCauses, subject: Subject, driver: Driver

@@ -35,3 +35,11 @@ def test_wrong_inverse_dynamics_alone_end_in_a_cause() -> None:
     (message,) = found.failures.values()
     assert "inverse dynamics" in message.message
     assert "gyroscopic term" in message.message
+
+
+def test_an_omega_dot_that_changes_by_itself_has_no_other_cause() -> None:
+    """Caught: a term, or what is left over, named of an engine that answers at random."""
+    found = omegadot.check(f"{FILE}:Unsteady", scenarios="t-handle", random=0, shrink=False)
+    (message,) = {r.message for i, r in found.failures.items() if i.endswith("equation")}
+    cause = message.partition("Likely cause: ")[2]
+    assert cause.startswith("omega-dot of the same states is another when it is requested again")

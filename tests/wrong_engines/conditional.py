@@ -44,3 +44,20 @@ class InverseAlone(ReferenceAdapter):
         w, tensor = states.angular_velocity, moving_inertia(self.system)
         whole = super().inverse_dynamics(states, accelerations)
         return whole - cross(w, apply(tensor, w))
+
+
+class Unsteady(ReferenceAdapter):
+    """Omega-dot is off by a thousandth in every other request."""
+
+    requests = 0
+
+    @property
+    def description(self) -> Description:
+        whole = super().description
+        kept = tuple(i for i in whole.integrators if i.name == "lie-rk4")
+        return Description("unsteady", "1.0", kept, features=whole.features)
+
+    def forward_dynamics(self, states: State) -> Acceleration:
+        self.requests += 1
+        sound = super().forward_dynamics(states)
+        return Acceleration((1.0 + 1e-3 * (self.requests % 2)) * sound.angular, sound.linear)

@@ -115,6 +115,19 @@ class ForwardJudge(Judge):
         return shown_in(of_forward_dynamics(case.system, states, found, self.eps), self.candidate)
 
 
+def changes_by_itself(driver: Asked, case: Case, states: State, eps: float) -> bool:
+    """Whether omega-dot of the same states is another when it is requested again at once."""
+    answers = [driver.request(case, "forward", states=states) for _ in range(2)]
+    if not all(answer.ok for answer in answers):
+        return False
+    one, other = (
+        of_forward_dynamics(case.system, states, Acceleration(**answer.result), eps)
+        for answer in answers
+    )
+    apart = norm(one.found.angular - other.found.angular)
+    return bool(np.any(apart > BEYOND_ROUNDING * one.angular_bound))
+
+
 @dataclass
 class StepsJudge(Judge):
     """Of the limit of vanishing steps of one integrator. text: see `shown_in_steps`."""
