@@ -214,6 +214,25 @@ def test_a_fault_at_coarse_steps_alone_is_an_excess() -> None:
     assert excess(bare | {0.04: 70 * BOUND * SAMPLES}, 1)[0] < 1.0
 
 
+def test_a_finer_step_that_nothing_explains_explains_no_other() -> None:
+    """Caught: an error of the whole motion at one step, passed for one as large at the next."""
+    steps = (0.08, 0.04, 0.02, 0.01, 0.005, 0.0025)
+    sizes = powers(2, steps) | {0.02: 2.0 * SAMPLES, 0.01: 1.5 * SAMPLES}
+    assert min(excess(sizes, 2)[2:4]) > 10.0
+    assert max(excess(sizes, 2)[4:]) < 1.0
+
+
+def test_an_error_is_held_against_coarser_steps_too() -> None:
+    """Caught: steps below a length that are all wrong, where longer ones are right."""
+    wrong = powers(2, (0.08, 0.04)) | {h: 2.0 * SAMPLES for h in (0.02, 0.01, 0.005)}
+    assert min(excess(wrong, 2)[2:]) > 1.0
+    # an error that is small at one step as terms nearly cancel there, and one that is rounding
+    near = powers(2, (0.04, 0.02)) | {0.08: 0.1 * 0.04**2 * SAMPLES}
+    assert max(excess(near, 2)) < 1.0
+    rounding = {0.08: 0.01 * BOUND * SAMPLES, 0.04: 5.0 * BOUND * SAMPLES}
+    assert max(excess(rounding, 2)) < 1.0
+
+
 def test_terms_that_cancel_at_one_step_are_no_excess_at_the_next() -> None:
     """``C h^4 |1 - h / 0.0208|`` is nearly nothing at 0.02, and close to rounding at 0.01."""
     size = 5 * BOUND / (0.01**4 * (1 - 0.01 / 0.0208))

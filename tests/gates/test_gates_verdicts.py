@@ -171,7 +171,7 @@ def test_an_error_that_finer_steps_do_not_explain_fails() -> None:
     seen = replace(evidence([0.0, 1.0, 1.0], None, None, ObservedOrder(1.0, True)), excess=1.1)
     assert judge(seen, "euler", 1) == Finding(
         "unexplained",
-        "at this step the error is 1.1 times what the errors at finer steps let it be",
+        "at this step the error is 1.1 times what the errors at other steps let it be",
     )
     assert judge(replace(seen, excess=1.0), "euler", 1).kind == "consistent"
     assert judge(replace(seen, settled=False), "euler", 1).kind == "unsettled"

@@ -11,6 +11,7 @@ from omegadot.gates.errors.orders import (
     CLEAR_OF_ROUNDING,
     FEWEST_SAMPLES,
     HORIZONS,
+    LARGEST_RISE,
     SATURATED,
     Errors,
 )
@@ -22,7 +23,7 @@ EXCESS_ORDERS = 3.0  # by which an error may exceed what finer steps and their o
 
 
 def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
-    """How many times larger a step's error is than the errors at finer steps let it be.
+    """How many times larger a step's error is than the errors at other steps let it be.
 
     With e1, e2, e3 at the next finer steps the error follows from e1 by an order: the declared one,
     or the slope s12 from e1 to e2 where that is higher. It may be three orders more, since leading
@@ -30,9 +31,36 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
     from the one after. This must hold up to where the error saturates, and up to parts of that
     time; there e1 is the largest up to twice that time, as an error may pass through nothing. It
     may do so as the step changes: e1 is at least what e2 is by the declared order, where e2 is
-    above rounding. Zero for the finest step.
+    above rounding. A finer step whose own error does not follow explains no other. Nor may the
+    error be more than 100 times that of a coarser step: no order makes it larger.
     """
-    finer = sorted((one for one in sweep if one.timestep < own.timestep), key=lambda e: -e.timestep)
+    finer = sorted((one for one in sweep if one.timestep < own.timestep), key=lambda e: e.timestep)
+    kept = list[Errors]()
+    for one in finer:
+        if _beyond(one, kept, declared) <= 1.0:
+            kept.append(one)
+    return max(_beyond(own, kept, declared), _beside_coarser(own, sweep))
+
+
+def _beside_coarser(own: Errors, sweep: Sequence[Errors]) -> float:
+    """By how much an error is more than 100 times that of some coarser step, over the same time."""
+    count, found = min(own.saturates_at + own.saturates, len(own.size)), 0.0
+    if count < FEWEST_SAMPLES:
+        return 0.0
+    error = float(np.max(own.size[:count]))
+    error = min(error, SATURATED) if own.saturates else error
+    for one in sweep:
+        if one.timestep > own.timestep and len(one.size):
+            until = own.times[count - 1 : count]
+            size, _ = _at(one, until)
+            least = CLEAR_OF_ROUNDING * float(np.max(own.bound[:count]))
+            found = max(found, error / max(LARGEST_RISE * float(size[0]), least))
+    return float(np.nan_to_num(found, nan=0.0, posinf=np.inf))
+
+
+def _beyond(own: Errors, finer: Sequence[Errors], declared: int) -> float:
+    """By how much an error is more than finer steps let it be; zero without any. finer: by step."""
+    finer = finer[::-1]
     count = min(own.saturates_at + own.saturates, len(own.size))
     if not finer or count == 0:
         return 0.0

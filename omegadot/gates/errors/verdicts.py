@@ -186,7 +186,7 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
         doubtful = not evidence.settled and (lowest.value > 0.5 or lowest.same)
         return Finding("unsettled" if doubtful else "unexplained", text)
     if evidence.excess > 1.0:
-        times = f"{written(evidence.excess, 2)} times what the errors at finer steps let it be"
+        times = f"{written(evidence.excess, 2)} times what the errors at other steps let it be"
         note = f"at this step the error is {times}"
         if evidence.settled:
             return Finding("unexplained", note)
