@@ -224,13 +224,15 @@ def test_a_finer_step_that_nothing_explains_explains_no_other() -> None:
 
 def test_an_error_is_held_against_coarser_steps_too() -> None:
     """Caught: steps below a length that are all wrong, where longer ones are right."""
-    wrong = powers(2, (0.08, 0.04)) | {h: 2.0 * SAMPLES for h in (0.02, 0.01, 0.005)}
+    wrong = powers(2, (0.08, 0.04)) | dict.fromkeys((0.02, 0.01, 0.005), 2.0 * SAMPLES)
     assert min(excess(wrong, 2)[2:]) > 1.0
     # an error that is small at one step as terms nearly cancel there, and one that is rounding
     near = powers(2, (0.04, 0.02)) | {0.08: 0.1 * 0.04**2 * SAMPLES}
     assert max(excess(near, 2)) < 1.0
     rounding = {0.08: 0.01 * BOUND * SAMPLES, 0.04: 5.0 * BOUND * SAMPLES}
     assert max(excess(rounding, 2)) < 1.0
+    # of a body that stays where it is, without rounding
+    assert excess(dict.fromkeys(STEPS, 0.0 * SAMPLES), 2, 0.0 * SAMPLES) == [0.0] * len(STEPS)
 
 
 def test_terms_that_cancel_at_one_step_are_no_excess_at_the_next() -> None:

@@ -90,6 +90,8 @@ def features_of(system: System, initial: State) -> Features:
         for k, axis in enumerate("xyz"):
             none = bool(np.any(vector)) and float(np.asarray(vector)[k]) == 0.0
             kinds[f"{what} {COMPONENT} {axis} component"] = none
+    moving = np.asarray(moving_inertia(system), dtype=float)
+    about, held = np.linalg.eigvalsh(moving), np.diag(moving)
     arm = float(norm(lever(system))) if pivoted else 0.0
     mass = float(body.mass)
     sizes = {
@@ -107,6 +109,12 @@ def features_of(system: System, initial: State) -> Features:
             float(moments[-1] / moments[0]),
             "",
         ),
+        "the ratio of the largest moment of inertia about what stays to the least": (
+            float(about[-1] / about[0]),
+            "",
+        ),
+        "the ratio of the largest to the least number on the diagonal of the inertia about what "
+        "stays": (float(np.max(held) / np.min(held)), ""),
         "the difference of the largest and the least moment of inertia": (
             float(moments[-1] - moments[0]),
             "kg m^2",

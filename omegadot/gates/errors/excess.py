@@ -44,18 +44,19 @@ def excess_of(own: Errors, sweep: Sequence[Errors], declared: int) -> float:
 
 def _beside_coarser(own: Errors, sweep: Sequence[Errors]) -> float:
     """By how much an error is more than 100 times that of some coarser step, over the same time."""
-    count, found = min(own.saturates_at + own.saturates, len(own.size)), 0.0
+    count = min(own.saturates_at + own.saturates, len(own.size))
     if count < FEWEST_SAMPLES:
         return 0.0
     error = float(np.max(own.size[:count]))
     error = min(error, SATURATED) if own.saturates else error
-    for one in sweep:
-        if one.timestep > own.timestep and len(one.size):
-            until = own.times[count - 1 : count]
-            size, _ = _at(one, until)
-            least = CLEAR_OF_ROUNDING * float(np.max(own.bound[:count]))
-            found = max(found, error / max(LARGEST_RISE * float(size[0]), least))
-    return float(np.nan_to_num(found, nan=0.0, posinf=np.inf))
+    least = CLEAR_OF_ROUNDING * float(np.max(own.bound[:count]))
+    if not error > least:
+        return 0.0
+    until = own.times[count - 1 : count]
+    coarser = [one for one in sweep if one.timestep > own.timestep and len(one.size)]
+    smallest = min((float(_at(one, until)[0][0]) for one in coarser), default=np.inf)
+    allowed = max(LARGEST_RISE * smallest, least)
+    return error / allowed if allowed > 0.0 else np.inf
 
 
 def _beyond(own: Errors, finer: Sequence[Errors], declared: int) -> float:
