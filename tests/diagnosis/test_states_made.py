@@ -18,7 +18,8 @@ from wrong_equations import CASES
 from omegadot.gates.case import Case
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever
-from omegadot.reference_impl.rotations import rotate, rotate_inverse
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, State
 
 PIVOTED = [case for case in CASES if case.system.load.pivot is not None]
@@ -96,6 +97,16 @@ def test_two_quantities_have_a_formula_each() -> None:
     for (text,) in found:
         assert "the position of a pivoted body reads back as R^T r" in text
         assert "and the linear velocity of a pivoted body reads back as (R^T omega) x r" in text
+
+
+def test_a_place_by_the_transposed_rotation_has_one_sentence() -> None:
+    def transposed(case: Case, s: State) -> State:
+        turned = place_on_pivot(case.system, replace(s, orientation=conjugate(s.orientation)))
+        return replace(turned, orientation=s.orientation)
+
+    found = [one for one in causes(transposed, CASES) if one]
+    assert found
+    assert all(one[0].startswith("the rotation looks transposed in the place") for one in found)
 
 
 def test_a_formula_that_one_scenario_contradicts_is_not_named() -> None:

@@ -127,7 +127,10 @@ def test_accelerations_may_be_written_over_by_the_next(name: str, on: object) ->
         assert np.array_equal(one, other)
 
 
-WRONG_ON_PURPOSE = ("slips", "on_quaternion", "memory", "solved", "acting", "explicit_schemes")
+WRONG_ON_PURPOSE = (
+    *("slips", "on_quaternion", "memory", "solved", "acting", "explicit_schemes"),
+    "staged_steps",
+)
 
 
 def test_only_schemes_step() -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -17,9 +18,15 @@ import numpy as np
 
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.inertia import lever
-from omegadot.reference_impl.rotations import rotate, rotate_inverse
+from omegadot.reference_impl.kinematics import place_on_pivot
+from omegadot.reference_impl.rotations import conjugate, rotate, rotate_inverse
 from omegadot.reference_impl.system import Array, State, System
 
+TRANSPOSED = (
+    "the rotation looks transposed in the place of a pivoted body: position and linear velocity "
+    "are by R^T"
+)
+ALIKE = 1e-12  # relative
 MOST = 2  # forms that agree on all states and are all stated
 TURNS: dict[str, Callable[[Array, Array], Array]] = {
     "": lambda q, v: v,
@@ -78,6 +85,8 @@ def made_place(places: Sequence[Place]) -> str:
         kept = {name: getattr(one.requested, name) for name in FIELDS}
         if not one.same(replace(one.requested, **{n: getattr(one.back, n) for n in kept})):
             return ""
+    if any(one.pivoted for one in places) and all(map(_is_transposed, places)):
+        return TRANSPOSED
     texts = []
     for field, what in FIELDS.items():
         wrong = [one for one in places if not one.has(field, getattr(one.requested, field))]
@@ -89,6 +98,13 @@ def made_place(places: Sequence[Place]) -> str:
     return " and ".join(texts)
 
 
+def _is_transposed(place: Place) -> bool:
+    """Whether a pivoted body's place is by the transposed rotation; a free one's reads back."""
+    turned = replace(place.requested, orientation=conjugate(place.requested.orientation))
+    made = place_on_pivot(place.system, turned)
+    return place.same(replace(made, orientation=place.requested.orientation))
+
+
 def _formulas(field: str, wrong: Sequence[Place], places: Sequence[Place]) -> list[str]:
     """All that fit every state: those of the bodies that are wrong, which must be of one kind."""
     kinds = {one.pivoted for one in wrong}
@@ -96,12 +112,19 @@ def _formulas(field: str, wrong: Sequence[Place], places: Sequence[Place]) -> li
         return []
     alike = [one for one in places if one.pivoted in kinds]
     forms = [form for form in _FORMS[field] if form.pivoted in kinds]
-    # what is wrong rules out most of them
-    return [
-        form.text
-        for form in forms
-        if all(one.has(field, form.make(one.system, one.requested)) for one in (*wrong, *alike))
-    ]
+    fits = list[_Form]()
+    for form in forms:
+        # what is wrong rules out most of them
+        if all(one.has(field, form.make(one.system, one.requested)) for one in (*wrong, *alike)):
+            same = (all(map(partial(_alike, form, kept), wrong)) for kept in fits)
+            fits += [] if any(same) else [form]
+    return [form.text for form in fits]
+
+
+def _alike(one: _Form, other: _Form, place: Place) -> bool:
+    """Whether two formulas are one, as of a lever where the centre of mass is the origin."""
+    a, b = (form.make(place.system, place.requested) for form in (one, other))
+    return bool(np.allclose(a, b, rtol=ALIKE, atol=0.0))
 
 
 def _turned(turn: str, q: Array, vector: Array) -> Array:
