@@ -250,7 +250,8 @@ def _where(text: str, every: Sequence[_Round], fits: Sequence[bool]) -> str:
         return text
     shown = [o for o, fit in zip(every, fits, strict=True) if fit and o.fails(o.back)]
     if comb(len(shown) + len(against), len(shown)) < SORTED_BY_KIND:
-        return text  # so few are sorted by chance
+        others = f"{len(against)} other{'s' * (len(against) > 1)}"  # so few are sorted by chance
+        return f"{text}, not on {others} that would show it"
     common = in_common([_features(one) for one in shown], [_features(one) for one in against])
     return f"{text}, but only where {' or where '.join(common)}" if 0 < len(common) < 3 else ""
 
