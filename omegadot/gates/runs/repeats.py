@@ -23,7 +23,10 @@ GATE = "trajectory"
 # "short" is no answer to judge: it is what one "reloaded" is compared with.
 How = Literal["repeated", "short", "negated", "reloaded"]
 NOTES: dict[How, str] = {
-    "repeated": "the same run, requested again, gives other samples: it depends on earlier runs",
+    "repeated": (
+        "the first samples, requested again, are others: they depend on earlier runs, or on how "
+        "many steps are requested"
+    ),
     "negated": "a run from -q gives other samples than from q, which is the same attitude",
     "reloaded": "the same run, after another system was loaded in between, gives other samples",
 }
