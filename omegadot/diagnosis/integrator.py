@@ -168,7 +168,10 @@ class IntegratorCauses:
         return late or [limit or least_step([steps.stays_below])] * steps.still
 
     def _beyond(self, lost: OrderLost | None) -> bool:
-        """Whether what makes single steps lose their order explains scenarios that no run does."""
+        """Whether what makes single steps lose their order explains more scenarios than a run does.
+
+        Those besides that its cause makes are as many, at least.
+        """
         if lost is None or not lost.by:
             return False
         here = set(map(kind_of, self._of_runs.texts)) if self._of_runs is not None else set()
@@ -176,9 +179,9 @@ class IntegratorCauses:
         for name, (texts, _) in self._over.causes.items():
             shown[name] = bool(here & set(map(kind_of, texts)))
         losing = {name for name, one in self._over.lost.items() if one.orders}
-        return all(name in losing for name, same in shown.items() if same) and any(
-            name in losing for name, same in shown.items() if not same
-        )
+        same = [name for name, made in shown.items() if made]
+        others = [name for name in losing if name in shown and not shown[name]]
+        return all(name in losing for name in same) and len(others) >= max(1, len(same))
 
     def _known_of_runs(self) -> list[str]:
         """What is seen of the runs where nothing fits, and in which scenarios alone."""
