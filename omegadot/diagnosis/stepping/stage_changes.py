@@ -109,6 +109,8 @@ def _old_rates(stages: int) -> Iterator[Change]:
         for place, where, sources in places(chosen, stages):
             across = any(isinstance(one, tuple) and one[0] for one in sources)
             for name, slots in RATES.items():
+                if across and slots == ("move",) and len(chosen) == stages:
+                    continue  # as the position of a free body that is reported a step late
                 text = f"{name.format(where)} is that of {place}"
                 text = _of_whole(sources, chosen) or text if slots == WHOLE else text
                 yield Change(slots, sources, text)
