@@ -88,9 +88,9 @@ floor is not judged.
 = Unit: that of the error, so rad, rad/s, m, or relative
 
 gate (gates)
-One of the five questions that an engine is judged by: model, equation, scheme, invariants and
-trajectory. Each bound follows from physics and floating point; the cost of a step is measured as
-well, and not judged.
+One of the six questions asked of an engine: model, equation, scheme, invariants, trajectory and
+cost. Five are judged, by bounds that follow from physics and floating point; the cost of a step is
+measured and not judged.
 = Formula: value ≤ bound
 
 growth
