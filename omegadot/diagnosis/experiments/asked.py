@@ -1,4 +1,4 @@
-"""An engine as experiments ask it: no more once it has hung, died or taken too long in all."""
+"""Requests of experiments: none after a time limit or a crash, or once they take too long."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST_SECONDS = 30.0  # of waiting for one engine's answers, whatever the number 
 
 @dataclass
 class Asked:
-    """lost: the answer that is given from then on; None as long as the engine is asked.
+    """lost: the answer that is given from then on; None as long as requests are made.
 
     waited: s, for its answers.
     """
