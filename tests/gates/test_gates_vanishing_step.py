@@ -13,7 +13,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from omegadot.gates.bounds.scales import EPS, between_ellipsoids
+from omegadot.gates.bounds.scales import (
+    EPS,
+    ROUNDINGS_PER_STEP,
+    between_ellipsoids,
+    products_in_momentum,
+)
 from omegadot.gates.steps.limits import Limit, Tolerated, _extrapolants, limits
 from omegadot.gates.steps.probe import DOUBLE, Probe, probe_of
 from omegadot.gates.steps.vanishing_step import _common_factor, rows
@@ -129,6 +134,27 @@ def test_velocities_kept_as_momenta_are_rounded_as_such() -> None:
 
     assert reported(on, requested, kept=kept) == {}
     assert set(reported(on, requested, omega=1.01)) == {"omega"}
+
+
+def test_a_momentum_is_rounded_by_the_products_that_cancel_in_it() -> None:
+    # About the thin axis of a bar askew J w is 1e-3 w, the sum of products of the size of w.
+    driven = Load(torque_world=np.array([1e-7, 0.0, 0.0]))  # nothing keeps its ellipsoids
+    axes = rotation_matrix(np.array([0.5, 0.1, -0.7, 0.5]))
+    inertia = axes @ np.diag([1.0, 1.0, 1e-3]) @ axes.T
+    on = System((Body(np.array(1.0), np.zeros(3), 0.5 * (inertia + inertia.T)),), driven)
+    requested = probe(on, axes @ [0.0, 0.0, 0.1], axes @ [0.0, 0.0, 0.07])
+    h = requested.timesteps
+    stepped = State(*(np.repeat(x[:, None], STEPS, 1) for x in vars(requested.states).values()))
+    w = requested.states.angular_velocity
+    inertia = on.body.inertia
+    formed = inertia.astype(np.float32).astype(float) @ w[..., None]  # products in single precision
+    off = np.linalg.norm(np.linalg.solve(inertia, formed)[..., 0] - w, axis=-1)
+    off = ROUNDINGS_PER_STEP * off * EPS / np.finfo(np.float32).eps
+    assert np.all(limits(on, requested, stepped)["omega"].rounding[1] >= off / h[:, -1])
+    # along the principal axes nothing cancels
+    straight = system(1.0, 2.0, 1e-8)
+    w = np.array([0.1, -0.2, 0.3])
+    assert products_in_momentum(straight, w) == pytest.approx(np.sqrt(0.17), rel=4 * EPS)
 
 
 def test_a_step_that_does_not_vanish_is_reported_as_one() -> None:

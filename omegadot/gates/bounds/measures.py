@@ -17,6 +17,7 @@ from omegadot.gates.bounds.scales import (
     body_scale,
     momentum_of_place,
     norm,
+    products_in_momentum,
     stays_on_ellipsoids,
 )
 from omegadot.reference_impl.energy import kinetic_energy, total_energy
@@ -74,6 +75,8 @@ class Yardstick:
         smallest, mass = self.scale.smallest, self.scale.mass
         spin = norm(apply(moving_inertia(system), exact.angular_velocity))
         self._momentum = max(1.0, float(np.max(spin)) / (smallest * self.rate))
+        products = float(np.max(products_in_momentum(system, exact.angular_velocity)))
+        self._products = max(1.0, products / (smallest * self.rate))
         self._carried = float(np.max(momentum_of_place(system, exact))) / (smallest * self.rate)
         gyration = float(np.sqrt(float(np.trace(system.body.inertia)) / mass))
         self.sizes = {
@@ -104,10 +107,11 @@ class Yardstick:
         """The same sizes for imitations in another precision.
 
         In single precision the rounding of every step shows, and what is stepped may be the angular
-        momentum: omega is then off by ``|J omega| / lambda``, lambda J's least eigenvalue.
+        momentum, the sum of products that may cancel: omega is then off by ``||J| |omega|| /
+        lambda``, lambda J's least eigenvalue.
         """
         other = copy(self)
-        other.eps, other.per_rounding = eps, self._momentum if eps > EPS else 1.0
+        other.eps, other.per_rounding = eps, self._products if eps > EPS else 1.0
         return other
 
     def of_momentum(self) -> Yardstick:

@@ -92,6 +92,15 @@ def torque_size(system: System, state: State, acceleration: Acceleration) -> Arr
     return np.asarray(size)
 
 
+def products_in_momentum(system: System, omega: Array) -> Array:
+    """(...) kg m^2/s: ``|J| |omega|`` of absolute values, the products that J omega is the sum of.
+
+    Along the principal axes they are J omega; in other axes they may cancel, and leave the
+    roundings of each. omega: (..., 3), body axes.
+    """
+    return norm(apply(np.abs(moving_inertia(system)), np.abs(omega)))
+
+
 def momentum_of_place(system: System, state: State) -> Array:
     """(...) kg m^2/s: ``m |x| |v|``, what the place of a free body adds to its angular momentum.
 

@@ -26,6 +26,7 @@ from omegadot.gates.bounds.scales import (
     linear_size,
     momentum_of_place,
     norm,
+    products_in_momentum,
     stays_on_ellipsoids,
 )
 from omegadot.gates.steps.probe import SINGLE, Ladder, Probe, ladder_of
@@ -131,8 +132,9 @@ def limits(
     """The rates at no step by channel. stepped: (m, k, ...), the states after one step each.
 
     A step rounds what it steps by ``16 eps``, which is divided by the step. What it steps may be
-    the angular momentum: omega is then rounded by ``16 eps |J omega| / lambda``, J the inertia and
-    lambda its least eigenvalue; and by velocities so rounded attitude and position move. A screw
+    the angular momentum, whose products of the entries of J and omega may cancel: omega is then
+    rounded by ``16 eps ||J| |omega|| / lambda``, J the inertia, lambda its least eigenvalue, and
+    |J| |omega| of absolute values; and by velocities so rounded attitude and position move. A screw
     motion is a turn about an axis at the distance |v| / |omega|, which is rounded as places are.
     Of a scheme that steps the momentum in world axes an error of the attitude grows at the rate
     |J omega| / lambda. One that is not known may step the momentum about the world's origin, which
@@ -146,7 +148,7 @@ def limits(
     before = states[:, None]
     true, scale = acceleration_of(system)(states), body_scale(system)
     w, v, lever = states.angular_velocity, states.linear_velocity, scale.lever
-    spinning = norm(apply(moving_inertia(system), w)) / scale.smallest
+    spinning = products_in_momentum(system, w) / scale.smallest
     direction, between = between_ellipsoids(system, w, eps)
     kept = stays_on_ellipsoids(system, stepped.angular_velocity, w, np.ones(1), eps)
     opened = np.where(kept, between * norm(w), 0.0)
@@ -174,7 +176,8 @@ def limits(
     }
     nothing = {"omega": norm(w) == 0.0, "linear_momentum": norm(v) == 0.0}
     found, ladder = {}, ladder_of(eps)
-    grows = h[:, -1] * spinning > 1.0 if ladder is SINGLE else np.zeros(len(w), bool)
+    growth = h[:, -1] * norm(apply(moving_inertia(system), w)) / scale.smallest
+    grows = growth > 1.0 if ladder is SINGLE else np.zeros(len(w), bool)
     follows = ("attitude", "omega") if system.load.pivot is None else tuple(parts)
     for channel, (change, rate, rounding, per_rate) in parts.items():
         size = rounding / step
