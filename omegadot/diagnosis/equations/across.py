@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from omegadot.diagnosis.equations.acting_torques import acting_torques
 from omegadot.diagnosis.equations.at_states import AtSomeStates, where_wrong
 from omegadot.diagnosis.equations.by_formula import Formulas
 from omegadot.diagnosis.equations.candidate import Candidate
@@ -134,7 +135,8 @@ class Across:
         found = self._shared(scene, source, QUICK)
         found = found if found.text else self._mistyped.of(scene, source)
         found = found if found.text else self._by_formula(scene, source)
-        found = found if found.text else Named(self._rule(pivot_inertia, source))
+        for rule in (pivot_inertia, acting_torques):
+            found = found if found.text else Named(self._rule(rule, source))
         if found.text:
             return found
         self._search_elsewhere(scene.name, source)

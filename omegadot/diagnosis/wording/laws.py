@@ -84,16 +84,19 @@ def _limit(pairs: _Pairs) -> str:
     """Of each number or of the size: several that were requested come to one."""
     requested, acting, changed, size = pairs.requested, pairs.acting, pairs.changed, pairs.size
     what, unit, few, each = pairs.what, pairs.unit, pairs.few, pairs.each
-    held = acting[changed]
-    high, low = float(np.max(held)), float(np.min(held))
-    if _close(np.minimum(requested, high), acting, size):
-        return f"{each} is limited to {number(high)} {unit}"
-    if _close(np.maximum(requested, low), acting, size):
-        return f"{each} is held above {number(low)} {unit}"
-    if not few and _close(np.clip(requested, -high, high), acting, size):
-        return f"{each} is limited to {number(high)} {unit} either way"
+    # the limit is known best where what was requested is least
+    place = int(np.argmin(np.where(changed, np.abs(requested), np.inf)))
+    limit = float(acting.flat[place])
+    if _close(np.minimum(requested, limit), acting, size):
+        return f"{each} is limited to {number(limit)} {unit}"
+    if _close(np.maximum(requested, limit), acting, size):
+        return f"{each} is held above {number(limit)} {unit}"
+    most = abs(limit)
+    if not few and _close(np.clip(requested, -most, most), acting, size):
+        return f"{each} is limited to {number(most)} {unit} either way"
     lengths, due = pairs.lengths
-    longest = float(np.max(lengths[changed.any(axis=-1)]))
+    whole = changed.any(axis=-1)
+    longest = float(lengths[whole][np.argmin(due[whole]), 0])
     with np.errstate(divide="ignore", invalid="ignore"):
         scaled = np.where(due > 0.0, requested * np.minimum(1.0, longest / due), 0.0)
     if not few and _close(scaled, acting, size):
