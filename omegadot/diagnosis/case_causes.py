@@ -158,6 +158,16 @@ class CaseCauses:
         """Whether a run of the integrator fails, or what all runs share."""
         return bool(self._shared_rows) if integrator is None else integrator in self._failing
 
+    def siblings_follow(self, name: str) -> bool:
+        """Whether the cause on another scenario makes what fails here, of siblings alone."""
+        failed = {(row.gate, row.metric) for row in self._shared_rows}
+        one = self._across.chosen(name, FORWARD) if self._has(name, FORWARD) else None
+        alone = failed == {("equation", siblings.METRIC)}
+        return alone and one is not None and self._siblings.follow(self._case, one)
+
+    def _has(self, name: str, source: str) -> bool:
+        return source in self._across.scenes[name].evidence
+
     def _shared(self) -> list[str]:
         """Of the model, then of forward dynamics, then of inverse dynamics."""
         failed = {(row.gate, row.metric) for row in self._shared_rows}

@@ -80,14 +80,18 @@ class Causes:
         text = self._text(engine, case, integrator)
         if is_named(text):
             return text
-        others = [
-            other
+        others = {
+            name: other
             for name, one in self._cases[engine].items()
             if name != case and one.fails(integrator)
             for other in (self._text(engine, name, integrator),)
             if other
-        ]
-        return beside_others(text, others)
+        }
+        own = self._cases[engine][case]
+        for name, other in others.items() if integrator is None and not text else ():
+            if is_named(other) and own.siblings_follow(name):
+                return other
+        return beside_others(text, list(others.values()))
 
     def _text(self, engine: str, case: str, integrator: str | None) -> str:
         key = (engine, case, integrator)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.wording.digits import listed
@@ -46,6 +47,15 @@ class Siblings:
                 before = {"": result.before[what]} if what in result.before else {}
                 one = Scene(_name(case, what), system, features, evidence, before=before)
                 self._across.add(one)
+
+    def follow(self, case: Case, one: Candidate) -> bool:
+        """Whether a cause of other scenarios, by its own numbers, makes every sibling's answer."""
+        names = [_name(case, what) for what, _ in siblings.siblings_of(case)]
+        known = [
+            self._across.scenes[n].evidence[FORWARD] for n in names if n in self._across.scenes
+        ]
+        made = [(evidence, one.predicted(evidence)) for evidence in known]
+        return bool(made) and all(a is not None and one.fits(e, a) for e, a in made)
 
     def causes(self, case: Case) -> list[str]:
         """A wrong equation that shows in the siblings alone, what is left over, or either."""
