@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import polars as pl
 
+from omegadot.reports.summary.summary import summarise
+
 SMALL = {"scenarios": ("sphere", "spun-again"), "steps": (0.02, 0.01), "samples": 4}
 BOUND = 1e-13  # of every figure of a synthetic record but the orders
 RUN = ("sphere", "mujoco", "RK4", 0.01)
@@ -52,3 +54,22 @@ def only(record, keep):
     rows = [keep(row) for row in record.metrics.iter_rows(named=True)]
     kept = with_tasks(record, lambda entry: entry if keep(entry) else None)
     return replace(kept, metrics=record.metrics.filter(pl.Series(rows)))
+
+
+def cell(record, scenario, engine):
+    """Of the summary's matrix."""
+    summary = summarise(record)
+    (column,) = [c for c in summary.columns if c.label == engine]
+    return summary.cells[scenario, column]
+
+
+def with_task(record, place, **more):
+    """With other entries of one task."""
+    tasks = [dict(entry) for entry in record.run["tasks"]]
+    tasks[place].update(more)
+    return with_run(record, tasks=tasks)
+
+
+def first_of(record, engine):
+    """The place of an engine's first task."""
+    return next(k for k, entry in enumerate(record.run["tasks"]) if entry["engine"] == engine)
