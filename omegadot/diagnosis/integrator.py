@@ -13,8 +13,9 @@ from omegadot.diagnosis.kept_case import kept_case
 from omegadot.diagnosis.models.kept_place import kept_place
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
+from omegadot.diagnosis.reported.onsets import SOUND_UNTIL, onset_law
 from omegadot.diagnosis.reported.requests import AGAIN
-from omegadot.diagnosis.runs import NOTHING, RunCauses, run_causes
+from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
 from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
 from omegadot.diagnosis.stepping.order_lost import OrderLost
@@ -78,7 +79,10 @@ class IntegratorCauses:
             if seen is not None:
                 self._over.seen[self._case.name] = seen
             if self._kept.again or not self._over.likely(self._integrator):
-                self._of_case()
+                found = self._of_case()
+                if any(SOUND_UNTIL in text for text in found):
+                    how = (self._case, self._truth, self._result, self._runs)
+                    self._over.onsets[self._case.name] = onsets_of(*how)
         self._result, self._runs = None, []
 
     def sentences(self) -> list[str]:
@@ -95,6 +99,9 @@ class IntegratorCauses:
         if any(map(is_named, together)):
             return together
         own = [self._where(text) for text in self._of_case()]
+        if any(SOUND_UNTIL in text for text in own):
+            law = onset_law([one for runs in self._over.onsets.values() for one in runs])
+            own = [law] if law else own
         return own if any(map(is_named, own)) else together or own
 
     def _where(self, text: str) -> str:

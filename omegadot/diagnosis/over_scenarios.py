@@ -14,6 +14,7 @@ from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.equations.siblings import Siblings
 from omegadot.diagnosis.reported.known_run import Known
+from omegadot.diagnosis.reported.onsets import Onset
 from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.order_lost import OrderLost
@@ -35,6 +36,7 @@ class OverScenarios:
     on as much too fast, or too slowly, as first steps do.
     angle in rad first steps turn the body, and whether later ones are seen not to.  rests: at what
     states the body is put to rest.  places: causes in every step, with where they act.
+    onsets: where failed runs begin to be wrong that are sound until then.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -49,6 +51,7 @@ class OverScenarios:
     stays_below: dict[str, tuple[float, float]] = field(default_factory=dict)
     rests: dict[str, Rests] = field(default_factory=dict)
     places: dict[tuple[str, int], str] = field(default_factory=dict)
+    onsets: dict[str, list[Onset]] = field(default_factory=dict)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool] = (0, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)

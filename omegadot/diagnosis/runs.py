@@ -12,6 +12,7 @@ from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.guesses import Guesses
 from omegadot.diagnosis.reported.late import late
 from omegadot.diagnosis.reported.one_of_all import one_of_all
+from omegadot.diagnosis.reported.onsets import Onset, onset_of
 from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import SLACK, ReportedRun, reported_run
 from omegadot.diagnosis.reported.run_causes import (
@@ -92,6 +93,19 @@ def run_causes(
             kept = _of_others(guesses, found, run, failed, equations)
             return _at_long_steps(kept, runs)
     return NOTHING if tried or not failed else HARDLY_OFF
+
+
+def onsets_of(
+    case: Case, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> list[Onset]:
+    """Of runs that are sound up to a sample, or throughout: where they begin to be wrong."""
+    guesses = Guesses(case, truth.in_precision(result.precision), result)
+    found = list[Onset]()
+    for run in runs:
+        reported = reported_run(case, truth, result, run)
+        tried = guesses.nearest(run) if reported is None else [reported]
+        found += [one for one in (onset_of(beside) for beside in tried) if one is not None][:1]
+    return found
 
 
 def _of_clock(result: CaseResult, runs: Sequence[JudgedRun], eps: float) -> tuple[str, ...]:

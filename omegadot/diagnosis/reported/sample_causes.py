@@ -147,6 +147,16 @@ def one_field(reported: ReportedRun) -> str:
     return ""
 
 
+def first_wrong(reported: ReportedRun) -> int | None:
+    """The last sample up to which a run is sound, where it is wrong ever after.
+
+    The number of intervals of a run that is sound throughout; None of any other.
+    """
+    sound = _shares_of_bounds(reported) <= SLACK
+    first = int(np.argmin(np.append(sound, False)))
+    return first if first > 0 and not np.any(sound[first:]) else None
+
+
 def intervals(reported: ReportedRun) -> str:
     """From which sample to which the steps are wrong."""
     shares = _shares_of_bounds(reported)
