@@ -61,6 +61,15 @@ def test_one_named_cause_needs_no_list() -> None:
     assert explained(two, [])[1:] == ["       6  no spin (runs of a)"]
 
 
+def test_a_cause_of_other_scenarios_is_the_same_cause() -> None:
+    """Caught: one cause on two lines, of which neither has the whole count."""
+    here = runs("s", 3, f"off. {CAUSE}no spin.")
+    there = runs("t", 2, f"off. {CAUSE}on 3 other scenarios: no spin.")
+    assert explained({**here, **there}, [])[1:] == ["       5  no spin (runs of a)"]
+    besides = runs("t", 2, f"off. {CAUSE}on 3 other scenarios: no spin; here: omega is off.")
+    assert len(explained({**here, **besides}, [])) == 3
+
+
 def test_the_figures_of_a_cell_are_said_to_be_checks(capsys: pytest.CaptureFixture[str]) -> None:
     """Caught: "fail 2/3" below "1 scenario", of which nobody knows what is counted."""
     print_checks(CheckResult(runs("s", 2, f"off. {CAUSE}no spin."), ()))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from omegadot.commands.check.judge import CAUSE
@@ -12,6 +13,7 @@ from omegadot.written import written
 
 MOST_CAUSES = 8
 MOST_NAMES = 3
+ELSEWHERE, HERE = re.compile(r"^on \d+ other scenarios?: "), "; here: "
 INDENT = " " * 10
 
 
@@ -23,7 +25,7 @@ def explained(results: Mapping[Check, Result], failing: Sequence[Failing]) -> li
     failed = {check: r.message for check, r in results.items() if r.verdict == "fail"}
     groups: dict[str, list[Check]] = {}
     for check, message in failed.items():
-        groups.setdefault(message.partition(CAUSE)[2].rstrip("."), []).append(check)
+        groups.setdefault(_cause(message), []).append(check)
     if not failed or (len(set(failed.values())) < 2 and all(map(_is_named, groups))):
         return []
     ranked = sorted(groups.items(), key=lambda item: -len(item[1]))
@@ -37,6 +39,12 @@ def explained(results: Mapping[Check, Result], failing: Sequence[Failing]) -> li
         lines += [f"{INDENT}{fact}" for fact in (*facts, *_smallest(checks, failing))]
     rest = sum(len(checks) for _, checks in ranked[MOST_CAUSES:])
     return lines + [f"    {rest:4d}  others, named below"] * bool(rest)
+
+
+def _cause(message: str) -> str:
+    """The cause that ends a message; that of other scenarios is the one that these have."""
+    cause = message.partition(CAUSE)[2].rstrip(".")
+    return cause if HERE in cause else ELSEWHERE.sub("", cause)
 
 
 def _is_named(cause: str) -> bool:
