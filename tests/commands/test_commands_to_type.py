@@ -84,6 +84,7 @@ def test_the_printed_command_fails_as_the_check_did(
     assert words[:3] == ["omegadot", "check", "mine:NoGyroscopic"]
     assert words[-2:] == ["--scenario", "quick-shrunk.toml"]
     assert words[words.index("--timeout") + 1] == "50"
+    assert words[words.index("--integrator") + 1] == "semi-implicit-euler"
     (tmp_path / "quick-shrunk.toml").write_text(one["scenario"])
     again = omegadot(*words[1:], "--no-shrink", folder=tmp_path)
     assert again.code == 1, again.err

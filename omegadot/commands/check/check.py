@@ -141,7 +141,8 @@ def _shrunk(
     for number, one in enumerate(kinds):
         choice = next(choice for choice in selection.choices if choice.name == one.engine)
         line = [*setting_for(choice.target), *command]
-        line += ["--integrator", one.integrator] if one.integrator else []
+        chosen = [one.integrator] if one.integrator else choice.integrators
+        line += [word for name in chosen for word in ("--integrator", name)]
         line += ["--via", choice.via] if choice.via else []
         timeout = selection.arguments.timeout
         line += ["--timeout", written(timeout)] if timeout != Arguments.timeout else []
