@@ -46,7 +46,7 @@ def check(
     update_baseline: bool = False,
     timeout: float = 60.0,
     shrink: bool = True,
-    program: Sequence[str] = ("omegadot",),
+    program: str | Sequence[str] = "omegadot",
     progress: Reporting = False,
 ) -> CheckResult:
     """Put one engine, built in or your own, through every check.
@@ -72,7 +72,8 @@ def check(
     )
     selection = select(arguments_of(engine, several(integrators, "integrators"), arguments))
     with reporting(progress) as report:
-        return _checked(selection, [*program, "check", *_typed(engine)], shrink, report)
+        start = [program] if isinstance(program, str) else program
+        return _checked(selection, [*start, "check", *_typed(engine)], shrink, report)
 
 
 def _checked(
