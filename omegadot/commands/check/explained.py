@@ -8,11 +8,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from omegadot.commands.check.judge import CAUSE
 from omegadot.commands.check.result import Check, Result
 from omegadot.commands.check.shrink import UNKNOWN, Failing
-from omegadot.reports.text.numbers import first, listed, times
+from omegadot.reports.text.numbers import first, listed, short, times
 from omegadot.written import written
 
 MOST_CAUSES = 8
 MOST_NAMES = 3
+MOST_STEPS = 4
 ELSEWHERE, HERE = re.compile(r"^on \d+ other scenarios?: "), "; here: "
 INDENT = " " * 10
 
@@ -71,8 +72,7 @@ def _facts(
     yield f"it fails on {'all' if len(names) == len(tested) else len(names)} {of}" + (
         f": {first(names, MOST_NAMES)}" if len(names) < len(tested) else ""
     )
-    if steps := _steps(checks, results):
-        yield steps
+    yield from filter(None, (_steps(checks, results), _by_step(checks, results)))
 
 
 def _off(messages: Sequence[str]) -> str:
@@ -105,6 +105,23 @@ def _steps(checks: Sequence[Check], results: Mapping[Check, Result]) -> str:
         most = max(c.timestep or 0.0 for c in runs)
         return f"it fails at fine steps alone, up to {written(most)} s; longer ones pass"
     return ""
+
+
+def _by_step(checks: Sequence[Check], results: Mapping[Check, Result]) -> str:
+    """``on t-handle by a: 2e5 times its bound at 0.02 s, 6000 at 0.01 s``, of the longest sweep."""
+    sweeps: dict[tuple[str, str | None, str], dict[float, float]] = {}
+    for check in checks:
+        excess = results[check].excess
+        if excess is not None and check.timestep is not None:
+            key = (check.scenario, check.integrator, check.gate)
+            sweeps.setdefault(key, {})[check.timestep] = excess
+    if not sweeps or max(map(len, sweeps.values())) < 2:
+        return ""
+    (scenario, integrator, _), found = max(sweeps.items(), key=lambda item: len(item[1]))
+    first_step, *rest = sorted(found.items(), reverse=True)[:MOST_STEPS]
+    text = f"{short(first_step[1])} times its bound at {written(first_step[0])} s"
+    others = (f"{short(excess)} at {written(step)} s" for step, excess in rest)
+    return f"on {scenario} by {integrator}: {', '.join([text, *others])}"
 
 
 def _smallest(checks: Sequence[Check], failing: Sequence[Failing]) -> Iterator[str]:

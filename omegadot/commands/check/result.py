@@ -56,12 +56,14 @@ class Result:
     verdict: "skip" has its reason in `message`, and is no pass; "declared" is a failure that an
     exception excuses; "error" is an engine that did not answer, and then
     outcome: crashed, timeout, raised or not-installed.
+    excess: how many times its bound the value is that the message names first; None without one.
     explained: the message with its cause, which is surer the more scenarios are known.
     """
 
     verdict: Verdict
     message: str = ""
     outcome: str = "ok"
+    excess: float | None = None
     explained: Callable[[], str] | None = field(default=None, compare=False, repr=False)
 
     @property
