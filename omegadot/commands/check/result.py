@@ -211,10 +211,6 @@ def _covered(checks: Sequence[Check]) -> str:
         return ""
     gates = list(dict.fromkeys(check.gate for check in checks))
     runs = {(c.scenario, c.integrator, c.timestep, c.accuracy) for c in checks}
-    of_runs = bool(checks[0].integrator)
-    where = (
-        f"in each of {times(len(runs), 'run')}"
-        if of_runs
-        else (f"on each of {times(len(runs), 'scenario')}")
-    )
-    return f"{listed(gates)} {where}"
+    where, kind = ("in", "run") if checks[0].integrator else ("on", "scenario")
+    each = "each of " * (len(runs) > 1)
+    return f"{listed(gates)} {where} {each}{times(len(runs), kind)}"
