@@ -13,8 +13,9 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:  # "as": it is exported
     from omegadot.adapters.registry import AdapterError as AdapterError
-    from omegadot.commands.check.check import CheckResult as CheckResult
     from omegadot.commands.check.check import check as check
+    from omegadot.commands.check.check_result import CheckInterrupted as CheckInterrupted
+    from omegadot.commands.check.check_result import CheckResult as CheckResult
     from omegadot.commands.check.result import Check as Check
     from omegadot.commands.check.result import Result as Result
     from omegadot.commands.choose.choose import choose as choose
@@ -59,7 +60,8 @@ if TYPE_CHECKING:  # "as": it is exported
 
 _PLACES = {
     "adapters.registry": ("AdapterError",),
-    "commands.check.check": ("CheckResult", "check"),
+    "commands.check.check": ("check",),
+    "commands.check.check_result": ("CheckInterrupted", "CheckResult"),
     "commands.check.result": ("Check", "Result"),
     "commands.choose.choose": ("choose",),
     "commands.choose.result": ("ChooseResult", "Ranked"),

@@ -13,6 +13,10 @@ def main() -> None:
     except KeyboardInterrupt:
         print("omegadot: interrupted.", file=sys.stderr)
         sys.exit(code_of(received))
+    except EOFError as error:  # of a module's bytecode that is cut off
+        advice = "a compiled module is cut off; remove the __pycache__ folders and try again"
+        print(f"omegadot: could not be started: EOFError: {error}; {advice}.", file=sys.stderr)
+        sys.exit(3)
     run_command(received)
 
 

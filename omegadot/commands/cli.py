@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import re
 import sys
+import traceback
 import warnings
 from typing import Annotated
 
@@ -93,7 +94,13 @@ def main(received: list[int] | None = None) -> None:
     try:
         code = app(standalone_mode=False)
         sys.stdout.flush()
-    except (typer.Abort, KeyboardInterrupt):
+    except typer.Abort as abort:  # of Ctrl-C, and the parser makes it of an EOFError too
+        early = abort.__cause__ or abort.__context__
+        if isinstance(early, EOFError):
+            _print_error(_ends_early(early))
+            sys.exit(3)
+        code = INTERRUPTED
+    except KeyboardInterrupt:
         code = INTERRUPTED
     except SystemExit:  # the parser's own answer to a pipe of ours that broke
         code = 3
@@ -112,6 +119,16 @@ def main(received: list[int] | None = None) -> None:
         _print_error("interrupted.")
         code = ended
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _ends_early(error: EOFError) -> str:
+    """What an EOFError comes to, and the line at which it does: of a module, the one imported."""
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [frame for frame in frames if not frame.filename.startswith("<frozen ")]
+    where = f" at {own[-1].filename}, line {own[-1].lineno} ({own[-1].line})" if own else ""
+    loads = any("importlib" in frame.filename for frame in frames)
+    advice = "; remove the __pycache__ folder of the module that is imported there" if loads else ""
+    return f"raised: EOFError: {error}{where}: what is read ends early{advice}."
 
 
 def _print_error(sentence: str) -> None:

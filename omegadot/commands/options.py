@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from collections.abc import Mapping
 from enum import Enum, StrEnum
@@ -97,6 +98,7 @@ def given(arguments: Mapping[str, Any]) -> dict[str, Any]:
     return {**found, "progress": on_a_terminal()}
 
 
+NAME = "omegadot"
 INTERRUPTED = 130  # as shells count: 128 + SIGINT
 ENDED = (
     "Ended by a signal: 128 and its number, so 130 interrupted (Ctrl-C), 143 terminated, 129 "
@@ -113,7 +115,26 @@ def exit_code(passed: bool, answered: bool) -> int:
 
 def command_line() -> list[str]:
     """The command as it was typed, for what is stored of it."""
-    return ["omegadot", *sys.argv[1:]]
+    return [*program(), *sys.argv[1:]]
+
+
+def program() -> list[str]:
+    """How this very command is started again from the current folder: ``omegadot``, its path where
+    it is on none of PATH's folders, or the interpreter with ``-m omegadot``.
+    """
+    started = Path(sys.argv[0])
+    if started.name == "__main__.py" and started.parent.name == NAME:
+        return [_typed(Path(sys.executable)), "-m", NAME]
+    return [_typed(started)] if started.stem == NAME else [NAME]
+
+
+def _typed(file: Path) -> str:
+    """A program by its name where PATH leads to it, else by its path, in this folder relative."""
+    found = shutil.which(file.stem)
+    if found is not None and Path(found).absolute() == file.absolute():
+        return file.stem
+    here, there = Path.cwd(), file.absolute()
+    return str(there.relative_to(here) if there.is_relative_to(here) else there)
 
 
 def on_a_terminal() -> bool:

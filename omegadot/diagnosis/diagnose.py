@@ -116,6 +116,11 @@ class Causes:
             self._conditions[key] = self.ask(engine, call)
         return self._conditions[key].of(text)
 
+    @property
+    def lost(self) -> dict[str, str]:
+        """By engine, the experiment in which it hung or crashed, and how."""
+        return {name: asked.lost_in for name, asked in self._asked.items() if asked.lost_in}
+
     def _changes(self, engine: str, own: CaseCauses) -> bool:
         """Whether an engine's omega-dot changes by itself: then no cause of it is one."""
         if engine not in self._unsteady and self.ask is not None:

@@ -71,7 +71,9 @@ def engine_choices(
     name may come several times with different integrators. Raises UsageError.
     """
     known = known_engines()
-    names = [e for e in wanted if isinstance(e, str) and not is_target(e, known)]
+    # A file engine.py stands for engine:Class as well, unless an engine given has that name.
+    own = {**known, **adapters_named(extra)}
+    names = [e for e in wanted if isinstance(e, str) and not is_target(e, own)]
     added = adapters_named([*extra, *(engine for engine in wanted if engine not in names)])
     known |= added
     if not wanted:

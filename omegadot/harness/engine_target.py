@@ -16,6 +16,7 @@ from omegadot.adapters.registry import (
     name_in_command,
     program_of,
 )
+from omegadot.harness.python_path import has_module
 from omegadot.harness.usage import UsageError, nearest
 
 EngineLike = str | type[object]
@@ -34,7 +35,12 @@ def is_target(engine: EngineLike, known: Container[str]) -> bool:
         return right.endswith(".py")
     package = left.partition(".")[0]
     named = package.isidentifier() and package != "__main__"
-    return left.endswith(".py") or (named and importlib.util.find_spec(package) is not None)
+    return left.endswith(".py") or (named and _is_module(package))
+
+
+def _is_module(package: str) -> bool:
+    """Whether there is one, here or in the current folder, which an engine's process looks in."""
+    return importlib.util.find_spec(package) is not None or has_module(Path(), package)
 
 
 def is_command(engine: str) -> bool:

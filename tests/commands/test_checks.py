@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 from command_line import FAULTY, QUICK, WRONG, omegadot, quick_scenario
 
-from omegadot.commands.check.check import CheckResult, arguments_of
+from omegadot.commands.check.check import arguments_of
+from omegadot.commands.check.check_result import CheckResult
 from omegadot.commands.check.judge import CAUSE, failure
 from omegadot.commands.check.print_checks import print_checks
 from omegadot.commands.check.result import (
@@ -62,8 +63,8 @@ def test_coverage_counts_scenarios_gates_and_checks() -> None:
     checks = checks_of([MUJOCO], cases)
     # Caught: "2 scenarios x 5 gates", which no one multiplies to 22.
     assert coverage([MUJOCO], checks) == [
-        "mujoco 4.0.0 (RK4): 22 checks (5 gates on 2 scenarios, those of runs at every integrator "
-        "and step)"
+        "mujoco 4.0.0 (RK4): 22 checks, model and equation on each of 2 scenarios, and scheme, "
+        "invariants and trajectory in each of 6 runs"
     ]
     assert coverage([MUJOCO.whole], checks)[0].startswith("mujoco 4.0.0: ")
 
@@ -173,7 +174,7 @@ def test_a_wrong_engine_fails_with_a_reason(tmp_path: Path) -> None:
     assert "omega_dot: residual" in result.out
     assert "Likely cause: the gyroscopic term is missing." in result.out
     assert "FAIL  nogyroscopic-quick-model" not in result.out
-    explained = re.search(r"What explains the (\d+) failures:\n +(\d+)  (.*)\n", result.out)
+    explained = re.search(r"What explains the (\d+) failed checks:\n +(\d+)  (.*)\n", result.out)
     assert explained is not None
     assert explained[1] == explained[2] == str(result.out.count("FAIL  "))
     assert explained[3].startswith("the gyroscopic term is missing (equation gate, runs")
@@ -305,7 +306,7 @@ def test_a_fault_in_every_check_is_a_screen_long(capsys: pytest.CaptureFixture[s
     print_checks(found)
     printed = capsys.readouterr().out
     lines = printed.splitlines()
-    assert printed.index("What explains the 88 failures") < printed.index("FAIL  ")
+    assert printed.index("What explains the 88 failed checks:") < printed.index("FAIL  ")
     assert "FAIL  toy-s-0-equation" in lines
     assert f"    equation is off by 0. {CAUSE}no spin." in lines
     assert "    scheme is off by 0." in lines  # of the next gate, its cause not again
@@ -335,7 +336,7 @@ def test_what_explains_names_gates_and_runs_apart(capsys: pytest.CaptureFixture[
     print_checks(CheckResult(checks, ()))
     printed = capsys.readouterr().out
     assert "       3  no spin (equation gate, runs of a and b)\n" in printed
-    assert "       1  no cause found (runs of b)\n" in printed
+    assert "       1  no cause was found (runs of b); what is known:\n" in printed
 
 
 def test_skips_of_one_reason_are_one_line_with_their_scenarios(

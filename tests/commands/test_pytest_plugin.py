@@ -29,7 +29,7 @@ def test_an_empty_folder_is_enough(folder: Path) -> None:
     result = run_pytest(*quick("--engine", "mujoco:RK4"), "--junitxml=out.xml", folder=folder)
     assert result.code == 0, result.out
     assert "omegadot: mujoco" in result.out
-    assert "(RK4): 11 checks (5 gates on 1 scenario, " in result.out
+    assert "(RK4): 11 checks, model and equation on 1 scenario, and " in result.out
     assert "collected 11 items" in result.out
     found = outcomes(folder / "out.xml")
     assert len(found) == 11
@@ -120,7 +120,7 @@ def test_baselines_are_gathered_from_all_workers(folder: Path) -> None:
     assert '[scenario."sphere".run."lie-rk4"."0.01"]' in text
     again = run_pytest(*arguments, folder=folder)
     assert again.code == 0, again.out
-    assert "26 checks (6 gates on 2 scenarios, " in again.out
+    assert "26 checks, model, equation and baseline on each of 2 scenarios, " in again.out
 
 
 def test_checks_stand_next_to_tests_where_these_are_named(folder: Path) -> None:

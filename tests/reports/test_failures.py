@@ -112,7 +112,7 @@ def test_the_next_command_repeats_how_the_failure_was_run(record: Record) -> Non
     (failure,) = summarise(found).failures
     assert failure.command == (
         "omegadot run sphere --adapter 'my dart.py:Dart' --engine dart:semi-implicit "
-        "--setup as-shipped --timestep 0.02"
+        "--setup as-shipped --timestep 0.02 --seed 7"
     )
     assert failure.purpose == "runs it alone"
 

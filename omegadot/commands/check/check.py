@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from pathlib import Path
 
+from omegadot.commands.check.check_result import (
+    CHECKING,
+    EXPLAINING,
+    SHRINKING,
+    CheckInterrupted,
+    CheckResult,
+)
 from omegadot.commands.check.judge import CAUSE
-from omegadot.commands.check.result import Check, Result, Subject, Tally
+from omegadot.commands.check.result import Check, Result, Tally
 from omegadot.commands.check.select import Arguments, Selection, select
 from omegadot.commands.check.shrink import SECONDS, Failing, kinds_of_failure
 from omegadot.commands.check.shrink import shrink as shrink_check
@@ -21,55 +26,10 @@ from omegadot.commands.typed import typed
 from omegadot.harness.arguments import Via, adapters_named, several
 from omegadot.harness.engine_target import EngineLike, is_target, target_of
 from omegadot.harness.own_engines import known_engines
+from omegadot.harness.python_path import setting_for
 from omegadot.harness.usage import UsageError, nearest
 from omegadot.scenarios import ScenarioLike
-
-NOT_HELD = ("fail", "error")
-
-
-@dataclass(frozen=True)
-class CheckResult:
-    """What came of one engine's checks.
-
-    by_check: every check with its result.  subjects: the engine, its version and integrators; none
-    where it did not start.  drawn: the random systems among the scenarios that were not named.
-    only_skipped: a sentence where every check, or every one but those of the model, was skipped,
-    which is no pass.  baselines: the files that were written.  failing: for each kind of failure,
-    three at most, the simplest system found.
-    """
-
-    by_check: Mapping[Check, Result]
-    subjects: tuple[Subject, ...]
-    drawn: frozenset[str] = frozenset()
-    only_skipped: tuple[str, ...] = ()
-    baselines: tuple[Path, ...] = ()
-    failing: tuple[Failing, ...] = ()
-
-    @cached_property
-    def results(self) -> dict[str, Result]:
-        """The results by check id, such as ``mujoco-RK4-t-handle-0.01-scheme``."""
-        return {check.id: result for check, result in self.by_check.items()}
-
-    @property
-    def failures(self) -> dict[str, Result]:
-        """The checks that fail, and those that the engine did not answer."""
-        return {i: result for i, result in self.results.items() if result.verdict in NOT_HELD}
-
-    @property
-    def answered(self) -> bool:
-        """Whether the engine started and answered every check, not all of its motion by a skip."""
-        lost = any(result.verdict == "error" for result in self.by_check.values())
-        return not lost and not self.only_skipped
-
-    @property
-    def passed(self) -> bool:
-        """Whether every check holds and at least one was made."""
-        return not self.failures and not self.only_skipped
-
-    def __repr__(self) -> str:
-        counts = Counter(result.verdict for result in self.by_check.values())
-        named = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
-        return f"<omegadot check of {len(self.by_check)}: {named}>"
+from omegadot.written import written
 
 
 @typed
@@ -86,6 +46,7 @@ def check(
     update_baseline: bool = False,
     timeout: float = 60.0,
     shrink: bool = True,
+    program: str | Sequence[str] = "omegadot",
     progress: Reporting = False,
 ) -> CheckResult:
     """Put one engine, built in or your own, through every check.
@@ -96,8 +57,8 @@ def check(
     are given.  integrators: all without any.  via: how bodies go in, as of `omegadot.run`.
     exceptions: files of declared exceptions.  baseline: a folder of figures to compare with, or to
     store them in.  timeout: s, for one request to the engine.  shrink: look for the simplest
-    systems that fail, where some do.
-    Raises UsageError, ScenarioError, RecordError and NoTruthError.
+    systems that fail, where some do.  program: with which the commands begin that run these.
+    Raises UsageError, ScenarioError, RecordError, NoTruthError, and CheckInterrupted on Ctrl-C.
     """
     arguments = Arguments(
         scenarios=several(scenarios, "scenarios"),
@@ -111,47 +72,82 @@ def check(
     )
     selection = select(arguments_of(engine, several(integrators, "integrators"), arguments))
     with reporting(progress) as report:
-        suite = Suite(selection)
-        count = Count(report, "checking", len(suite.checks))
-        results = {}
+        start = [program] if isinstance(program, str) else program
+        return _checked(selection, [*start, "check", *_typed(engine)], shrink, report)
+
+
+def _checked(
+    selection: Selection, command: Sequence[str], shrink: bool, report: Reporter
+) -> CheckResult:
+    """Every check of a selection. Raises CheckInterrupted with what there is by then.
+
+    command: the one that checks the engine.
+    """
+    suite = Suite(selection)
+    results: dict[Check, Result] = {}
+    failing: list[Failing] = []
+    doing = CHECKING
+    try:
         try:
+            count = Count(report, "checking", len(suite.checks))
             for one in suite.checks:
                 results[one] = suite.result_of(one)
                 count.advance()
+            doing = EXPLAINING
             results = suite.settled(results)
         finally:
             suite.finish()
-        failing = _shrunk(engine, selection, results, report) if shrink else []
+        doing = SHRINKING
+        failing = _shrunk(command, selection, results, report) if shrink else []
+    except KeyboardInterrupt:
+        plain = {one: replace(result, explained=None) for one, result in results.items()}
+        raise CheckInterrupted(_result(suite, plain, interrupted=doing)) from None
+    return _result(suite, results, failing)
+
+
+def _result(
+    suite: Suite,
+    results: Mapping[Check, Result],
+    failing: Sequence[Failing] = (),
+    interrupted: str = "",
+) -> CheckResult:
     tally = Tally()
     for one, result in results.items():
         tally.add(one.engine, one.gate, result.verdict, result.message)
-    skipped = tally.only_skipped(choice.name for choice in selection.choices)
+    choices = suite.selection.choices if not interrupted else ()
     return CheckResult(
         results,
         suite.registry.subjects,
-        selection.drawn,
-        tuple(skipped),
-        tuple(suite.store()),
+        suite.selection.drawn,
+        tuple(tally.only_skipped(choice.name for choice in choices)),
+        () if interrupted else tuple(suite.store()),
         tuple(failing),
+        suite.lost,
+        tuple(suite.checks),
+        interrupted,
     )
 
 
 def _shrunk(
-    engine: EngineLike, selection: Selection, results: Mapping[Check, Result], report: Reporter
+    command: Sequence[str],
+    selection: Selection,
+    results: Mapping[Check, Result],
+    report: Reporter,
 ) -> list[Failing]:
     """The simplest system for each kind of failure of the one engine."""
     cases = {case.name: case for case in selection.cases}
-    given = engine if isinstance(engine, str) else target_of(engine)
-    if (name := given.partition(":")[0]) in known_engines():
-        given = name
     kinds, found = kinds_of_failure(results, cases), []
     deadline = time.monotonic() + SECONDS
     count = Count(report, "shrinking what fails", len(kinds)) if kinds else None
     for number, one in enumerate(kinds):
-        line = ["omegadot", "check", given]
-        line += ["--integrator", one.integrator] if one.integrator else []
         choice = next(choice for choice in selection.choices if choice.name == one.engine)
-        how = (selection.arguments.timeout, SEED, shlex.join(line))
+        line = [*setting_for(choice.target), *command]
+        chosen = [one.integrator] if one.integrator else choice.integrators
+        line += [word for name in chosen for word in ("--integrator", name)]
+        line += ["--via", choice.via] if choice.via else []
+        timeout = selection.arguments.timeout
+        line += ["--timeout", written(timeout)] if timeout != Arguments.timeout else []
+        how = (timeout, SEED, shlex.join(line))
         share = max(0.0, deadline - time.monotonic()) / (len(kinds) - number)
         small = shrink_check(one, cases[one.scenario], choice, *how, seconds=share)
         cause = results[one].message.partition(CAUSE)[2]
@@ -159,6 +155,13 @@ def _shrunk(
         if count:
             count.advance()
     return [one for one in found if one is not None]
+
+
+def _typed(engine: EngineLike) -> list[str]:
+    """The engine as it was typed, without an integrator in its name."""
+    given = engine if isinstance(engine, str) else target_of(engine)
+    name = given.partition(":")[0]
+    return [name if name in known_engines() else given]
 
 
 def arguments_of(engine: EngineLike, integrators: Sequence[str], arguments: Arguments) -> Arguments:

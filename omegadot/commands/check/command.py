@@ -63,19 +63,24 @@ def check(
     """Check one engine, built in or your own, at every gate.
 
     Exit codes: 0 every check holds, 1 one fails, 2 wrong usage or input, 3 the engine crashed,
-    timed out or could not be started, or all checks but those of its model were skipped.
+    timed out or could not be started, or all checks but those of its model were skipped. Ctrl-C
+    prints what was found until then.
     """
     arguments = options.given({k: v for k, v in locals().items() if k != "verbose"})
     arguments["engine"] = _only_one(arguments.get("engine"), arguments.pop("adapter", None))
     from omegadot.commands.check.check import check as check_engine
-    from omegadot.commands.check.print_checks import print_checks, print_json
+    from omegadot.commands.check.check_result import CheckInterrupted
+    from omegadot.commands.check.print_checks import exit_code, print_checks, print_json
 
-    found = check_engine(**arguments)
+    try:
+        found = check_engine(**arguments, program=options.program())
+    except CheckInterrupted as interrupted:
+        found = interrupted.result
     if output is options.Format.json:
         print_json(found)
     else:
         print_checks(found, verbose)
-    raise typer.Exit(options.exit_code(found.passed, found.answered))
+    raise typer.Exit(exit_code(found))
 
 
 def _only_one(engine: str | None, adapter: str | None) -> str:

@@ -73,10 +73,21 @@ def sentence(row: Row) -> str:
     return f"{message} ({row.note})" if row.note else message
 
 
+def _worst(failing: Sequence[Row]) -> Row:
+    return max([row for row in failing if is_plain(row.metric)] or failing, key=_excess)
+
+
+def _times(rows: Sequence[Row]) -> float | None:
+    """How many times its bound the worst of the failing rows is; None where that is no number."""
+    row = _worst([row for row in rows if row.verdict == "fail"])
+    excess = times_its_bound(row.value, row.bound)
+    return excess if row.bound is not None and math.isfinite(excess) else None
+
+
 def failure(rows: Sequence[Row], cause: str = "") -> str:
     """The failing rows of one gate: the worst in full, the other channels by name."""
     failing = [row for row in rows if row.verdict == "fail"]
-    worst = max([row for row in failing if is_plain(row.metric)] or failing, key=_excess)
+    worst = _worst(failing)
     others = dict.fromkeys(row.channel for row in failing if row.channel != worst.channel)
     message = sentence(worst)
     if others:
@@ -95,12 +106,17 @@ MEASURED = ("ok", "diverged")
 def _of_rows(rows: Sequence[Row], cause: Callable[[], str], unjudged: str) -> Result:
     verdict = worst(row.verdict for row in rows)
     if verdict == "fail":
-        return Result("fail", failure(rows), explained=lambda: failure(rows, cause()))
+        again = partial(_explained, rows, cause)
+        return Result("fail", failure(rows), excess=_times(rows), explained=again)
     if verdict == "pass":
         return PASSED
     notes = dict.fromkeys(row.note for row in rows if row.note)
     note = next(iter(notes), unjudged)
     return skipped(_unjudged(note))
+
+
+def _explained(rows: Sequence[Row], cause: Callable[[], str]) -> str:
+    return failure(rows, cause())
 
 
 def _unjudged(note: str) -> str:

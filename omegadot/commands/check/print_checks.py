@@ -5,26 +5,26 @@ from __future__ import annotations
 import json
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import typer
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from omegadot.commands.check.check import CheckResult
+from omegadot.commands import options
+from omegadot.commands.check.check_result import CHECKING, EXPLAINING, CheckResult
+from omegadot.commands.check.explained import explained
 from omegadot.commands.check.judge import CAUSE
 from omegadot.commands.check.print_failing import print_failing
 from omegadot.commands.check.result import Check, Result, Verdict, coverage
-from omegadot.commands.options import exit_code
 from omegadot.commands.streams import on_one_line
-from omegadot.reports.text.numbers import first, listed, times
+from omegadot.reports.text.numbers import first, times
 
 ORDER: tuple[Verdict, ...] = ("error", "fail", "declared", "pass", "skip")
 STYLES = {"error": "bold magenta", "fail": "bold red", "declared": "yellow", "skip": "dim"}
 NOUNS = {"error": "error", "fail": "failure", "declared": "declared failure"}
 WIDTH_WHEN_PIPED = 200
-MOST_CAUSES = 8
 # So many checks of a verdict are listed in full; of more, so many messages of one cause, or of
 # those without one, and so many checks that share a message.
 FEW, MESSAGES, UNEXPLAINED, ALIKE = 20, 3, 10, 3
@@ -59,6 +59,16 @@ def _table(found: CheckResult) -> Table:
     return table
 
 
+def _mixed(found: CheckResult) -> str:
+    """What the figures of a cell mean, by the first that has some; "" where none has."""
+    cells = (str(cell) for column in _table(found).columns[1:] for cell in column.cells)
+    shown = next((cell.partition(" ") for cell in cells if "/" in cell), None)
+    if shown is None:
+        return ""
+    count, _, total = shown[2].partition("/")
+    return f"{shown[0]} {shown[2]}: {count} of the {total} checks of that row and gate"
+
+
 def _grouped(results: Mapping[Check, Result], verdict: str) -> dict[str, list[Check]]:
     """The checks of one verdict by their message."""
     found: dict[str, list[Check]] = {}
@@ -66,33 +76,6 @@ def _grouped(results: Mapping[Check, Result], verdict: str) -> dict[str, list[Ch
         if result.verdict == verdict:
             found.setdefault(result.message, []).append(check)
     return found
-
-
-def _causes(failures: Mapping[str, Sequence[Check]]) -> list[str]:
-    """How many failures each cause explains, and in which integrators; none where all are alike.
-
-    failures: the checks by their message.
-    """
-    if len(failures) < 2:
-        return []
-    explained: dict[str, list[Check]] = {}
-    for message, checks in failures.items():
-        cause = message.partition(CAUSE)[2].rstrip(".") or "no cause found"
-        explained.setdefault(cause, []).extend(checks)
-    ranked = sorted(explained.items(), key=lambda item: -len(item[1]))
-    lines = [f"What explains the {sum(map(len, explained.values()))} failures:"]
-    for cause, checks in ranked[:MOST_CAUSES]:
-        lines.append(f"    {len(checks):4d}  {cause} ({_where(checks)})")
-    rest = [checks for _, checks in ranked[MOST_CAUSES:]]
-    return lines + [f"    {sum(map(len, rest)):4d}  others, named below"] * bool(rest)
-
-
-def _where(checks: Sequence[Check]) -> str:
-    """In which gates of the engine, and in the runs of which integrators."""
-    gates = sorted({check.gate for check in checks if not check.integrator})
-    runs = sorted({check.integrator for check in checks if check.integrator})
-    found = [f"{listed(gates)} gate{'s' * (len(gates) > 1)}"] if gates else []
-    return ", ".join([*found, *([f"runs of {listed(runs)}"] if runs else [])])
 
 
 def _skipped(results: Mapping[Check, Result]) -> list[str]:
@@ -111,15 +94,25 @@ def _skipped(results: Mapping[Check, Result]) -> list[str]:
     return lines
 
 
+def exit_code(found: CheckResult) -> int:
+    """0 every check holds, 1 one does not, 3 the engine did not answer, 130 interrupted."""
+    if found.interrupted:
+        return options.INTERRUPTED
+    return options.exit_code(found.passed, found.answered)
+
+
 def print_json(found: CheckResult) -> None:
     """Every check and its result, for machines."""
     counts = Counter(result.verdict for result in found.by_check.values())
     printed = {
         "schema": 1,
-        "exit_code": exit_code(found.passed, found.answered),
+        "exit_code": exit_code(found),
+        "complete": not found.interrupted,
+        "planned": len(found.planned or found.by_check),
         "engines": [vars(subject) for subject in found.subjects],
         "verdicts": {v: counts[v] for v in ("pass", "fail", "declared", "skip", "error")},
         "only_skipped": found.only_skipped,
+        "lost": found.lost,
         "failing": [
             {
                 "check": one.check.id,
@@ -147,13 +140,16 @@ def print_checks(found: CheckResult, verbose: bool = False) -> None:
     """
     width, results = None if sys.stdout.isatty() else WIDTH_WHEN_PIPED, found.by_check
     console = Console(width=width, highlight=False, soft_wrap=True)
-    for line in coverage(found.subjects, list(results)):
+    for line in coverage(found.subjects, found.planned or list(results)):
         console.print(Text(line, "bold"))
     if any(check.scenario for check in results):
         console.print(_table(found))
+        if example := _mixed(found):
+            console.print(Text(example, "dim"))
         if found.failing:  # whose files push the last line off the screen
-            console.print(Text(_total(results), "bold"))
-    for line in _causes(_grouped(results, "fail")):
+            console.print(Text(_total(found), "bold"))
+    sought = found.interrupted not in (CHECKING, EXPLAINING)
+    for line in explained(results, found.failing) if sought else ():
         console.print(Text(line))
     shown: tuple[Verdict, ...] = ("error", "fail", "declared")
     for verdict in shown:
@@ -165,18 +161,34 @@ def print_checks(found: CheckResult, verbose: bool = False) -> None:
         console.print(Text(line, "dim"))
     for line in (
         *found.only_skipped,
+        *found.lost,
         *(f"Baseline written: {on_one_line(path)}" for path in found.baselines),
     ):
         console.print(Text(line))
     causes = {r.message.partition(CAUSE)[2] for r in results.values() if r.verdict == "fail"}
     print_failing(console, found.failing, of_several=len(causes) > 1)
-    console.print(Text(_total(results), "bold"))
+    console.print(Text(_total(found), "bold"))
 
 
-def _total(results: Mapping[Check, Result]) -> str:
+def _total(found: CheckResult) -> str:
+    results = found.by_check
     counts = Counter(result.verdict for result in results.values())
     parts = ", ".join(f"{counts[verdict]} {verdict}" for verdict in ORDER if counts[verdict])
-    return f"{times(len(results), 'check')}: {parts}." if parts else "There is nothing to check."
+    of = f"{len(results)} of " if found.interrupted else ""
+    made = f"{of}{times(len(found.planned if of else results), 'check')}"
+    total = f"{made}: {parts}." if parts else "There is nothing to check."
+    return (
+        f"Partial, interrupted: {made}{f': {parts}' * bool(parts)}. {_left(found)}" if of else total
+    )
+
+
+def _left(found: CheckResult) -> str:
+    """What an interruption has left out."""
+    doing = found.interrupted
+    left = ["causes"] if doing in (CHECKING, EXPLAINING) else []
+    left += ["the smallest systems that fail"]
+    missing = f"{' and '.join(left).capitalize()} were not looked for"
+    return f"{missing}." if doing != CHECKING else f"{missing}, nor was any other check made."
 
 
 def _by_cause(messages: Mapping[str, list[Check]]) -> dict[str, dict[str, list[Check]]]:

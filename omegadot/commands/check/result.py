@@ -13,7 +13,7 @@ from pydantic import TypeAdapter
 from omegadot.gates.case import Case, Sweep, knobs_of
 from omegadot.harness.plan import Engine
 from omegadot.reports.summary.reasons import MODEL_ALONE
-from omegadot.reports.text.numbers import times
+from omegadot.reports.text.numbers import listed, times
 
 GATES_OF_A_SCENARIO = ("model", "equation")
 GATES_OF_A_RUN = ("scheme", "invariants", "trajectory")
@@ -56,12 +56,14 @@ class Result:
     verdict: "skip" has its reason in `message`, and is no pass; "declared" is a failure that an
     exception excuses; "error" is an engine that did not answer, and then
     outcome: crashed, timeout, raised or not-installed.
+    excess: how many times its bound the value is that the message names first; None without one.
     explained: the message with its cause, which is surer the more scenarios are known.
     """
 
     verdict: Verdict
     message: str = ""
     outcome: str = "ok"
+    excess: float | None = None
     explained: Callable[[], str] | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -184,17 +186,31 @@ REGISTRY = TypeAdapter(Registry)
 
 
 def coverage(subjects: Sequence[Subject], checks: Sequence[Check]) -> list[str]:
-    """Engine, version, and how many scenarios, gates and checks; a line an engine."""
+    """Engine, version, and how many checks: so many gates on each scenario, and in each run, which
+    is an integrator at a step; a line an engine.
+    """
     lines = []
     for subject in subjects:
         own = [check for check in checks if check.engine == subject.name]
-        scenarios = len({check.scenario for check in own if check.scenario})
-        gates = len({check.gate for check in own if check.scenario})
+        parts = [
+            _covered([c for c in own if c.scenario and bool(c.integrator) is of_runs])
+            for of_runs in (False, True)
+        ]
         chosen = set(subject.integrators) != set(subject.declared)
         name = f"{subject.name} {subject.version}" + (
             f" ({', '.join(subject.integrators)})" if chosen else ""
         )
-        covered = f"{times(gates, 'gate')} on {times(scenarios, 'scenario')}"
-        each = ", those of runs at every integrator and step" if subject.declared else ""
-        lines.append(f"{name}: {times(len(own), 'check')} ({covered}{each})")
+        covered = ", and ".join(filter(None, parts))
+        lines.append(f"{name}: {times(len(own), 'check')}" + f", {covered}" * bool(covered))
     return lines
+
+
+def _covered(checks: Sequence[Check]) -> str:
+    """``model and equation on each of 45 scenarios``, or ``scheme in each of 145 runs``."""
+    if not checks:
+        return ""
+    gates = list(dict.fromkeys(check.gate for check in checks))
+    runs = {(c.scenario, c.integrator, c.timestep, c.accuracy) for c in checks}
+    where, kind = ("in", "run") if checks[0].integrator else ("on", "scenario")
+    each = "each of " * (len(runs) > 1)
+    return f"{listed(gates)} {where} {each}{times(len(runs), kind)}"

@@ -101,6 +101,14 @@ class Suite:
         self._causes.ask = self._ask
         return {one: result.settled for one, result in results.items()}
 
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """A sentence for each engine that crashed or hung as causes were looked for."""
+        return tuple(
+            f"{name} gave no answer in an experiment on a cause, the last that was made: {how}."
+            for name, how in self._causes.lost.items()
+        )
+
     def _ask(self, engine: str, call: Callable[[Driver], Conditions]) -> Conditions:
         """A call with an engine's driver, on the engine's own thread."""
         if self._runner is None:

@@ -16,6 +16,7 @@ from omegadot.gates.case import Case
 from omegadot.harness.collect import metrics_of_run, tasks_of_run, trajectories_of_run
 from omegadot.harness.outcome import Cause, EngineCase, JudgedCase, Outcome, RunRequest
 from omegadot.harness.plan import EngineChoice
+from omegadot.harness.python_path import setting_for
 from omegadot.reports.record.record import Record
 from omegadot.reports.record.schema import SCHEMA
 from omegadot.workers.machine import describe_machine, package_versions
@@ -63,7 +64,8 @@ def _engines(outcome: Outcome) -> list[dict[str, Any]]:
         parts = {"integrators": integrators, "features": sorted(own.features)}
         named = {"name": engine.name, "installed": True, "reason": ""}  # as the tasks name it
         ways = {"via": engine.choice.via or "api", "argument": _argument(engine.choice)}
-        found.append({**vars(own), **named, **parts, **ways})
+        path = {"environment": setting_for(engine.choice.target)}
+        found.append({**vars(own), **named, **parts, **ways, **path})
     for choice, answer in outcome.missing:
         found.append({"name": choice.name, "installed": False, "reason": answer.reason})
     return found

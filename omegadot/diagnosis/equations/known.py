@@ -81,7 +81,7 @@ def _goes(parts: Sequence[tuple[Scene, Evidence]], off: Off | None, kind: str, i
     alone = off is not None and off.turns and still and ATTITUDE not in powers
     rest = {k: v for k, v in powers.items() if not (alone and k in OF_THE_STATE)}
     texts = [f"nothing else of the state than the attitude is seen to change {it}"] * alone
-    some = "" if all(turned) else f" on {sum(turned)} of {len(turned)} scenarios"
+    some = "" if all(turned) else f" on {sum(turned)} of the {len(turned)} scenarios that show it"
     texts += [f"{it} changes with the attitude{some}"] * (any(turned) and not alone)
     return "; ".join(text for text in (*texts, dependence_text(rest, it)) if text)
 

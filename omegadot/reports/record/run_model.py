@@ -61,6 +61,7 @@ class _Engine(_Table):
     reason: Text = None
     via: Text = None
     argument: Text = None
+    environment: Texts = None
 
 
 class _System(_Table):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from omegadot.reports.summary.next_command import CHECK
+from omegadot.reports.summary.next_command import is_check
 from omegadot.reports.text.numbers import listed, times
 
 # What each gate looks at, for readers who do not know their names.
@@ -59,7 +59,7 @@ class EngineFailure:
     @property
     def purpose(self) -> str:
         """What the command is for."""
-        checks = self.command.startswith(CHECK)
+        checks = is_check(self.command)
         return "finds the smallest system that fails" if checks else "runs it alone"
 
     @property

@@ -6,15 +6,16 @@ import shlex
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from omegadot.reports.summary.provenance import requested_scenarios
+from omegadot.reports.summary.provenance import program_of, requested_scenarios
 
 API = "api"
-CHECK = "omegadot check "
+CHECK = "check"
 DRAWN = "random-"  # begins the name of a system that was drawn
 
 
 def next_command(run: Mapping[str, Any], worst: Mapping[str, Any], failing: Collection[str]) -> str:
-    """``omegadot check ENGINE``, which shrinks the failure and looks for its cause.
+    """``omegadot check ENGINE``, which shrinks the failure and looks for its cause: as the run was
+    started, and to be typed in its folder.
 
     worst: the row that is worst.  failing: the integrators with a run that fails.  A scenario that
     is not among those that `check` runs by itself is named. Of another setup, which `check` does
@@ -27,11 +28,14 @@ def next_command(run: Mapping[str, Any], worst: Mapping[str, Any], failing: Coll
         return ""
     given = requested_scenarios(run).get(worst["scenario"], worst["scenario"])
     via = engine.get("via") or API
+    start = [*(engine.get("environment") or ()), *program_of(run)]
     ways = [] if via == API else ["--via", via]
     if worst["setup"] not in (None, "physics"):
-        return shlex.join(_run(worst, given, argument, engine) + ways)
+        again = _run(worst, given, argument, engine)
+        again += ["--seed", str(seed)] if (seed := run.get("seed")) else []
+        return shlex.join([*start, "run", *again, *ways])
     names = [own["name"] for own in engine.get("integrators") or ()]
-    arguments = [*CHECK.split(), argument]
+    arguments = [*start, CHECK, argument]
     if len(failing) == 1 < len(names):
         arguments += ["--integrator", *failing]
     if given != worst["scenario"] or given.startswith(DRAWN):
@@ -39,13 +43,20 @@ def next_command(run: Mapping[str, Any], worst: Mapping[str, Any], failing: Coll
     return shlex.join(arguments + ways)
 
 
+def is_check(command: str) -> bool:
+    """Whether it is ``omegadot check``, and not a run."""
+    words = shlex.split(command)
+    return CHECK in words and "run" not in words[: words.index(CHECK)]
+
+
 def _run(
     worst: Mapping[str, Any], scenario: str, argument: str, engine: Mapping[str, Any]
 ) -> list[str]:
-    """The command that runs the cell of a row alone."""
+    """What runs the cell of a row alone, after ``omegadot run``."""
     own = argument != engine["name"]
     name = worst["engine"] + (f":{worst['integrator']}" if worst["integrator"] else "")
-    arguments = ["omegadot", "run", scenario, *(["--adapter", argument] if own else [])]
+    arguments = [scenario, *(["--adapter", argument] if own else [])]
     arguments += ["--engine", name, "--setup", worst["setup"]]
-    step = worst["timestep"]
-    return arguments + ([] if step is None else ["--timestep", repr(step)])
+    for option, knob in (("--timestep", worst["timestep"]), ("--accuracy", worst.get("accuracy"))):
+        arguments += [] if knob is None else [option, repr(knob)]
+    return arguments

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+SCENARIO = "--scenario"
 # Options that change what a run computes, and must stand in the command that repeats it.
 _KEPT = ("--adapter", "--exceptions")
 
@@ -81,8 +82,17 @@ def requested_scenarios(run: Mapping[str, Any]) -> dict[str, str]:
     return dict(zip(names, texts, strict=True)) if len(texts) == len(names) else {}
 
 
+def program_of(run: Mapping[str, Any]) -> list[str]:
+    """How omegadot was started for a record, as typed: the words before ``run``."""
+    command = [str(text) for text in run.get("command") or ()]
+    return command[: command.index("run")] if "run" in command else ["omegadot"]
+
+
 def _arguments(command: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
-    """The positional arguments after ``run``, and the options with their values."""
+    """The scenarios after ``run``, with an option or without, and the other options' values.
+
+    As the command takes them: those with an option stand after the others.
+    """
     texts: list[str] = []
     options: list[tuple[str, str]] = []
     rest: Iterator[str] = iter(command[command.index("run") + 1 :] if "run" in command else [])
@@ -94,7 +104,8 @@ def _arguments(command: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]
             options.append((name, value))
         else:  # every option of the command takes a value
             options.append((text, next(rest, "")))
-    return texts, options
+    texts += [value for name, value in options if name == SCENARIO]
+    return texts, [option for option in options if option[0] != SCENARIO]
 
 
 def command_of(run: Mapping[str, Any]) -> str:

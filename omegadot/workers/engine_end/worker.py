@@ -57,7 +57,9 @@ def failure(error: BaseException) -> dict[str, Any]:
         error, AnswerError | ProgramError | UnrepresentableError
     ):  # it states all, and no line of ours helps
         return {"outcome": "raised", "reason": texts}
-    last = traceback.extract_tb(error.__traceback__)[-1:]
+    frames = traceback.extract_tb(error.__traceback__)
+    # Of an import that fails the line that imports, not Python's own machinery.
+    last = [frame for frame in frames if not frame.filename.startswith("<frozen ")][-1:]
     where = f" ({os.path.basename(last[0].filename)}:{last[0].lineno})" if last else ""
     reason = f"{type(error).__name__}: {texts}".rstrip(": ") + where
     limit = os.environ.get(MEMORY_VARIABLE)
