@@ -183,7 +183,10 @@ class CaseCauses:
             # Where a first system is wrong elsewhere, the sibling may be so by itself.
             first = (scene.evidence.get(FORWARD) for scene in self._across.scenes.values())
             wrong = any(one is not None and one.clear for one in first)
-            return [] if wrong else self._siblings.causes(self._case)
+            if wrong:
+                kept = self._siblings.left_over(self._case)
+                return [kept] if kept else []
+            return self._siblings.causes(self._case)
         if self._answers.inverse.ok and any(row.channel == "torque" for row in self._shared_rows):
             return self._of_torques()
         return self._of_lever()

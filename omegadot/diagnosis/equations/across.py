@@ -26,13 +26,17 @@ Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
 
 
 class Across:
-    """The scenarios of one engine so far, and the causes found among them."""
+    """The scenarios of one engine so far, and the causes found among them.
 
-    def __init__(self) -> None:
+    left_over: what is kept of systems, of these scenarios and maybe others.
+    """
+
+    def __init__(self, left_over: LeftOver | None = None) -> None:
         self._all = Scenes()
         self._searched, self._formulas = Searched(self._all), Formulas(self._all)
         self._at_states, self._carried = AtSomeStates(self._all), Carried(self._all)
-        self._left_over, self._mistyped = LeftOver(), Mistyped(self._all)
+        self._left_over = LeftOver() if left_over is None else left_over
+        self._mistyped = Mistyped(self._all)
         self._inverse = WrongInverse()
         self._named: dict[tuple[str, str], Named] = {}
         self._known: dict[tuple[str, tuple[str, ...]], str] = {}
