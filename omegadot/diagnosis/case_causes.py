@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.evidence import ALONG, FORWARD, INVERSE, INVERTED
 from omegadot.diagnosis.equations.siblings import AFTER_ANOTHER
 from omegadot.diagnosis.equations.wrong_equation import (
@@ -143,6 +144,16 @@ class CaseCauses:
     def case(self) -> Case:
         """The case."""
         return self._case
+
+    @property
+    def states(self) -> EvaluationStates:
+        """The states that were evaluated."""
+        return self._states
+
+    @property
+    def integrators(self) -> list[Integrator]:
+        """Those that have run."""
+        return [one.integrator for one in self._integrators.values()]
 
     @property
     def eps(self) -> float:

@@ -40,3 +40,8 @@ class Asked:
                 "timeout", f"experiments may take {written(MOST_SECONDS)} s of an engine"
             )
         return answer
+
+    def restart(self) -> None:
+        """Start the engine afresh with the next request."""
+        if self.lost is None:
+            self.driver.restart()
