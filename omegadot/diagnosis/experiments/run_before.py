@@ -85,7 +85,8 @@ def _after(
     paths, ends = found
     stepped = State(*(np.stack(f)[None] for f in _by_field(ends[1:])))
     steps = vanishing_steps(case.system, Probe(one, probe.timesteps), stepped, eps)
-    yield AfterRun(before.kind, before.case.system, _limit(paths), before.h, steps, ends[0])
+    each = tuple(zip(paths[1:], ends[1:], strict=True))
+    yield AfterRun(before.kind, before.case.system, _limit(paths), each, steps, ends[0])
 
 
 def _ends(

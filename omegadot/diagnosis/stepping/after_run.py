@@ -21,6 +21,7 @@ from omegadot.written import written
 OWN = "the same integrator, of the same system"
 CLOSE = 1e-6  # relative: what the extrapolation of a step to none is known to at least
 WHOLE = 1e-6  # a part that is all of it
+NEARER = 2.0**-6  # after eight halvings, between what two and none of them leave
 FEWEST = 2  # runs that show it
 MOST_NAMED = 3  # between which nothing decides
 Quantity = Callable[[System, State], Array]
@@ -30,14 +31,15 @@ Quantity = Callable[[System, State], Array]
 class AfterRun:
     """First steps, ever shorter, from one state after one run.
 
-    kind: of the run before.  system and path (n + 1,): that run's, and its states; h: its step in
-    s.  steps: (1,), from the state.  same_step: the end of a step of h from it.
+    kind: of the run before.  system and path (n + 1,): that run's, and its states before a step of
+    no length.  each: the path before each of the steps, and the end of this step; the last is the
+    shortest.  steps: (1,), from the state.  same_step: the end of a step as long as those before.
     """
 
     kind: str
     system: System
     path: State
-    h: float
+    each: tuple[tuple[State, State], ...]
     steps: VanishingSteps
     same_step: State
 
@@ -98,6 +100,8 @@ def _causes(seen: Sequence[AfterRun]) -> Iterator[str]:
         if text:
             yield text
             return
+    if any(np.any(one.steps.jumps) for one in seen):
+        return  # what a step starts from is another, and no rate of it is one
     for channel, quantities in TAKEN.items():
         found = [
             one
@@ -105,7 +109,7 @@ def _causes(seen: Sequence[AfterRun]) -> Iterator[str]:
             for place, index in PLACES.items()
             for one in _of_rate(seen, channel, f"{what} {place}", quantity, torque, index)
         ]
-        most = max((fits for fits, _ in found), default=0)
+        most = max((fits for fits, _ in found), default=(0, False))
         texts = [text for fits, text in found if fits == most]
         if texts and len(texts) <= MOST_NAMED:
             yield texts[0] if len(texts) == 1 else "either " + ", or ".join(texts)
@@ -130,28 +134,29 @@ def _same(one: State, other: State) -> bool:
 def _of_start(seen: Sequence[AfterRun], name: str, what: str) -> str:
     """Of which state a quantity is that the first step starts with, in place of the one set."""
     own = [one for one in seen if one.kind == OWN]
-    ends, starts = ([getattr(s, name)[0] for s in way] for way in _ways(own))
-    if not all(norm(a - b) > CLOSE * norm(b) for a, b in zip(ends, starts, strict=True)):
-        return ""
     for place, index in PLACES.items():
-        kept = [getattr(one.path, name)[index] for one in own]
-        if len(own) >= FEWEST and all(
-            norm(a - b) <= CLOSE * norm(b) for a, b in zip(ends, kept, strict=True)
-        ):
+        if len(own) >= FEWEST and all(_starts_from(one, name, index) for one in own):
             return f"the first step of a run starts from the {what} {place} the run before"
     return ""
 
 
-def _ways(seen: Sequence[AfterRun]) -> tuple[list[State], list[State]]:
-    return [one.steps.limit for one in seen], [one.steps.states for one in seen]
+def _starts_from(one: AfterRun, name: str, index: int) -> bool:
+    """Whether shorter steps end ever nearer to a state of the run before, and not to the one set.
+
+    Of an engine that starts from an old state each of the runs before is another.
+    """
+    ends = [(getattr(path, name)[index], getattr(end, name)) for path, end in one.each]
+    left = [float(norm(end - kept)) for kept, end in ends]
+    moved = float(norm(ends[-1][1] - getattr(one.steps.states, name)[0]))
+    return left[-1] <= NEARER * left[0] and left[-1] <= NEARER * moved
 
 
 def _of_rate(
     seen: Sequence[AfterRun], channel: str, what: str, quantity: Quantity, torque: bool, index: int
-) -> Iterator[tuple[int, str]]:
+) -> Iterator[tuple[tuple[int, bool], str]]:
     """One sentence, where one part of it makes all that is off; none where it does not.
 
-    With the number of kinds of runs before that it is so after.
+    With the number of kinds of runs before that it is so after, and whether it is the whole.
     """
     rows = [(one.kind, *one.rate(channel), _other(one, quantity, torque, index)) for one in seen]
     free = [one for one in seen if one.steps.system.load.pivot is None]
@@ -172,7 +177,7 @@ def _of_rate(
     if shown < FEWEST or not all(fits.get(OWN, [False])):
         return
     also = {kind: all(each) for kind, each in fits.items() if kind != OWN}
-    yield sum(also.values()), _worded(what, part, also)
+    yield (sum(also.values()), _whole(part)), _worded(what, part, also)
 
 
 def _other(one: AfterRun, quantity: Quantity, torque: bool, index: int) -> Array:
@@ -182,8 +187,12 @@ def _other(one: AfterRun, quantity: Quantity, torque: bool, index: int) -> Array
     return apply(inverse(moving_inertia(system)), due) if torque else np.asarray(due)
 
 
+def _whole(part: float) -> bool:
+    return abs(part - 1.0) <= WHOLE
+
+
 def _worded(what: str, part: float, also: dict[str, bool]) -> str:
-    of = "" if abs(part - 1.0) <= WHOLE else f"for a part of {written(part, 4)}, "
+    of = "" if _whole(part) else f"for a part of {written(part, 4)}, "
     others = [kind for kind, so in also.items() if so]
     never = [kind for kind, so in also.items() if not so]
     text = f"{of}the first step of a run takes the {what} the run before in place of its own"
