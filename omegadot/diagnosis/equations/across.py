@@ -19,7 +19,7 @@ from omegadot.diagnosis.equations.near_inertia import near_inertia
 from omegadot.diagnosis.equations.pivot_inertia import pivot_inertia
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
 from omegadot.diagnosis.equations.solve_matrix import solve_matrix
-from omegadot.diagnosis.equations.worded import Named, named, on_some
+from omegadot.diagnosis.equations.worded import Named, named, on_some, on_these_alone
 from omegadot.diagnosis.equations.wrong_inverse import WrongInverse
 
 Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
@@ -204,4 +204,5 @@ class Across:
         where = where_wrong(scene.evidence[source], self._all.evidence(source))
         if where:
             return Named(f"the equation holds at some states, and is wrong only where {where}")
-        return self._carried.conditional(source, partial)
+        on_some_kind = self._carried.conditional(source, partial)
+        return on_some_kind if on_some_kind.text else on_these_alone(partial, self._wrong(source))

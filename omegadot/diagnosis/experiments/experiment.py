@@ -39,7 +39,9 @@ class Experiment:
             self._with_other_states(one)
             for _, system in other_loads(one.system):
                 self._add(self._judge.trial(system, one.states, one))
-        return kind_that_sorts(self.seen) or self._by_bodies(bases)
+        found = kind_that_sorts(self.seen)
+        # of an inertia one other tensor tells little: its moments may be what decides
+        return found if found and "inertia" not in found else self._by_bodies(bases)
 
     def _by_bodies(self, bases: Sequence[Trial]) -> str:
         for one in bases[:1] if self._parted else bases:
