@@ -120,8 +120,9 @@ class Experiment:
         for one in self._mixed():
             self._along_states(one)
         for wrong, right in self._neighbours():
-            if not [one for one in limits_that_sort(self.seen) if not one.narrow]:
-                break
+            left = _distinct(limits_that_sort(self.seen))
+            if len(left) < 2 and all(one.narrow for one in left):
+                break  # of two that are narrow another line may decide
             self._along_systems(wrong, right)
         left = _distinct(limits_that_sort(self.seen))
         return str(left[0]) if len(left) == 1 and left[0].narrow else ""
