@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.evidence import ALONG, FORWARD, INVERSE, INVERTED
 from omegadot.diagnosis.equations.siblings import AFTER_ANOTHER
 from omegadot.diagnosis.equations.wrong_equation import (
@@ -145,6 +146,16 @@ class CaseCauses:
         return self._case
 
     @property
+    def states(self) -> EvaluationStates:
+        """The states that were evaluated."""
+        return self._states
+
+    @property
+    def integrators(self) -> list[Integrator]:
+        """Those that have run."""
+        return [one.integrator for one in self._integrators.values()]
+
+    @property
     def eps(self) -> float:
         """Of the engine's precision."""
         return eps_of(self._answers.precision)
@@ -193,7 +204,10 @@ class CaseCauses:
             # Where a first system is wrong elsewhere, the sibling may be so by itself.
             first = (scene.evidence.get(FORWARD) for scene in self._across.scenes.values())
             wrong = any(one is not None and one.clear for one in first)
-            return [] if wrong else self._siblings.causes(self._case)
+            if wrong:
+                kept = self._siblings.left_over(self._case)
+                return [kept] if kept else []
+            return self._siblings.causes(self._case)
         if self._answers.inverse.ok and any(row.channel == "torque" for row in self._shared_rows):
             return self._of_torques()
         return self._of_lever()

@@ -19,8 +19,11 @@ from omegadot.diagnosis.case_causes import CaseCauses
 from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.judges import changes_by_itself
+from omegadot.diagnosis.experiments.run_before import after_runs
 from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditions_of
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
+from omegadot.diagnosis.reported.requests import AGAIN
+from omegadot.diagnosis.stepping.after_run import AfterRun, taken_of_run_before
 from omegadot.diagnosis.wording.kinds import beside_others, is_named
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import (
@@ -37,6 +40,7 @@ CHANGES = (
     "omega-dot of the same states is another when it is requested again at once: it is drawn at "
     "random, or depends on the requests before"
 )
+PAIRS = 3  # runs of one step, each after another run, on which a cause is looked for
 MOST_EXPERIMENTS = 6  # causes of one engine whose conditions are looked for
 Ask = Callable[[str, Callable[[Driver], Conditions]], Conditions]
 
@@ -56,6 +60,7 @@ class Causes:
         self._conditions: dict[tuple[str, tuple[object, ...]], Conditions] = {}
         self._asked: dict[str, Asked] = {}
         self._unsteady: dict[str, bool] = {}
+        self._after: dict[tuple[str, str], list[AfterRun]] = {}
 
     def add(self, judged: JudgedCase, found: EngineCase, seed: int) -> CaseCauses:
         """One more case of an engine. It must have an exact trajectory."""
@@ -105,6 +110,8 @@ class Causes:
         own = self._cases[engine][case]
         if integrator is None and own.of_forward_dynamics and self._changes(engine, own):
             return CHANGES
+        if integrator is not None and text in AGAIN.values() and self.ask is not None:
+            return self._of_run_before(engine, own, integrator) or text
         subject = own.subject(integrator, text) if self.ask is not None else None
         if subject is None or self.ask is None:
             return text
@@ -133,6 +140,29 @@ class Causes:
 
             self._unsteady[engine] = bool(self.ask(engine, call).condition)
         return self._unsteady.get(engine, False)
+
+    def _of_run_before(self, engine: str, own: CaseCauses, integrator: str) -> str:
+        """What the first step of a run takes of the run before; "" where that is not known.
+
+        It is found on the first case, and must hold on each of which it is said.
+        """
+        first = self._after.setdefault((engine, integrator), [])
+        here = list[AfterRun]()
+
+        def call(driver: Driver) -> Conditions:
+            asked = self._asked.setdefault(engine, Asked(driver))
+            names = sorted(own.integrators, key=lambda one: one.name != integrator)
+            states = own.states.random[: PAIRS + 1]
+            pairs = 1 if first else PAIRS
+            with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+                here.extend(after_runs(asked, own.case, names, states, own.eps, pairs))
+                return Conditions(taken_of_run_before([*first, *here]))
+
+        assert self.ask is not None
+        text = self.ask(engine, call).condition
+        if not first and text:
+            first.extend(here)
+        return text if here else ""
 
     def _conditions_of(
         self, engine: str, own: CaseCauses, subject: Subject, driver: Driver

@@ -12,6 +12,7 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.left_over import LeftOver
 from omegadot.diagnosis.equations.siblings import Siblings
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.reported.onsets import Onset
@@ -102,14 +103,20 @@ class OverScenarios:
 class EngineOverScenarios:
     """Of one engine. across: the equations that its scenarios show.  integrators: by name.
 
-    siblings: what the same systems show with one thing changed.
+    siblings: what the same systems show with one thing changed.  left_over: what is kept of a
+    system loaded before, in both.
     """
 
-    across: Across = field(default_factory=Across)
-    siblings: Siblings = field(default_factory=Siblings)
+    left_over: LeftOver = field(default_factory=LeftOver)
+    across: Across = field(init=False)
+    siblings: Siblings = field(init=False)
     integrators: dict[str, OverScenarios] = field(
         default_factory=lambda: defaultdict(OverScenarios)
     )
+
+    def __post_init__(self) -> None:
+        """Both are looked at together: what is kept is often decided by a small change."""
+        self.across, self.siblings = Across(self.left_over), Siblings(self.left_over)
 
     def sleep(self, integrator: str, name: str) -> str:
         """Where the body is put to sleep, on a scenario of this name that shows it; else "".

@@ -151,6 +151,11 @@ class Driver:
         """What the worker had been loaded with before the system that it has now."""
         return self._loads.before
 
+    def restart(self) -> None:
+        """Have the next request start the worker afresh: nothing that it kept is left."""
+        self.worker.stop()
+        self._loaded = None
+
     def integrators(self) -> tuple[Integrator, ...]:
         """The integrators to run, as declared for the system that was loaded last."""
         declared = {integrator.name: integrator for integrator in self._declared}

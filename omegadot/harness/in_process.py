@@ -37,6 +37,9 @@ class Local:
             return Answer("raised", f"{type(error).__name__}: {error}")
         return Answer("ok", result=_sent({"result": found})["result"])
 
+    def stop(self) -> None:
+        """Nothing: the adapter is the caller's."""
+
 
 def driver_of(name: str, adapter: Adapter, integrators: tuple[Integrator, ...] = ()) -> Driver:
     """A driver of an adapter in this process, running the integrators given (all by default)."""

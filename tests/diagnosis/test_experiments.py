@@ -19,6 +19,7 @@ from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.conditioned import (
     condition_in,
     conditioned,
+    not_always,
     without_condition,
 )
 from omegadot.diagnosis.experiments.experiment import Experiment
@@ -158,6 +159,21 @@ def test_a_limit_is_closed_in_upon(name: str) -> None:
     assert toy.asked <= MOST
 
 
+def nearly_symmetric(system: System, _: State) -> Any:
+    x, y, z = np.diag(moving_inertia(system))
+    return bool(abs(x - y) < 0.1 * z)
+
+
+def test_moments_that_nearly_agree_are_a_condition() -> None:
+    """Caught: no products taken for the condition, or no condition at all."""
+    near = case("near", {}, 1.0, np.diag([2.0, 2.15, 2.6]).tolist())
+    found, toy = experiment(nearly_symmetric, (near, FREE, TOP, DRIVEN))
+    assert found.startswith("|Ixx - Iyy| / Izz is below a limit between")
+    low, high = map(float, re.findall(r"between (\S+) and (\S+)", found)[0])
+    assert low < 0.1 < high
+    assert toy.asked <= MOST
+
+
 def chance(system: System, _: State) -> bool:
     """By nothing that has a name."""
     numbers = (system.body.mass, np.trace(system.body.inertia), system.load.damping)
@@ -277,8 +293,11 @@ def test_steps_that_are_of_one_formula_have_no_limit() -> None:
 
 def test_a_cause_has_one_condition() -> None:
     cause = "the damping is missing"
-    for some in ("", ", not on 17 others that would show it", ", but not always"):
+    some_of_all = ", on 3 scenarios, not on 17 others that would show it"
+    for some in ("", some_of_all, ", not on 17 others that would show it", ", but not always"):
         assert conditioned(cause + some, "it rains") == f"{cause}, but only where it rains"
+    assert not_always(cause) == f"{cause}, but not always"
+    assert not_always(cause + some_of_all) == cause + some_of_all
     old = f"{cause}, but only where a torque acts (random-0-1; other numbers on 3 more)"
     assert condition_in(old) == "a torque acts"
     assert without_condition(old).startswith(f"{cause}, but not always (random-0-1")

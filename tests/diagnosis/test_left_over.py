@@ -12,6 +12,7 @@ from wrong_equations import CASES, GRAVITY, case
 
 from omegadot.adapters.reference import ReferenceAdapter
 from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.equation_form import accelerations, form_of
 from omegadot.diagnosis.equations.evidence import of_forward_dynamics
 from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.equations.wrong_equation import (
@@ -69,6 +70,27 @@ def old_inverse(systems: Sequence[System], states: State) -> Acceleration:
     return replace(true, angular=angular)
 
 
+def of_equation(
+    one: Callable[[System, System], bool], first: bool, *parts: str
+) -> Callable[[Sequence[System], State], Acceleration]:
+    """Parts of the equation that are those of the first, or the last, earlier system alike."""
+
+    def engine(systems: Sequence[System], states: State) -> Acceleration:
+        alike = [s for s in systems[:-1] if one(s, systems[-1])] or [systems[-1]]
+        own, kept = form_of(systems[-1]), form_of(alike[0 if first else -1])
+        return accelerations(replace(own, **{p: getattr(kept, p) for p in parts}), states)
+
+    return engine
+
+
+def of_one_mass(one: System, other: System) -> bool:
+    return float(one.body.mass) == float(other.body.mass)
+
+
+def of_one_support(one: System, other: System) -> bool:
+    return of_one_mass(one, other) and (one.load.pivot is None) is (other.load.pivot is None)
+
+
 def same_mass(systems: Sequence[System]) -> dict[str, Any]:
     """The inertia of the first system with this mass."""
     own = systems[-1].body.mass
@@ -77,6 +99,10 @@ def same_mass(systems: Sequence[System]) -> dict[str, Any]:
 
 TENSORS = tuple(np.diag([1.0 + k, 2.0 + 0.5 * k, 1.7 + k]).tolist() for k in range(3))
 BODIES = tuple(case(f"body-{k}", {"gravity": GRAVITY}, 2.0, TENSORS[k]) for k in range(3))
+HELD = tuple(
+    case(f"held-{k}", {"gravity": GRAVITY, "pivot": [0.3, 0.1 * k, -0.2]}, 2.0, TENSORS[k])
+    for k in range(3)
+)
 HEAVY = tuple(case(f"heavy-{k}", {"gravity": GRAVITY}, 9.0, TENSORS[k]) for k in (2, 0))
 
 WRONG: dict[str, tuple[Engine, tuple[Case, ...], str]] = {
@@ -114,6 +140,26 @@ WRONG |= {
         old_inverse,
         BODIES,
         "the inverse of the inertia of the system loaded before is kept",
+    ),
+    "inverse by mass": (
+        of_equation(of_one_mass, True, "solve"),
+        (*HELD, *BODIES, *HEAVY),
+        "the inverse of the inertia is found again by the mass: ",
+    ),
+    "inverse by mass and support": (
+        of_equation(of_one_support, True, "solve"),
+        (HELD[0], *BODIES, *HELD[1:], *HEAVY),
+        "the inverse of the inertia is found again by the mass and by whether it is pivoted: ",
+    ),
+    "gyroscopic": (
+        of_equation(lambda one, other: True, False, "spin"),
+        (*HELD, *BODIES),
+        "the inertia in the gyroscopic term of the system loaded before is kept",
+    ),
+    "of a pivoted body": (
+        of_equation(of_one_support, True, "solve", "spin"),
+        (*HELD, *BODIES, *HEAVY),
+        "the inertia (about the pivot, if any) is found again by the mass and by whether",
     ),
 }
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from test_over_runs import CASES, STEPS
 from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, case
@@ -9,7 +11,7 @@ from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, case
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.other_schemes import ENDS
-from omegadot.diagnosis.stepping.step_ends import with_end
+from omegadot.diagnosis.stepping.step_ends import kept_ends, with_end
 from omegadot.diagnosis.stepping.where_stepped import where_stepped
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.case import Case, Sweep
@@ -62,3 +64,12 @@ def test_what_acts_everywhere_and_other_causes_are_left_as_they_are() -> None:
     tail = f"{TEXT}, at steps of 0.02 s and longer; steps of 0.01 s fail no gate"
     assert where({one.name for one in EVERY}, tail) == tail
     assert where({"driven"}, "the gyroscopic term is missing") == "the gyroscopic term is missing"
+
+
+def test_a_body_at_rest_shows_nothing_of_what_scales_omega() -> None:
+    """Caught: a body at rest counted as one that would show it, where zero is divided by zero."""
+    text = "omega is rescaled after each step, so that its size stays the same"
+    one = EVERY[0]
+    still = replace(one.initial, angular_velocity=np.zeros(3))
+    end = kept_ends(one.system)[text](still, still, 0.01)
+    assert np.array_equal(end.angular_velocity, np.zeros(3))

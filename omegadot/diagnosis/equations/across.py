@@ -20,20 +20,24 @@ from omegadot.diagnosis.equations.near_inertia import near_inertia
 from omegadot.diagnosis.equations.pivot_inertia import pivot_inertia
 from omegadot.diagnosis.equations.searched import PLAIN, QUICK, Searched
 from omegadot.diagnosis.equations.solve_matrix import solve_matrix
-from omegadot.diagnosis.equations.worded import Named, named, on_some
+from omegadot.diagnosis.equations.worded import Named, named, on_some, on_these_alone
 from omegadot.diagnosis.equations.wrong_inverse import WrongInverse
 
 Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
 
 
 class Across:
-    """The scenarios of one engine so far, and the causes found among them."""
+    """The scenarios of one engine so far, and the causes found among them.
 
-    def __init__(self) -> None:
+    left_over: what is kept of systems, of these scenarios and maybe others.
+    """
+
+    def __init__(self, left_over: LeftOver | None = None) -> None:
         self._all = Scenes()
         self._searched, self._formulas = Searched(self._all), Formulas(self._all)
         self._at_states, self._carried = AtSomeStates(self._all), Carried(self._all)
-        self._left_over, self._mistyped = LeftOver(), Mistyped(self._all)
+        self._left_over = LeftOver() if left_over is None else left_over
+        self._mistyped = Mistyped(self._all)
         self._inverse = WrongInverse()
         self._named: dict[tuple[str, str], Named] = {}
         self._known: dict[tuple[str, tuple[str, ...]], str] = {}
@@ -202,4 +206,5 @@ class Across:
         where = where_wrong(scene.evidence[source], self._all.evidence(source))
         if where:
             return Named(f"the equation holds at some states, and is wrong only where {where}")
-        return self._carried.conditional(source, partial)
+        on_some_kind = self._carried.conditional(source, partial)
+        return on_some_kind if on_some_kind.text else on_these_alone(partial, self._wrong(source))

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from omegadot.diagnosis.equations.all_kept import KEPT
 from omegadot.diagnosis.equations.equation_form import accelerations
 from omegadot.diagnosis.equations.evidence import INVERSE, INVERTED, Evidence
 from omegadot.diagnosis.equations.held import Scene
-from omegadot.diagnosis.equations.kept_parts import KEPT, Kept
+from omegadot.diagnosis.equations.kept_parts import Kept
 from omegadot.harness.loaded_before import LoadedBefore
 from omegadot.reference_impl.system import Acceleration, Array
 
@@ -99,10 +100,13 @@ def _found(seen: Sequence[_Seen]) -> tuple[str, frozenset[tuple[str, str]]]:
 def worded_kept(kept: Sequence[Kept]) -> str:
     """The plainest of these; "" where too many are left that nothing decides between."""
     least = min((len(k.part.attributes) for k in kept), default=0)
+    every = {k.text for k in kept}
+    kept = [k for k in kept if not every & {*k.plainer}]
     kept = [k for k in kept if len(k.part.attributes) == least]
     texts = list(dict.fromkeys(k.text for k in kept))
     if len({k.what for k in kept}) == 1 and len(texts) > 1:
-        texts = [kept[0].vague]
+        keys = {k.key for k in kept}
+        texts = [kept[0].vague(keys.pop() if len(keys) == 1 else "")]
     if not 1 <= len(texts) <= MOST_NAMED:
         return ""
     return texts[0] if len(texts) == 1 else "either " + ", or ".join(texts)

@@ -10,6 +10,7 @@ from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics
 from omegadot.diagnosis.equations.held import Scene
+from omegadot.diagnosis.equations.left_over import LeftOver
 from omegadot.diagnosis.wording.digits import listed
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.bounds.scales import eps_of
@@ -25,10 +26,13 @@ OTHER = 1e-6  # relative: values that are two
 
 
 class Siblings:
-    """Of one engine: every scenario, and each with one thing changed, loaded after it."""
+    """Of one engine: every scenario, and each with one thing changed, loaded after it.
 
-    def __init__(self) -> None:
-        self._across = Across()
+    left_over: what is kept of systems, of these and of all else that is known of the engine.
+    """
+
+    def __init__(self, left_over: LeftOver | None = None) -> None:
+        self._across = Across(left_over)
         self._first: dict[str, System] = {}  # of the scenarios on which forward dynamics are right
 
     def add(self, scene: Scene, case: Case, result: CaseResult) -> None:
@@ -59,14 +63,14 @@ class Siblings:
 
     def causes(self, case: Case) -> list[str]:
         """A wrong equation that shows in the siblings alone, what is left over, or either."""
+        kept_of_others = self.left_over(case)
+        if kept_of_others:
+            return [kept_of_others]
         failing = dict[str, bool]()  # by what is changed: whether the answer is the first system's
         for what in (what for what, _ in siblings.siblings_of(case) if what != SCALE):
             scene = self._across.scenes.get(_name(case, what))
             if scene is not None and not np.all((one := scene.evidence[FORWARD]).sound):
                 failing[what] = one.fits(forward_dynamics(case.system, one.states))
-        known = {self._across.left_over(_name(case, what), FORWARD) for what in failing}
-        if len(known) == 1 and "" not in known:
-            return list(known)
         texts = [self._across.plain(_name(case, what), FORWARD) for what in failing]
         found = list(dict.fromkeys(filter(None, texts)))
         kept = all(failing.values())  # also where numbers that differ slightly are wrong alone
@@ -76,6 +80,16 @@ class Siblings:
         if len(found) == 1 and all(texts):
             return [f"either {found[0]}, or {AFTER_ANOTHER}" if kept else found[0]]
         return [f"either forward dynamics are wrong with another {named}, or {AFTER_ANOTHER}"]
+
+    def left_over(self, case: Case) -> str:
+        """What is kept of a system, if it makes all that is wrong; "" where nothing does."""
+        known = {
+            self._across.left_over(name, FORWARD)
+            for what, _ in siblings.siblings_of(case)
+            if (name := _name(case, what)) in self._across.scenes
+            and self._across.scenes[name].evidence[FORWARD].clear
+        }
+        return known.pop() if len(known) == 1 else ""
 
     def _right_with_others(self, what: str) -> bool:
         """Whether scenarios that differ in this are right where they are loaded by themselves."""

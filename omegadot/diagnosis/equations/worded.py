@@ -107,3 +107,30 @@ def on_some(held: Sequence[Held], own: bool = False) -> Named:
                 text = f"{text} ({one.shown[0].name}; other numbers on {len(one.numbers)} more)"
             return Named(text, one.candidate, frozenset(one.names))
     return Named()
+
+
+def on_these_alone(held: Sequence[Held], wrong: set[str]) -> Named:
+    """What explains all that is wrong, where it would show elsewhere as well, and does not.
+
+    It is said on how many scenarios; several where no scenario decides between them.
+    """
+    known = [one for one in held if one.against and not one.numbers and wrong <= one.names]
+    # many numbers fit one scenario
+    known = [one for one in known if _count(one) < 2 or len(one.shown) > 1]
+    best = [one for one in known if _count(one) == min(map(_count, known))]
+    texts = dict.fromkeys(_on_these(one) for one in best)
+    if not 1 <= len(texts) <= MOST_NAMED:
+        return Named()
+    text = next(iter(texts)) if len(texts) == 1 else "either " + ", or ".join(texts)
+    return Named(text, best[0].candidate, frozenset(best[0].names))
+
+
+def _count(one: Held) -> int:
+    return 0 if one.candidate.numbers is None else len(one.candidate.numbers)
+
+
+def _on_these(one: Held) -> str:
+    shown, against = len(one.shown), len(one.against)
+    text = one.candidate.text(one.shown[0].evidence[one.source].system, alone=shown == 1)
+    here = f", on {shown} scenario{'s' * (shown > 1)}"
+    return f"{text}{here}, not on {against} other{'s' * (against > 1)} that would show it"

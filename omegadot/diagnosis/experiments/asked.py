@@ -49,6 +49,11 @@ class Asked:
             )
         return answer
 
+    def restart(self) -> None:
+        """Start the engine afresh with the next request."""
+        if self.lost is None:
+            self.driver.restart()
+
 
 def _requested(case: Case, operation: str, fields: Mapping[str, Any]) -> str:
     """``single steps of RK4 on a variation of t-handle``."""

@@ -8,7 +8,8 @@ UNKNOWN = "none is known"
 END = r"(?= \(\S+; other numbers|; |$)"
 # What is said of some scenarios where no condition is known, or by what scenarios alone show.
 OF_SOME = re.compile(
-    rf", not on \d+ others? that would show it|, but not always|, but only where .*?{END}"
+    r"(?:, on \d+ scenarios?)?, not on \d+ others? that would show it"
+    rf"|, but not always|, but only where .*?{END}"
 )
 ALONE = re.compile(rf"; it is so in scenarios alone where .*?{END}")
 WHERE = re.compile(rf", but only where (.*?){END}")
@@ -38,3 +39,9 @@ def condition_in(text: str) -> str:
 def without_condition(text: str) -> str:
     """The same where its condition is contradicted."""
     return WHERE.sub(", but not always", text)
+
+
+def not_always(text: str) -> str:
+    """A cause that experiments have seen not to act, on no condition that is known."""
+    said = text.startswith(UNKNOWN) or OF_SOME.search(text) or "either " in text or "; " in text
+    return text if said else f"{text}, but not always"

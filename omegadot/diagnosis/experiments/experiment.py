@@ -39,7 +39,9 @@ class Experiment:
             self._with_other_states(one)
             for _, system in other_loads(one.system):
                 self._add(self._judge.trial(system, one.states, one))
-        return kind_that_sorts(self.seen) or self._by_bodies(bases)
+        found = kind_that_sorts(self.seen)
+        # of an inertia one other tensor tells little: its moments may be what decides
+        return found if found and "inertia" not in found else self._by_bodies(bases)
 
     def _by_bodies(self, bases: Sequence[Trial]) -> str:
         for one in bases[:1] if self._parted else bases:
@@ -118,8 +120,9 @@ class Experiment:
         for one in self._mixed():
             self._along_states(one)
         for wrong, right in self._neighbours():
-            if not [one for one in limits_that_sort(self.seen) if not one.narrow]:
-                break
+            left = _distinct(limits_that_sort(self.seen))
+            if len(left) < 2 and all(one.narrow for one in left):
+                break  # of two that are narrow another line may decide
             self._along_systems(wrong, right)
         left = _distinct(limits_that_sort(self.seen))
         return str(left[0]) if len(left) == 1 and left[0].narrow else ""

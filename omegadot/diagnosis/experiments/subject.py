@@ -15,6 +15,7 @@ from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.conditioned import (
     condition_in,
     conditioned,
+    not_always,
     without_condition,
 )
 from omegadot.diagnosis.experiments.experiment import Experiment
@@ -73,11 +74,12 @@ class Conditions:
         """A cause on this condition; one that has another, which is contradicted, without it."""
         if self.condition:
             return conditioned(text, self.condition)
-        known = condition_in(text)
-        against = (
-            self.experiment is not None and known and contradicted(self.experiment.seen, known)
-        )
-        return without_condition(text) if against else text
+        if self.experiment is None:
+            return text
+        known, seen = condition_in(text), self.experiment.seen
+        if known:
+            return without_condition(text) if contradicted(seen, known) else text
+        return not_always(text) if seen.trials and not np.all(seen.wrong) else text
 
 
 def conditions_of(

@@ -15,7 +15,7 @@ from omegadot.diagnosis.wording.state_features import (
     further_features,
     kinds_of_states,
 )
-from omegadot.reference_impl.inertia import lever
+from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import damping_torque, gravity_torque
 from omegadot.reference_impl.system import Array, State, System
 
@@ -65,7 +65,19 @@ def traits_of(system: System, states: State) -> Traits:
     for text, (size, unit) in whole.sizes.items():
         if not any(start in text for start in START):
             sizes[text] = np.full(count, size), unit
+    for text, part in _asymmetries(system):
+        sizes[text] = np.full(count, part), ""
     return Traits(plain, particular, sizes)
+
+
+def _asymmetries(system: System) -> Iterator[tuple[str, float]]:
+    """How far two moments on the diagonal differ, as a part of the third, or of the larger."""
+    kept = np.diag(np.asarray(moving_inertia(system), dtype=float))
+    names = ("Ixx", "Iyy", "Izz")
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        apart, text = float(abs(kept[i] - kept[j])), f"|{names[i]} - {names[j]}|"
+        yield f"{text} / {names[k]}", apart / float(kept[k])
+        yield f"{text} / max({names[i]}, {names[j]})", apart / float(max(kept[i], kept[j]))
 
 
 def _torques(system: System, states: State) -> dict[str, Array]:

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from omegadot.diagnosis.equations.all_kept import KEPT
 from omegadot.diagnosis.equations.held import Scene
-from omegadot.diagnosis.equations.kept_parts import KEPT, Kept
+from omegadot.diagnosis.equations.kept_parts import Kept
 from omegadot.diagnosis.equations.left_over import worded_kept
 from omegadot.gates.case import Case
 from omegadot.gates.states.model import state_rows
@@ -60,7 +61,7 @@ def kept_place(scenes: Sequence[Scene], case: Case, eps: float) -> str:
     wrong = [one for one in seen if one.wrong]
     if not wrong:
         return ""
-    tried = [k for k in KEPT if not k.solve and PLACED_BY & {*k.part.attributes}]
+    tried = [k for k in KEPT if not k.of_form and PLACED_BY & {*k.part.attributes}]
     # what is wrong rules out most of them
     fits = [k for k in tried if all(one.explained(k) for one in (*wrong, *seen))]
     return worded_kept([k for k in fits if _several(k, wrong)])

@@ -29,7 +29,10 @@ def kinematic_causes(steps: VanishingSteps) -> list[str]:
         limit = steps.rates[channel]
         found, bound = better(limit)
         if not np.all(limit.shares() <= 1.0):
-            fits = [t for t, rate in named.items() if np.all(norm(found - rate) <= SLACK * bound)]
+            # what is not finite has no bound, and shows nothing
+            seen = {t: norm(limit.expected - rate) > SLACK * bound for t, rate in named.items()}
+            shown = {t: rate for t, rate in named.items() if np.any(seen[t])}
+            fits = [t for t, rate in shown.items() if np.all(norm(found - rate) <= SLACK * bound)]
             return [f"in the steps, {text}" for text in fits]
     return []
 

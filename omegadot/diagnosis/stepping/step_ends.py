@@ -149,7 +149,9 @@ def kept_ends(system: System) -> dict[str, End]:
     def by(size: Callable[[Array], Array]) -> End:
         def end(before: State, after: State, dt: float | Array) -> State:
             w = after.angular_velocity
-            scaled = w * (size(before.angular_velocity) / size(w))[..., None]
+            # at rest there is nothing to scale
+            own = np.where(size(w) > 0.0, size(w), 1.0)
+            scaled = w * (size(before.angular_velocity) / own)[..., None]
             return replace(after, angular_velocity=scaled)
 
         return end

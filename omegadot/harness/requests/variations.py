@@ -53,6 +53,8 @@ def other_bodies(system: System) -> Iterator[tuple[str, System]]:
         return replace(system, bodies=(replace(body, inertia=tensor),))
 
     yield "sphere", of_inertia(mean * np.eye(3))
+    for by in (1, 2):  # its own, about other axes: what two moments decide, two others do not
+        yield f"rolled by {by}", of_inertia(np.roll(body.inertia, (by, by), (0, 1)))
     a, b, c = mean * np.array(UNEQUAL) * 3.0 / sum(UNEQUAL)
     for what, moments in (
         ("first", (b, b, c)),

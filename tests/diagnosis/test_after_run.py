@@ -1,0 +1,183 @@
+"""What the first step of a run takes of the run before it, as runs after known runs show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pytest
+from wrong_equations import CASES
+
+from omegadot.adapters.protocol import Trajectory
+from omegadot.adapters.reference import ReferenceAdapter
+from omegadot.diagnosis.experiments.asked import Asked
+from omegadot.diagnosis.experiments.run_before import after_runs
+from omegadot.diagnosis.stepping.after_run import taken_of_run_before
+from omegadot.gates.bounds.scales import EPS
+from omegadot.gates.states.equation import random_states
+from omegadot.harness.in_process import driver_of
+from omegadot.reference_impl.inertia import moving_inertia
+from omegadot.reference_impl.loads import damping_torque
+from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product
+from omegadot.reference_impl.system import Array, State, System
+
+EULER = "semi-implicit-euler"
+FREE, DAMPED, TOP = (next(c for c in CASES if c.name == n) for n in ("free", "damped-more", "top"))
+
+
+@dataclass
+class Memory:
+    """What an engine has of the run before: its system, states and step; loads: whether it stays
+    when another system is loaded.
+    """
+
+    system: System | None = None
+    states: list[State] = field(default_factory=list)
+    h: float = 0.0
+
+
+# From the memory, the system, a state and the step: the state that is stepped, its rates and step.
+Take = Callable[[Memory, System, State, float], tuple[State, Array, Array, float]]
+
+
+class Keeping(ReferenceAdapter):
+    """Semi-implicit Euler, whose first step takes something of the run before."""
+
+    forgets = False
+
+    def __init__(self, take: Take) -> None:
+        super().__init__()
+        self.take, self.memory = take, Memory()
+
+    def load(self, system: System) -> None:
+        super().load(system)
+        if self.forgets:
+            self.memory = Memory()
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        assert (every, integrator) == (1, EULER)
+        state, seen = initial, [initial]
+        for k in range(steps):
+            found = acceleration_of(self.system)(state)
+            start, w_dot, spin, h = state, found.angular, state.angular_velocity, timestep
+            if k == 0 and self.memory.system is not None:
+                start, w_dot, spin, h = self.take(self.memory, self.system, state, timestep)
+            w = start.angular_velocity + h * w_dot
+            turn = h * (w + spin - start.angular_velocity)
+            v = start.linear_velocity + h * found.linear
+            q = quaternion_product(start.orientation, exp_quaternion(turn))
+            state = State(q, w, start.position + h * v, v)
+            seen.append(state)
+        self.memory = Memory(self.system, seen, timestep)
+        fields = zip(*(vars(one).values() for one in seen), strict=True)
+        return Trajectory(timestep * np.arange(steps + 1), State(*map(np.stack, fields)))
+
+
+def old_omega_dot(place: int, part: float = 1.0) -> Take:
+    def take(
+        m: Memory, system: System, state: State, h: float
+    ) -> tuple[State, Array, Array, float]:
+        assert m.system is not None
+        old = acceleration_of(m.system)(m.states[place]).angular
+        own = acceleration_of(system)(state).angular
+        return state, own + part * (old - own), state.angular_velocity, h
+
+    return take
+
+
+def old_damping(
+    m: Memory, system: System, state: State, h: float
+) -> tuple[State, Array, Array, float]:
+    assert m.system is not None
+    more = damping_torque(m.system, m.states[-1]) - damping_torque(system, state)
+    own = acceleration_of(system)(state).angular
+    return (
+        state,
+        own + np.linalg.solve(moving_inertia(system), more),
+        state.angular_velocity,
+        h,
+    )
+
+
+def old_turn(
+    m: Memory, system: System, state: State, h: float
+) -> tuple[State, Array, Array, float]:
+    own = acceleration_of(system)(state).angular
+    return state, own, m.states[-1].angular_velocity, h
+
+
+def old_step(
+    m: Memory, system: System, state: State, h: float
+) -> tuple[State, Array, Array, float]:
+    return state, acceleration_of(system)(state).angular, state.angular_velocity, m.h
+
+
+def old_start(
+    m: Memory, system: System, state: State, h: float
+) -> tuple[State, Array, Array, float]:
+    start = replace(state, angular_velocity=m.states[-1].angular_velocity)
+    own = acceleration_of(system)(start).angular
+    return start, own, start.angular_velocity, h
+
+
+def cause(engine: Keeping, case: object) -> str:
+    asked = Asked(driver_of("wrong", engine))
+    integrators = [i for i in engine.description.integrators if i.name == EULER]
+    assert case in CASES
+    one = next(c for c in CASES if c is case)
+    seen = after_runs(asked, one, integrators, random_states(one, 4, [1]), EPS, 3)
+    return taken_of_run_before([*seen])
+
+
+LAST = "the first step of a run takes the omega-dot at the start of the last step of the run before"
+WRONG: dict[str, tuple[Take, str]] = {
+    "last omega-dot": (old_omega_dot(-2), LAST),
+    "omega-dot at the end": (
+        old_omega_dot(-1),
+        "the first step of a run takes the omega-dot at the end of the run before",
+    ),
+    "a multistep method": (
+        old_omega_dot(-2, -0.5),
+        "for a part of -0.5, the first step of a run takes the omega-dot at the start of the last",
+    ),
+    "turn": (old_turn, "the first step of a run takes the omega at the end of the run before"),
+    "length": (old_step, "the first step of a run has the length of the steps of the run before"),
+    "start": (old_start, "the first step of a run starts from the omega at the end of the run"),
+}
+
+
+@pytest.mark.parametrize("case", [FREE, DAMPED, TOP], ids=lambda case: case.name)
+@pytest.mark.parametrize("name", WRONG)
+def test_what_is_taken_is_named(name: str, case: object) -> None:
+    """Caught: something is left over, and no word of what."""
+    take, phrase = WRONG[name]
+    if name == "start" and case is FREE:
+        return  # nothing slows it down, and it turns ever faster until no number is left
+    assert cause(Keeping(take), case).startswith(phrase)
+
+
+def test_a_torque_is_told_from_omega_dot() -> None:
+    """Caught: the whole omega-dot named where its damping alone is old."""
+    found = cause(Keeping(old_damping), DAMPED)
+    assert found.startswith("the first step of a run takes the torque of the damping at the end of")
+
+
+@pytest.mark.parametrize("forgets", [True, False])
+def test_whether_it_stays_after_a_load_is_said(forgets: bool) -> None:
+    engine = Keeping(old_omega_dot(-2))
+    engine.forgets = forgets
+    said = ", but not of another system, loaded in between"
+    also = ", also of another system, loaded in between"
+    assert cause(engine, TOP).endswith(said if forgets else also)
+
+
+def test_nothing_is_named_of_a_sound_engine() -> None:
+    def own(m: Memory, system: System, state: State, h: float) -> tuple[State, Array, Array, float]:
+        return state, acceleration_of(system)(state).angular, state.angular_velocity, h
+
+    assert cause(Keeping(own), TOP) == ""
+    assert cause(Keeping(own), DAMPED) == ""
