@@ -55,12 +55,13 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         if len(failing) < SCENARIOS:
             return []
         by, chosen = scheme_of(integrator, runs), [run.short for run in _chosen(runs)]
+        declared = integrator.scheme is not None
         if by is None:
-            return stage_slips(integrator, by, chosen)
+            return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
         found = length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         found = found or stage_slips(integrator, by, chosen)
-        return found or solved_causes(by, runs) or place_causes(by, runs)
+        return found or solved_causes(by, runs, declared) or place_causes(by, runs)
 
 
 def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
@@ -79,7 +80,7 @@ def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
     texts = texts or slips_in_stages(by.scheme.name, [run], least=1)
     if len(texts) > 1:
         return []
-    return texts or solved_causes(by, [run]) or place_causes(by, [run])
+    return texts or solved_causes(by, [run], declared=True) or place_causes(by, [run])
 
 
 def _chosen(runs: Sequence[KeptRun]) -> list[KeptRun]:
