@@ -8,6 +8,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
 from omegadot.diagnosis.stepping.old_operands import old_operands
@@ -61,6 +62,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         found = length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         found = found or stage_slips(integrator, by, chosen)
+        found = found or exponential_causes(by, runs)
         return found or solved_causes(by, runs, declared) or place_causes(by, runs)
 
 
