@@ -1,7 +1,7 @@
 """A quaternion read out of a rotation matrix by a formula with a wrong sign in one of its branches.
 
-Where trace(R) > 0, w is read first, else the component of the largest diagonal entry. The others are
-sums or differences of two entries of R, over four times the first.
+Where trace(R) > 0, w is read first, else the component of the largest diagonal entry. The others
+are sums or differences of two entries of R, over four times the first.
 """
 
 from __future__ import annotations
@@ -60,6 +60,8 @@ def _slips(turn: Array, q: Array, first: int) -> Iterator[tuple[int, str, Array]
         over = f"/ (4 {'wxyz'[first]})"
         changed = -1.0 if not with_w else 1.0
         for sign, lead in ((1.0, ""), (-1.0, "-")):
-            text = f"{lead}({one} {'-' if changed < 0 else '+'} {other}) {over}"
+            text = f"{lead}({one} + {other}) {over}"
+            if changed < 0.0:
+                text = f"({one} - {other}) {over}" if not lead else f"({other} - {one}) {over}"
             yield k, f"{text}, not {right} {over}", sign * (a + changed * b) / below
         yield k, f"-{right} {over}, not {right} {over}", -(a - changed * b) / below
