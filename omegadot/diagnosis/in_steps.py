@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import numpy as np
 
 from omegadot.diagnosis.equations.across import Across
+from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.equations.wrong_equation import known_difference
 from omegadot.diagnosis.kept_case import KeptCase
 from omegadot.diagnosis.over_scenarios import OverScenarios
@@ -20,11 +22,14 @@ from omegadot.diagnosis.stepping.kinematics import (
     velocity_share_cause,
 )
 from omegadot.diagnosis.stepping.outrun import outruns
+from omegadot.diagnosis.stepping.substeps import part_named, part_of, substep_cause
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import either
 
-LOADS = ("the applied torque", "the torque", "the damping", "gravity")
-PARTS = {"0.5": "half", "0.333333": "a third", "0.25": "a quarter"}
+OF_LOAD = re.compile(
+    r"((?:the applied torque|the torque|the damping|gravity).*) is scaled by ([\d.e-]+)(?: \(.*\))?"
+)
+WHOLE = "; forward dynamics has it whole"
 IN_THE_FIRST = "at the start of a run alone"
 FIRST_ALONE = "only the first steps are wrong"  # which states less than what is wrong in them
 
@@ -130,13 +135,26 @@ class StepCauses:
         if "right" in followed:
             first = f"{IN_THE_FIRST}, {text}"
             return either([velocity_share_cause(steps), first])
-        part = next((part for k, part in PARTS.items() if text.endswith(f" is scaled by {k}")), "")
-        of_load = part and text.startswith(
-            LOADS
-        )  # the limit of short steps does not distinguish these
-        return [
-            f"in the steps, {text}{f', or acts in {part} of each step alone' if of_load else ''}"
-        ]
+        return [f"in the steps, {self._in_part(text)}"]
+
+    def _in_part(self, text: str) -> str:
+        """A cause, or what it is of a load that acts in a part of each step alone.
+
+        The limit of vanishing steps does not distinguish the two; whole runs may, by the substeps.
+        """
+        scaled, kept = OF_LOAD.fullmatch(text), self._over.kept
+        part = part_of(float(scaled[2])) if scaled is not None else None
+        if scaled is None or part is None:
+            return text
+        key = (text, len(kept))
+        if key not in self._over.substeps:
+            declared = self._kept.declares  # a scheme that is declared has no substeps
+            self._over.substeps[key] = "" if declared else substep_cause(scaled[1], part, kept)
+        seen = self._over.substeps[key]
+        either = f"{text}, or acts in {part_named(part)} of each step alone"
+        forward = self._across.scenes[self._kept.name].evidence.get(FORWARD)
+        whole = forward is not None and bool(np.all(forward.sound))
+        return f"{seen or either}{WHOLE if whole else ''}"
 
     def known(self, steps: VanishingSteps) -> list[str]:
         """What is known of the steps' equation where nothing fits."""

@@ -36,8 +36,9 @@ class OverScenarios:
     up to which length steps change nothing, and from which on they do.  keeps_pace: whether runs go
     on as much too fast, or too slowly, as first steps do.
     angle in rad first steps turn the body, and whether later ones are seen not to.  rests: at what
-    states the body is put to rest.  places: causes in every step, with where they act.
-    onsets: where failed runs begin to be wrong that are sound until then.
+    states the body is put to rest.  places: causes in every step, with where they act.  substeps:
+    in which of these a load acts, of causes that scale it.  onsets: where failed runs begin to be
+    wrong that are sound until then.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -52,6 +53,7 @@ class OverScenarios:
     stays_below: dict[str, tuple[float, float]] = field(default_factory=dict)
     rests: dict[str, Rests] = field(default_factory=dict)
     places: dict[tuple[str, int], str] = field(default_factory=dict)
+    substeps: dict[tuple[str, int], str] = field(default_factory=dict)
     onsets: dict[str, list[Onset]] = field(default_factory=dict)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool] = (0, False)

@@ -6,6 +6,7 @@ import numpy as np
 
 from omegadot.diagnosis.models.attitude_charts import chart_misread
 from omegadot.diagnosis.models.euler_angles import angles_misread
+from omegadot.diagnosis.models.matrix_branches import branch_misread
 from omegadot.diagnosis.models.mistyped_matrix import matrix_mistyped
 from omegadot.reference_impl.rotations import attitude_angle, normalize
 from omegadot.reference_impl.system import Array
@@ -28,5 +29,8 @@ def attitude_misread(requested: Array, back: Array, eps: float) -> str:
     chart = chart_misread(requested, back, eps)
     if chart:
         return f"attitudes {chart}"
+    branch = branch_misread(requested, back, eps)
+    if branch:
+        return f"attitudes {branch}"
     entry = matrix_mistyped(requested, back, eps)
     return f"attitudes go through a matrix that has one entry wrong: {entry}" * bool(entry)

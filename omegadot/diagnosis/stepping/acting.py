@@ -93,7 +93,7 @@ def _shares(run: KeptRun, by: SchemeOf) -> dict[str, Shares]:
         """By how far the samples are missed, and that in parts of the bounds where it shows."""
         factors = 1.0 + holds[:, None, :] * (alpha[..., None] - 1.0)
         by_part = dict(zip(PARTS, np.moveaxis(factors, -1, 0)[..., None], strict=True))
-        motion = _with_factors(run.system, own, by_part)
+        motion = with_factors(run.system, own, by_part)
         apart = run.apart(run.ends(own, motion, count))
         lines = [
             shows[:, k, None, None] * apart[c] / np.maximum(run.bounds[c], TINY)[:, None]
@@ -172,7 +172,7 @@ def _others_follow(
     return np.stack(rows)
 
 
-def _with_factors(system: System, by: SchemeOf, factors: Mapping[str, Array]) -> Motion:
+def with_factors(system: System, by: SchemeOf, factors: Mapping[str, Array]) -> Motion:
     """A body's motion with a factor (lanes, m, 1) on each part of its equation."""
     back, load = inverse(moving_inertia(system)), system.load
 

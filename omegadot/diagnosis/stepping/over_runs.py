@@ -8,6 +8,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
 from omegadot.diagnosis.stepping.old_operands import old_operands
@@ -55,12 +56,14 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         if len(failing) < SCENARIOS:
             return []
         by, chosen = scheme_of(integrator, runs), [run.short for run in _chosen(runs)]
+        declared = integrator.scheme is not None
         if by is None:
-            return stage_slips(integrator, by, chosen)
+            return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
         found = length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         found = found or stage_slips(integrator, by, chosen)
-        return found or solved_causes(by, runs) or place_causes(by, runs)
+        found = found or exponential_causes(by, runs)
+        return found or solved_causes(by, runs, declared) or place_causes(by, runs)
 
 
 def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
@@ -79,7 +82,7 @@ def causes_of_one_run(by: SchemeOf, run: KeptRun) -> list[str]:
     texts = texts or slips_in_stages(by.scheme.name, [run], least=1)
     if len(texts) > 1:
         return []
-    return texts or solved_causes(by, [run]) or place_causes(by, [run])
+    return texts or solved_causes(by, [run], declared=True) or place_causes(by, [run])
 
 
 def _chosen(runs: Sequence[KeptRun]) -> list[KeptRun]:

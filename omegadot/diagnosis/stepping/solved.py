@@ -5,25 +5,19 @@ From every sample the step's equation is iterated, and the iterate that is the n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
-from omegadot.diagnosis.wording.digits import number
-from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.coordinates import canonical, from_coordinates, to_coordinates
-from omegadot.reference_impl.one_body.body_motion import body_motion
-from omegadot.reference_impl.schemes import Motion
-from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian, solver_of_one_minus
-from omegadot.reference_impl.schemes.motion import per_matrix
-from omegadot.reference_impl.system import Array
+from omegadot.diagnosis.stepping.iterates import BY_CAYLEY, MOST, Iterates, iterates
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
+from omegadot.diagnosis.wording.digits import limits, number
+from omegadot.reference_impl.coordinates import Coordinates, canonical
+from omegadot.written import written
 
-MOST = 40  # iterations
+MIDPOINT = "implicit-midpoint"
+TURNS = (BY_CAYLEY, "by the exponential")
 MOST_RUNS = 8
-NEAR = 1e-3  # of what an iterate leaves, as a Jacobian by differences may change
 LEAST = 3  # intervals that show it
 KINDS = {
     "fixed-point": "from the velocities of its start",
@@ -34,111 +28,79 @@ KINDS = {
 }
 
 
-@dataclass(frozen=True)
-class _Iterates:
-    """Of m steps: whether iterate k is the next sample, and by how much it moved omega in rad/s.
+def solved_causes(by: SchemeOf | None, runs: Sequence[KeptRun], declared: bool) -> list[str]:
+    """The iteration that stops too early, in every step; none where none is seen.
 
-    matches: (MOST + 1, m).  changes: (MOST + 1, m), inf for the guess.  rate: (m,), |omega|.
+    Of a scheme that is not declared the midpoint rule is tried with both its turns.
     """
-
-    matches: NDArray[np.bool_]
-    changes: Array
-    rate: Array
-
-
-def solved_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
-    """The iteration that stops too early, in every step; none where none is seen."""
-    if by.scheme.name != "implicit-midpoint":
-        return []
+    known = by is not None and by.scheme.name == MIDPOINT
+    ways = [way for way in TURNS if not declared or (known and way == BY_CAYLEY)]
+    coordinates = by.coordinates if by is not None and known else "com-world"
     single = [run.short for run in runs if run.sweep.every == 1]
     chosen = sorted(single, key=lambda run: not run.fails)[:MOST_RUNS]
+    if not any(run.fails for run in chosen):
+        return []
     with np.errstate(all="ignore"):
-        for kind, guess in KINDS.items():
-            found = [_iterates(run, by, kind) for run in chosen]
-            text = _text(found, f"{kind.strip()} iterations {guess}") if found else ""
-            if text:
-                return [text]
+        for way in ways:
+            named = known and way == BY_CAYLEY
+            for kind, guess in KINDS.items():
+                found = _of_runs(chosen, coordinates, way, kind)
+                text = _text(found, f"{kind.strip()} iterations {guess}", named) if found else ""
+                if text:
+                    whose = (
+                        "the scheme's"
+                        if named
+                        else f"it is stepped by the implicit midpoint rule, which turns {way}; its"
+                    )
+                    return [f"{whose} equation is solved by {text}"]
     return []
 
 
-def _iterates(run: KeptRun, by: SchemeOf, kind: str) -> _Iterates:
-    motion = body_motion(run.system, by.coordinates)
-    q, v = to_coordinates(run.system, run.state[:-1], by.coordinates)
-    q, h = motion.normalize(q), run.sweep.timestep
-    matches, changes, last = [], [], np.full_like(v, np.inf)
-    solved = run.apart(run.ends(SchemeOf(by.scheme, canonical(run.system, by.coordinates))))
-    for mean in _means(motion, q, v, h, kind):
-        ends = motion.retract(q, motion.cayley(h * mean)), 2.0 * mean - v
-        apart = run.apart(from_coordinates(run.system, *ends, by.coordinates))
-        good = [
-            norm(apart[c]) <= SLACK * run.bounds[c] + NEAR * norm(solved[c] - apart[c])
-            for c in CHANNELS
-        ]
-        matches.append(np.all(good, axis=0))
-        changes.append(norm(2.0 * (mean - last)[..., motion.spin]))
-        last = mean
-    rate = norm(run.state.angular_velocity[1:])
-    return _Iterates(np.stack(matches), np.stack(changes), rate)
+def _of_runs(
+    chosen: Sequence[KeptRun], coordinates: Coordinates, way: str, kind: str
+) -> list[Iterates]:
+    """None where an interval of a run is no iterate."""
+    found = list[Iterates]()
+    for run in chosen:
+        own = canonical(run.system, coordinates)
+        one = iterates(run, own, way, kind)
+        if not np.all(np.any(one.matches, axis=0)):
+            return []
+        found.append(one)
+    return found
 
 
-def _means(motion: Motion, q: Array, v: Array, h: float, kind: str) -> Iterator[Array]:
-    """The mean velocities of a step, guess by guess."""
-
-    def push(mean: Array) -> Array:
-        place = motion.retract(q, 0.5 * motion.cayley(h * mean))
-        return np.asarray(0.5 * h * motion.acceleration(place, mean))
-
-    first, jacobian = acceleration_and_jacobian(motion, q, v)
-    solve = solver_of_one_minus(per_matrix(0.5 * h) * jacobian)
-    mean = v + 0.5 * h * first if kind.endswith(" ") else v
-    for _ in range(MOST + 1):
-        yield mean
-        if kind.startswith("fixed"):
-            mean = v + push(mean)
-        elif kind.startswith("simplified"):
-            mean = mean + solve(v + push(mean) - mean)
-        else:
-            mean = mean + _newton(push, mean, v + push(mean) - mean)
-
-
-def _newton(push: Callable[[Array], Array], mean: Array, residual: Array) -> Array:
-    """The residual, solved by ``1 - d push / d mean``, by differences."""
-    size = 1e-6 * (np.max(norm(mean)) or 1.0)
-    count = mean.shape[-1]
-    columns = [
-        (push(mean + size * e) - push(mean - size * e)) / (2.0 * size) for e in np.eye(count)
-    ]
-    matrix = np.eye(count) - np.stack(columns, axis=-1)
-    return np.asarray(np.linalg.solve(matrix, residual[..., None])[..., 0])
-
-
-def _text(found: Sequence[_Iterates], how: str) -> str:
+def _text(found: Sequence[Iterates], how: str, named: bool) -> str:
     matches = np.concatenate([one.matches for one in found], axis=1)
     changes = np.concatenate([one.changes for one in found], axis=1)
     rate = np.concatenate([one.rate for one in found])
-    if not np.all(np.any(matches, axis=0)):
-        return ""
     count = matches.shape[1]
     first = np.argmax(matches, axis=0)  # the first that is the sample; later ones may be as well
     alone = ~matches[np.minimum(first + 1, MOST), np.arange(count)]
     if np.count_nonzero(alone & (first > 0)) < LEAST:
         return ""
-    for k in range(1, MOST):
-        if np.all(matches[k]):
-            kind, _, guess = how.partition(" iterations ")
-            times = f"one {kind} iteration" if k == 1 else f"{k} {kind} iterations"
-            return f"the scheme's equation is solved by {times} alone, {guess}"
+    # one iteration from the start is an explicit scheme, which need not be meant as this one
     kind, _, guess = how.partition(" iterations ")
+    for k in range(1 if named else 2, MOST):
+        if np.all(matches[k]):
+            times = f"one {kind} iteration" if k == 1 else f"{k} {kind} iterations"
+            return f"{times} alone, {guess}"
     for size, unit in ((1.0, " rad/s"), (rate, " of omega")):
         moved = changes / size
         low = float(np.max(moved[first, np.arange(count)][alone]))
         before = moved[np.maximum(first - 1, 0), np.arange(count)][first > 1]
         high = float(np.min(before, initial=np.inf))
         if low < high < np.inf:
-            few, more = (number(float(f"{end:.1g}")) for end in (low, high))
-            limit = few if few == more else f"a limit that lies at some {few} to {more}"
+            plain = float(f"{high:.1g}")
+            between = f"a limit between {limits(low, high, '')}"
+            limit = number(plain) if low < plain <= high else between
             return (
-                f"the scheme's equation is solved by {kind} iterations {guess}, which end once "
-                f"omega changes by less than {limit}{unit}"
+                f"{kind} iterations {guess}, which end once omega changes by less than "
+                f"{limit}{unit}"
             )
-    return ""
+    fewest, most = int(np.min(first)), int(np.max(first))
+    if fewest == most or np.count_nonzero(alone & (first > 1)) < LEAST:
+        return ""
+    left = changes[np.minimum(first + 1, MOST), np.arange(count)][alone]
+    much = f"up to {written(float(np.max(left)), 2)} rad/s of omega is left"
+    return f"{fewest} to {most} {kind} iterations {guess}, another number in some steps: {much}"

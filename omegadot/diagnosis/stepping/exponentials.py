@@ -1,0 +1,134 @@
+"""A wrong exponential at small turns: one number of its series, and up to which turn it is taken.
+
+Every turn u of a scheme is by the quaternion ``(C, S u)`` made unit, with ``C = cos(x/2)`` and
+``S = sin(x/2)/x`` as series in ``x = |u|``. One number in these is fitted to the attitudes of all
+steps that are wrong; then each interval of each run must be led on by it, or by the right one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
+from omegadot.diagnosis.stepping.turn_series import (
+    COSINE,
+    SINE,
+    Series,
+    series_named,
+    series_to_try,
+)
+from omegadot.diagnosis.wording.digits import limits
+from omegadot.gates.bounds.scales import norm
+from omegadot.reference_impl.coordinates import canonical
+from omegadot.reference_impl.one_body.body_motion import body_motion
+from omegadot.reference_impl.rotations import quaternion_product
+from omegadot.reference_impl.schemes import Motion
+from omegadot.reference_impl.system import Array
+
+ALONG = 0.05  # of a defect, at most, that is not along the turn
+LEAST = 3  # intervals that show it, and scenarios
+FITTED, TRIES = 3, 4  # runs by which a number is found, and its corrections
+SETTLED = 1e-9
+
+
+def exponential_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
+    """The series by which small turns are taken; none where an interval is by neither."""
+    single = [run.short for run in runs if run.sweep.every == 1]
+    with np.errstate(all="ignore"):
+        plain = [(run, _sound(run, by, None, 0.0)) for run in single]
+        wrong = [(run, sound) for run, sound in plain if run.fails and not sound.all()]
+        if len({run.name for run, _ in wrong}) < LEAST or not _along(by, *wrong[0]):
+            return []
+        # those of the largest turns show most of the series
+        wrong.sort(key=lambda one: -float(np.max(_turns(one[0])[~one[1]])))
+        for series in series_to_try():
+            c = 0.0 if series.wrong is None else _fitted(by, wrong[:FITTED], series)
+            limit = None if c is None else _limit(by, plain, series, c)
+            if c is not None and limit is not None and series_named(series, c):
+                return [f"the turn of a step is by a series {series_named(series, c)}{limit}"]
+    return []
+
+
+def _motion(run: KeptRun, by: SchemeOf, series: Series | None, c: float) -> Motion:
+    exact = body_motion(run.system, by.coordinates)
+    if series is None:
+        return exact
+
+    def retract(q: Array, u: Array) -> Array:
+        turned = quaternion_product(q[..., -4:], series.unit(u[..., -3:], c))
+        return np.concatenate((exact.retract(q, u)[..., :-4], turned), axis=-1)
+
+    return replace(exact, retract=retract)
+
+
+def _apart(run: KeptRun, by: SchemeOf, series: Series | None, c: float) -> dict[str, Array]:
+    own = SchemeOf(by.scheme, canonical(run.system, by.coordinates))
+    return run.apart(run.ends(own, _motion(run, own, series, c)))
+
+
+def _sound(run: KeptRun, by: SchemeOf, series: Series | None, c: float) -> NDArray[np.bool_]:
+    apart = _apart(run, by, series, c)
+    return np.asarray(np.all([norm(apart[x]) <= SLACK * run.bounds[x] for x in CHANNELS], axis=0))
+
+
+def _turns(run: KeptRun) -> Array:
+    """(m,) rad, of each interval, by omega at its end."""
+    return norm(run.state.angular_velocity[1:]) * run.lengths
+
+
+def _along(by: SchemeOf, run: KeptRun, sound: NDArray[np.bool_]) -> bool:
+    """Whether the attitude is off along the turn, as by no other quantity of a step."""
+    off = _apart(run, by, None, 0.0)["attitude"][~sound]
+    axis = run.state.angular_velocity[1:][~sound]
+    across = norm(np.cross(off, axis)) / (norm(off) * norm(axis))
+    return bool(np.median(across) < ALONG)
+
+
+def _fitted(
+    by: SchemeOf, wrong: Sequence[tuple[KeptRun, NDArray[np.bool_]]], series: Series
+) -> float | None:
+    """The number that leaves least of the attitudes, by Gauss-Newton."""
+    right = [*(SINE if series.of_sine else COSINE).values()][series.wrong or 0][0]
+
+    def off(c: float) -> Array:
+        lines = [
+            (_apart(run, by, series, c)["attitude"] / run.bounds["attitude"][:, None])[~sound]
+            for run, sound in wrong
+        ]
+        return np.concatenate([np.ravel(line) for line in lines])
+
+    c, delta = right, 1e-3 * right
+    for _ in range(TRIES):
+        here = off(c)
+        slope = (off(c + delta) - here) / delta
+        moved = -float(slope @ here) / float(slope @ slope)
+        c += moved
+        if not np.isfinite(c):
+            return None
+        if abs(moved) < SETTLED * abs(right):
+            break
+    return c
+
+
+def _limit(
+    by: SchemeOf, plain: Sequence[tuple[KeptRun, NDArray[np.bool_]]], series: Series, c: float
+) -> str | None:
+    """Up to which turn it is taken; None where an interval is by neither, or no turn sorts."""
+    low, high, shown = 0.0, np.inf, 0
+    for run, right in plain:
+        made, turns = _sound(run, by, series, c), _turns(run)
+        if not np.all(made | right):
+            return None
+        low = max(low, float(np.max(turns[made & ~right], initial=0.0)))
+        high = min(high, float(np.min(turns[right & ~made], initial=np.inf)))
+        shown += int(np.count_nonzero(made & ~right))
+        if low >= high:
+            return None
+    if shown < LEAST or (high == np.inf and series.wrong is None):
+        return None  # a series that is too short at every turn is a scheme of its own
+    below = f", where the turn is below a limit between {limits(low, high, 'rad')}"
+    return below if high < np.inf else ""

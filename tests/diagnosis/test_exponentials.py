@@ -1,0 +1,86 @@
+"""A wrong series for the exponential of a step's turn, of small turns or of all; and silence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_over_runs import CASES, kept
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.kept_run import SchemeOf
+from omegadot.diagnosis.stepping.over_runs import causes_over_runs
+from omegadot.reference_impl.rotations import exp_quaternion, normalize, quaternion_product
+from omegadot.reference_impl.schemes import SCHEMES, Motion
+from omegadot.reference_impl.schemes.scheme import CHANNELS
+from omegadot.reference_impl.system import Array, System
+
+EULER = "semi-implicit-euler"
+Exponential = Callable[[Array], Array]
+
+
+def series(sine: Callable[[float], float], limit: float, cosine: float = -1 / 8) -> Exponential:
+    def exponential(u: Array) -> Array:
+        x = float(u @ u)
+        if x >= limit**2:
+            return exp_quaternion(u)
+        return normalize(np.concatenate(([1.0 + cosine * x], sine(x) * u)))
+
+    return exponential
+
+
+def causes(exponential: Exponential, h: float = 0.05) -> list[str]:
+    def step(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        v = v + h * motion.acceleration(q, v)
+        turned = quaternion_product(q[-4:], exponential(h * v[-3:]))
+        return np.concatenate((motion.retract(q, h * v)[:-4], turned)), v
+
+    runs = [kept(one, step, k * h, 1) for one in CASES for k in (1.0, 0.3)]
+    by = SchemeOf(SCHEMES[EULER], "com-world")
+    runs = [replace(run, fails=not bool(np.all(run.sound(by)))) for run in runs]
+    return causes_over_runs(Integrator("own", EULER, dict.fromkeys(CHANNELS, 1)), runs)
+
+
+@pytest.mark.parametrize(
+    ("exponential", "phrase"),
+    [
+        (
+            series(lambda x: 0.5 - x / 24, 0.1),
+            "by a series for sin(x/2)/x with x^2/24 in place of x^2/48, where the turn is below",
+        ),
+        (
+            series(lambda x: 0.5 + x / 48, 0.1),
+            "for sin(x/2)/x with -x^2/48 in place of x^2/48, where the turn is below",
+        ),
+        (series(lambda x: 0.5, 0.1), "that ends before x^4/384 in cos(x/2) and x^2/48 in sin(x/2)"),
+        (
+            series(lambda x: 0.5 - x / 48 + x * x / 3840, 0.1, cosine=-1 / 4),
+            "for cos(x/2) with x^2/4 in place of x^2/8, where the turn is below",
+        ),
+        (
+            series(lambda x: 0.5 - x / 24, 10.0),
+            "for sin(x/2)/x with x^2/24 in place of x^2/48",
+        ),
+    ],
+)
+def test_a_wrong_series_is_named_with_its_number(exponential: Exponential, phrase: str) -> None:
+    """Caught: a wrong coefficient of small turns, named as an attitude that is off."""
+    (text,) = causes(exponential)
+    assert phrase in text
+    if "below" in phrase:
+        low, high = (float(one) for one in text.split(" between ")[1].split()[:3:2])
+        assert low < 0.1 <= high
+    else:
+        assert "below" not in text or "ends before" in text
+
+
+def test_turns_that_are_off_by_no_series_are_not_named() -> None:
+    assert causes(lambda u: exp_quaternion((1.0 + 0.01 * np.sin(40.0 * u[0])) * u)) == []
+
+
+def test_sound_turns_have_no_cause() -> None:
+    assert causes(exp_quaternion) == []
