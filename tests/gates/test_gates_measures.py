@@ -218,3 +218,15 @@ def test_a_thin_bodys_own_rate_is_that_of_its_moments_and_of_no_lever() -> None:
         yardstick = Yardstick(replace(system, bodies=(body,)), TIMES, states)
         expected = yardstick.rate * np.sqrt(most / least)
         assert yardstick.thin_rate == pytest.approx(expected, rel=1e-14)
+
+
+def test_where_rounding_has_made_another_motion_of_a_diverging_run_there_is_no_bound() -> None:
+    """Caught: a bound that the growth of small differences gives, where they are small no more."""
+    yardstick = Yardstick(DOWN, TIMES, STATES)
+    steps, growth = np.array([0.0, 10.0, 20.0, 30.0]), np.array([1.0, 1e3, 1e14, 1.0])
+    kept = yardstick.round_off(0.1, steps, growth)
+    assert kept["omega"][2] > 1.0
+    lost = yardstick.round_off(0.1, steps, growth, np.array([1.0, 1.0, 1.1, 1.1]))
+    for channel, bound in lost.items():
+        assert np.isfinite(kept[channel]).all()  # of a run that goes no faster than the exact one
+        assert np.isinf(bound).tolist() == [False, False, True, True]

@@ -214,7 +214,8 @@ class Yardstick:
         rounding of x, of which ``|omega|^2 + |omega-dot|`` is an acceleration. Velocities that are
         differences over a step have the roundings of a turn over h, and of x over h.
         faster: of a scheme whose velocity grows beyond the exact one, and rounding with it, see
-        `faster`; ``m |v|^2`` may be among the terms of omega-dot.
+        `faster`; ``m |v|^2`` may be among the terms of omega-dot. From where theta reaches one in
+        such a run, rounding has made another motion, of which growth says nothing: no bound.
         """
         amount = self.roundings.per_step * self.eps * (steps + 1.0)
         turning = timestep * self.acceleration * faster**2 / self.rate
@@ -229,12 +230,16 @@ class Yardstick:
         turned = np.interp(time, self.times, self._turns) + timestep * self._sharpest
         speed = speed + ROUNDINGS_PER_STEP * self.eps * self.reach * turned * faster**2
         reach = amount * self.reach + time * speed + theta * self.scale.lever
-        return {
+        found = {
             "omega": theta,
             "attitude": theta,
             "position": reach,
             **self.invariant_round_off(theta, speed, reach, swift),
         }
+        lost = np.maximum.accumulate(np.atleast_1d((theta >= 1.0) & (np.asarray(faster) > 1.0)))
+        if not lost.any():
+            return found
+        return {channel: np.where(lost, np.inf, bound) for channel, bound in found.items()}
 
     def apart_by(self, theta: Array, times: Array) -> dict[str, Array]:
         """(n,) per channel: how far apart motions are whose attitude and omega are by theta, rad.
