@@ -35,8 +35,9 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun
 
-# Scenarios on which the runs of an integrator are looked at in vain, before the rest is left alone:
-# stepping again by all that may be wrong takes long. The order that steps have lost explains them.
+# Scenarios on which the runs of an integrator are looked at in vain, before no more is looked for
+# than what is seen of a run: stepping again by all that may be wrong takes long. The order that
+# steps have lost explains them.
 VAIN, VAIN_BESIDE_ORDER = 8, 3
 LOGGED = "the run is logged"
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
@@ -208,15 +209,17 @@ class IntegratorCauses:
         over = self._over.causes
         if self._of_runs is None:
             self._of_runs = NOTHING
-            vain = sum(not texts for texts, _ in over.values())
+            vain = sum(not any(map(is_named, texts)) for texts, _ in over.values())
             lost = self._over.lost.get(self._case.name)
             most = VAIN_BESIDE_ORDER if lost is not None and lost.orders else VAIN
-            looked = any(texts for texts, _ in over.values()) or vain < most
+            named = vain < len(over)
+            looked = named or any(texts for texts, _ in over.values()) or vain < most
             if self._result is not None and looked:
                 # a wrong equation shows in steps that vanish, and from more states
                 wrong = self.steps is None or not np.all(self.steps.evidence.sound)
                 how = (self._case, self._truth, self._result, self._runs)
-                self._of_runs = run_causes(*how, equations=wrong)
+                deep = named or vain < most
+                self._of_runs = run_causes(*how, equations=wrong, deep=deep)
                 if self._of_runs.tried:
                     over[self._case.name] = (self._of_runs.texts, self._of_runs.decisive)
         known = {name: texts for name, (texts, _) in over.items()}

@@ -72,25 +72,27 @@ def run_causes(
     result: CaseResult,
     runs: Sequence[JudgedRun],
     equations: bool = True,
+    deep: bool = True,
 ) -> RunCauses:
     """Of the failed run of the fewest steps in which one is found: hypotheses are stepped again.
 
-    equations: whether the equation that is stepped may be another than the right one.
+    equations: whether the equation that is stepped may be another than the right one.  deep:
+    whether hypotheses are stepped; else no more is sought than what is seen of a run.
     """
     guesses = Guesses(case, truth.in_precision(result.precision), result)
     failed = [run for run in runs if run.fails]
     clock = _of_clock(result, runs, guesses.truth.yardstick.eps)
     if clock:
         return RunCauses(clock)
-    several = _of_several_schemes(guesses, runs) if failed else ""
+    several = _of_several_schemes(guesses, runs) if failed and deep else ""
     if several:
         return RunCauses((several,))
     tried = False
     for run in sorted(failed, key=lambda run: run.sweep.steps):
-        found = _of_run(guesses, run, equations)
+        found = _of_run(guesses, run, equations, deep)
         tried |= found.tried
         if found.texts:
-            kept = _of_others(guesses, found, run, failed, equations)
+            kept = _of_others(guesses, found, run, failed, equations) if deep else found
             return _at_long_steps(kept, runs)
     return NOTHING if tried or not failed else HARDLY_OFF
 
@@ -162,7 +164,7 @@ def _at_long_steps(found: RunCauses, runs: Sequence[JudgedRun]) -> RunCauses:
     return RunCauses(tuple(text + where for text in kept), found.decisive or limit)
 
 
-def _of_run(guesses: Guesses, run: JudgedRun, equations: bool) -> RunCauses:
+def _of_run(guesses: Guesses, run: JudgedRun, equations: bool, deep: bool = True) -> RunCauses:
     """Causes in what one run reports, then in its stepping, then in where it is sound.
 
     Where nothing but the omega-dot reported along it failed, only that is looked at.
@@ -173,26 +175,26 @@ def _of_run(guesses: Guesses, run: JudgedRun, equations: bool) -> RunCauses:
         text = omega_dot_late(case, truth, result, run)
         return RunCauses((text,)) if text else NOTHING
     if reported is not None:
-        return _of_reported(reported, result, equations)
+        return _of_reported(reported, result, equations, deep)
     # By the schemes of the reference that come nearest, where none is declared.
     nearest = guesses.nearest(run)
     own = [one for one in nearest if one.is_own]
     if own and not any(one.is_declared for one in own):
-        return _lower_order(own)
+        return _lower_order(own, deep)
     facts = NOTHING
     for guess in nearest:
-        found = _of_reported(guess, result, equations)
+        found = _of_reported(guess, result, equations, deep)
         if found.texts and not all(map(is_fact, found.texts)):
             return found
         facts = facts if facts.texts else found
-    found = _of_other_slips(nearest)
+    found = _of_other_slips(nearest) if deep else NOTHING
     if found.texts or facts.texts:
         return found if found.texts else facts
     text = restart_cause(truth, result, run)
     return RunCauses((text,)) if text else NOTHING
 
 
-def _lower_order(guesses: Sequence[ReportedRun]) -> RunCauses:
+def _lower_order(guesses: Sequence[ReportedRun], deep: bool) -> RunCauses:
     """Of a run that is a known scheme's: that it is of a lower order than is declared."""
     texts = list[str]()
     for guess in guesses:
@@ -208,7 +210,7 @@ def _lower_order(guesses: Sequence[ReportedRun]) -> RunCauses:
             return NOTHING  # by one of those that it may be, all is as declared
         named = guess.declared.name
         texts.append(f"it is stepped by {named}, which is of order {order}, not {due}")
-    if is_steppable(guesses[0]):
+    if deep and is_steppable(guesses[0]):
         # By a slip in one of the declared order some motions are a known one's of lower order.
         due = max(filter(None, guesses[0].integrator.orders.values()), default=0)
         of_order = [one for one in OF_SCHEME if scheme_named(one).orders["omega"] >= due]
@@ -225,7 +227,9 @@ def _of_other_slips(guesses: Sequence[ReportedRun]) -> RunCauses:
     return RunCauses(tuple(texts), is_decisive(guesses[0])) if texts else NOTHING
 
 
-def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> RunCauses:
+def _of_reported(
+    reported: ReportedRun, result: CaseResult, equations: bool, deep: bool = True
+) -> RunCauses:
     if not reported.is_declared and reported.is_own:
         return NOTHING  # nothing in this run is wrong
     whole = len(reported.time) == len(reported.sweep.times)
@@ -246,7 +250,7 @@ def _of_reported(reported: ReportedRun, result: CaseResult, equations: bool) -> 
     found = [text for text in found if ADDED not in text] or found
     if all(ADDED in text for text in found):  # which on other motions is no constant
         found = [*field_causes(reported), *found]
-    found += stepping_causes(reported, equations) if clear else ()
+    found += stepping_causes(reported, equations) if clear and deep else ()
     if found:
         return RunCauses(tuple(dict.fromkeys(found)), is_decisive(reported))
     # Beside a guess it is its error that one quantity shows, where the motion is the same by many.
