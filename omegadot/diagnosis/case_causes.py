@@ -215,6 +215,9 @@ class CaseCauses:
     def _of_model(self, failed: set[tuple[str, str]]) -> list[str]:
         """Of what reads back. failed: gates and metrics."""
         rates = {("equation", metric) for _, metric in OF_RATES} & failed
+        kept = self._kept() if rates else ""
+        if kept:
+            return [kept]
         lever = self._of_lever(numbers=False) if rates and not failed & OF_BODY else []
         if lever:  # a place from another point is a place alone
             return lever
@@ -222,6 +225,11 @@ class CaseCauses:
         found = found or kept_causes(self._states, self._answers)
         # Of a place that is off by a few digits, the equation states by how much, and of what.
         return found or self._of_lever(numbers=not rates)
+
+    def _kept(self) -> str:
+        """What of a system that was loaded before makes the answers of this one; "" without any."""
+        name = self._case.name
+        return self._across.left_over(name, FORWARD) if self._has(name, FORWARD) else ""
 
     def _of_lever(self, numbers: bool = True) -> list[str]:
         how = (self._across, self._case, self._states, self._answers)

@@ -97,11 +97,33 @@ def same_mass(systems: Sequence[System]) -> dict[str, Any]:
     return {"inertia": next(s.body.inertia for s in systems if s.body.mass == own)}
 
 
+def of_one_pivot(systems: Sequence[System]) -> dict[str, Any]:
+    """The centre of mass of the first system with this pivot."""
+    own = systems[-1].load.pivot
+    with_pivot = [s for s in systems if s.load.pivot is not None]
+    alike = [s for s in with_pivot if own is not None and np.array_equal(s.load.pivot, own)]
+    return {"center_of_mass": (alike or [systems[-1]])[0].body.center_of_mass}
+
+
 TENSORS = tuple(np.diag([1.0 + k, 2.0 + 0.5 * k, 1.7 + k]).tolist() for k in range(3))
 BODIES = tuple(case(f"body-{k}", {"gravity": GRAVITY}, 2.0, TENSORS[k]) for k in range(3))
 HELD = tuple(
     case(f"held-{k}", {"gravity": GRAVITY, "pivot": [0.3, 0.1 * k, -0.2]}, 2.0, TENSORS[k])
     for k in range(3)
+)
+
+
+def with_center(one: Case, *center: float) -> Case:
+    body = replace(one.system.body, center_of_mass=np.array(center))
+    return replace(one, system=replace(one.system, bodies=(body,)))
+
+
+TOPS = tuple(
+    with_center(
+        case(f"top-{k}", {"gravity": GRAVITY, "pivot": [0.3, 0.1 + k // 2, -0.2]}, 2.0 + k),
+        *(0.1 * k, 0.2, k - 0.3),
+    )
+    for k in range(4)
 )
 HEAVY = tuple(case(f"heavy-{k}", {"gravity": GRAVITY}, 9.0, TENSORS[k]) for k in (2, 0))
 
@@ -155,6 +177,11 @@ WRONG |= {
         of_equation(lambda one, other: True, False, "spin"),
         (*HELD, *BODIES),
         "the inertia in the gyroscopic term of the system loaded before is kept",
+    ),
+    "by pivot": (
+        of_body(of_one_pivot),
+        (*TOPS, *BODIES),
+        "the centre of mass is found again by the pivot: ",
     ),
     "of a pivoted body": (
         of_equation(of_one_support, True, "solve", "spin"),

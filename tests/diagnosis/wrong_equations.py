@@ -84,6 +84,12 @@ def mirrored_center(system: System, states: State) -> Acceleration:
     return with_torque(system, states, -2.0 * gravity_torque(system, states))
 
 
+def center_with_another_sign_of_x(system: System, states: State) -> Acceleration:
+    center = system.body.center_of_mass * [-1.0, 1.0, 1.0]
+    body = replace(system.body, center_of_mass=center)
+    return forward_dynamics(replace(system, bodies=(body,)), states)
+
+
 def armature(system: System, states: State) -> Acceleration:
     true = forward_dynamics(system, states)
     inertia = moving_inertia(system)
@@ -233,6 +239,10 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "rate": (damping_as_rate, "the damping acts as a rate"),
     "rate-no-gyro": (rate_and_no_gyroscopic_term, "the gyroscopic term is missing"),
     "mirrored": (mirrored_center, "the centre of mass is mirrored"),
+    "mirrored in x": (
+        center_with_another_sign_of_x,
+        "the x component of the centre of mass has the wrong sign",
+    ),
     "armature": (armature, "1e-6 kg m^2 is added to the inertia's diagonal"),
     "clamp": (
         under(damping=lambda s: np.minimum(s.load.damping, 1.0)),

@@ -20,6 +20,9 @@ FOUND_BY: dict[str, Callable[[System], Array]] = {
     "principal moments": lambda s: np.linalg.eigvalsh(np.asarray(s.body.inertia, dtype=float)),
     "inertia": lambda s: np.asarray(s.body.inertia, dtype=float),
     "centre of mass": lambda s: np.asarray(s.body.center_of_mass, dtype=float),
+    "pivot": lambda s: (
+        np.zeros(0) if s.load.pivot is None else np.asarray(s.load.pivot, dtype=float)
+    ),
     "lever": lambda s: np.zeros(0) if s.load.pivot is None else np.asarray(lever(s), dtype=float),
 }
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from itertools import permutations
 
 import numpy as np
 
 from omegadot.diagnosis.equations.equation_form import Form
 from omegadot.diagnosis.equations.hypotheses.hypothesis import (
+    AXES,
     Hypothesis,
     applied,
     given,
@@ -31,6 +33,23 @@ def center_hypotheses() -> Iterator[Hypothesis]:
         "center",
         lambda body, s: {"center_of_mass": -body.center_of_mass},
     )
+    for text, change in _of_components():
+        what = given(change, lambda how, body, s: {"center_of_mass": how(body.center_of_mass)})
+        yield of_body(text, "center", what)
+
+
+def _of_components() -> Iterator[tuple[str, Callable[[Array], Array]]]:
+    """What becomes of single components of the centre of mass."""
+    for axis, name in enumerate(AXES):
+        alone = np.arange(3) == axis
+        start = f"the {name} component of the centre of mass"
+        yield f"{start} is dropped", given(alone, lambda k, c: np.where(k, 0.0, c))
+        yield f"{start} has the wrong sign", given(alone, lambda k, c: np.where(k, -c, c))
+    for order in permutations(range(3)):
+        if order != (0, 1, 2):
+            held = ", ".join(AXES[k] for k in order)
+            text = f"the centre of mass's components are permuted: x, y, z hold those of {held}"
+            yield text, given(list(order), lambda k, c: c[k])
 
 
 def report_hypotheses() -> Iterator[Hypothesis]:
