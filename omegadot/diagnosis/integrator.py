@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,6 +16,7 @@ from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.onsets import SOUND_UNTIL, onset_law
 from omegadot.diagnosis.reported.requests import AGAIN
+from omegadot.diagnosis.reported.singles import IN_SINGLE
 from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
 from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
@@ -39,6 +41,7 @@ from omegadot.harness.judging.judged_run import JudgedRun
 # stepping again by all that may be wrong takes long. The order that steps have lost explains them.
 VAIN, VAIN_BESIDE_ORDER = 8, 3
 LOGGED = "the run is logged"
+AFTER_STEP = f"{IN_SINGLE} after each step"
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
 
@@ -140,7 +143,7 @@ class IntegratorCauses:
         slight = either([slight_jump_cause(steps)]) if not jumps(steps) else []
         if slight:  # by which the rates at no step are no rates
             found = [one for one in self._of_trajectories() if not is_fact(one)]
-            return found or slight
+            return found or self._single(steps) or slight
         found = self._in_steps.sentences(steps) or self._of_trajectories()
         if self._case.name in self._over.turned and all(map(is_fact, found)):
             begins = self._over.begins
@@ -150,6 +153,8 @@ class IntegratorCauses:
             found = jumped or found
         last = found or jumped or either(kinematic_causes(steps))
         last = last or either([still_cause(steps)])
+        if not any(map(is_named, last)):
+            last = self._single(steps) or last
         if last:
             return last
         return self._in_steps.known(steps) or self._known_of_runs()
@@ -161,6 +166,17 @@ class IntegratorCauses:
         of_system = again == AGAIN["reloaded"]
         kept = kept_place(scenes, self._case, self._truth.yardstick.eps) if of_system else ""
         return f"{again}: {kept}" if kept else again
+
+    def _single(self, steps: VanishingSteps) -> list[str]:
+        """That numbers after a step are of single precision, as the runs of most scenarios are.
+
+        One step does not show whether they are kept so, or only so reported.
+        """
+        if not steps.single:
+            return []
+        every = (text for texts, _ in self._over.causes.values() for text in texts)
+        known = Counter(t for t in every if t.startswith(steps.single) and IN_SINGLE in t)
+        return [known.most_common(1)[0][0] if known else f"{steps.single} {AFTER_STEP}"]
 
     def _short_steps(self, steps: VanishingSteps) -> list[str]:
         """Steps that are too short to move a body; none where that is not what is wrong.

@@ -16,6 +16,7 @@ FACTS = (
     "reported twice",
     "only the first steps are wrong",
     "the last of the run, are wrong",
+    "of the last sample alone is wrong",
     "are wrong only where",
     "the run is the same for a while and another after",
     "samples came back",
