@@ -10,6 +10,7 @@ fits one scenario and is contradicted by another is not named.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -79,7 +80,8 @@ class Causes:
     def text(self, engine: str, case: str, run: JudgedRun | None) -> str:
         """The cause of a run on one case, or of what all runs share there.
 
-        Where none is named, that of most other cases that fail stands before what is seen here.
+        Where none is named, it is one of another case that makes what is seen here as well; or else
+        that of most other cases that fail stands before this.
         """
         integrator = None if run is None else run.integrator.name
         text = self._text(engine, case, integrator)
@@ -95,6 +97,10 @@ class Causes:
         own = self._cases[engine][case]
         for name, other in others.items() if integrator is None and not text else ():
             if is_named(other) and own.siblings_follow(name):
+                return other
+        known = Counter(other for other in others.values() if is_named(other))
+        for other, _ in known.most_common() if integrator is not None else ():
+            if own.steps_follow(integrator, other):
                 return other
         return beside_others(text, list(others.values()))
 

@@ -22,7 +22,7 @@ from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
-from omegadot.diagnosis.stepping.where_stepped import where_stepped
+from omegadot.diagnosis.stepping.where_stepped import makes_runs, where_stepped
 from omegadot.diagnosis.wording.kinds import (
     agreed,
     either,
@@ -106,6 +106,12 @@ class IntegratorCauses:
             law = onset_law([one for runs in self._over.onsets.values() for one in runs])
             own = [law] if law else own
         return own if any(map(is_named, own)) else together or own
+
+    def follows(self, text: str) -> bool:
+        """Whether a cause that is named on another scenario makes the runs of this one."""
+        own = [run for run in self._over.kept if run.name == self._case.name]
+        with np.errstate(all="ignore"):
+            return makes_runs(text, self._integrator, own)
 
     def _where(self, text: str) -> str:
         """A cause in every step, with the scenarios on which alone it acts."""
