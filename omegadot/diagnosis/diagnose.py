@@ -25,7 +25,7 @@ from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditio
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.stepping.after_run import AfterRun, taken_of_run_before
-from omegadot.diagnosis.wording.kinds import beside_others, is_named
+from omegadot.diagnosis.wording.kinds import beside_others, is_named, kind_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import (
     EvaluationStates,
@@ -98,10 +98,10 @@ class Causes:
         for name, other in others.items() if integrator is None and not text else ():
             if is_named(other) and own.siblings_follow(name):
                 return other
-        known = Counter(other for other in others.values() if is_named(other))
-        for other, _ in known.most_common() if integrator is not None else ():
-            if own.steps_follow(integrator, other):
-                return other
+        if integrator is not None:
+            for other in _of_most(list(others.values())):
+                if own.steps_follow(integrator, other):
+                    return other
         return beside_others(text, list(others.values()))
 
     def _text(self, engine: str, case: str, integrator: str | None) -> str:
@@ -200,6 +200,13 @@ def diagnose(
         if found:
             break
     return list(dict.fromkeys(found))
+
+
+def _of_most(texts: Sequence[str]) -> list[str]:
+    """The causes of the kind that is named most often."""
+    kinds = Counter(kind_of(text) for text in texts if is_named(text))
+    most = kinds.most_common(1)[0][0] if kinds else ""
+    return [text for text in dict.fromkeys(texts) if is_named(text) and kind_of(text) == most]
 
 
 def _by_length(runs: Sequence[JudgedRun]) -> list[JudgedRun]:

@@ -1,7 +1,7 @@
 """On which scenarios a step ends wrongly, has a slip in it, or is of another scheme.
 
-On which alone, where others would show it; and whether what is named on others makes the runs of one
-on which nothing is.
+On which alone, where others would show it; and whether what is named on others makes the runs of
+one on which nothing is.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.other_schemes import ENDS
 from omegadot.diagnosis.stepping.slips import slipped
 from omegadot.diagnosis.stepping.step_ends import kept_ends, with_end
-from omegadot.diagnosis.wording.features import Features, in_common
 from omegadot.diagnosis.stepping.whole_substeps import scheme_of_substeps
+from omegadot.diagnosis.wording.features import Features, in_common
 from omegadot.diagnosis.wording.kinds import AT_STEPS, EITHER, OR
 from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
