@@ -58,6 +58,7 @@ class Causes:
         self._engines: dict[str, EngineOverScenarios] = {}
         self._cases: dict[str, dict[str, CaseCauses]] = {}
         self._texts: dict[tuple[str, str, str | None], str] = {}
+        self._followed: dict[tuple[str, str, str], str] = {}
         self._conditions: dict[tuple[str, tuple[object, ...]], Conditions] = {}
         self._asked: dict[str, Asked] = {}
         self._unsteady: dict[str, bool] = {}
@@ -74,7 +75,8 @@ class Causes:
                 engine, judged.case, judged.truth, states, found.result, found.shared, found.runs
             )
         self._cases.setdefault(name, {})[judged.case.name] = causes
-        self._texts, self._conditions = {}, {}  # what was found before may not hold any more
+        # what was found before may not hold any more
+        self._texts, self._conditions, self._followed = {}, {}, {}
         return causes
 
     def text(self, engine: str, case: str, run: JudgedRun | None) -> str:
@@ -99,9 +101,13 @@ class Causes:
             if is_named(other) and own.siblings_follow(name):
                 return other
         if integrator is not None:
-            for other in _of_most(list(others.values())):
-                if own.steps_follow(integrator, other):
-                    return other
+            key = (engine, case, integrator)
+            if key not in self._followed:
+                known = _of_most(list(others.values()))
+                made = (one for one in known if own.steps_follow(integrator, one))
+                self._followed[key] = next(made, "")
+            if self._followed[key]:
+                return self._followed[key]
         return beside_others(text, list(others.values()))
 
     def _text(self, engine: str, case: str, integrator: str | None) -> str:

@@ -149,6 +149,8 @@ def last_sample(reported: ReportedRun) -> str:
     state, own = reported.state, reported.own
     if count < LEAST_BESIDE or not reported.agrees(state[before], own[before], before):
         return ""
+    if reported.agrees(state[end], own[end], end):
+        return ""
     sweeps, knob = reported.case.sweeps_of(reported.integrator), reported.sweep.knob
     if any(one.knob == knob and reported.time[-1] < one.times[-1] for one in sweeps):
         return ""  # a run that is looked at until it is off

@@ -63,15 +63,16 @@ def where_stepped(
     return f"{plain}{where or f', not on {count} that would show it'}{mark}{tail}"
 
 
-def makes_runs(text: str, integrator: Integrator, runs: Sequence[KeptRun]) -> bool:
+def makes_runs(text: str, integrator: Integrator, runs: Sequence[KeptRun], name: str) -> bool:
     """Whether steps with what a text names lead from each sample to the next, and others do not.
 
-    runs: of one scenario, sound and failing.  Of several causes that explain the same, each must.
+    runs: of all scenarios, sound and failing.  name: of the one whose runs these are.  Of several
+    causes that explain the same, each must.
     """
     by, plain = scheme_of(integrator, runs), OF_NUMBERS.sub("", text.partition(AT_STEPS)[0])
     every = plain.removeprefix(EITHER).split(OR) if plain.startswith(EITHER) else [plain]
-    failing = [run for run in runs if run.fails]
-    return bool(failing) and all(_makes(one, by, integrator, runs) for one in every)
+    own = [run for run in runs if run.name == name]
+    return all(_makes(one, by, integrator, own) for one in every)
 
 
 def _makes(text: str, by: SchemeOf | None, integrator: Integrator, runs: Sequence[KeptRun]) -> bool:

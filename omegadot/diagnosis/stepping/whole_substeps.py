@@ -17,17 +17,7 @@ from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.schemes import Motion, Scheme
 from omegadot.reference_impl.system import Array
 
-COUNTS = {
-    2: "two",
-    3: "three",
-    4: "four",
-    5: "five",
-    6: "six",
-    7: "seven",
-    8: "eight",
-    10: "ten",
-    16: "sixteen",
-}
+COUNTS = {2: "two", 3: "three", 4: "four", 5: "five", 8: "eight", 10: "ten"}
 NAMED = re.compile(r"each step is taken in (\w+) equal substeps of (\S+)")
 MOST_STEPS = 5000  # of a run, with its substeps
 
