@@ -124,3 +124,10 @@ def test_no_way_is_named_by_which_the_right_values_are_as_near() -> None:
     omega[-1] *= 1.0 + 1e-9
     came = replace(own, angular_velocity=omega)
     assert field_causes(replace(tiny, own=own, state=came)) == []
+
+
+def test_one_number_again_and_again_is_no_grain() -> None:
+    """Caught: "omega is rounded to multiples of 2^-22", of single numbers of a constant omega."""
+    run = own_run("principal-spin-major")
+    came = np.full_like(run.own.angular_velocity, 5.0 * 2.0**-22 + 0.75)
+    assert precision_reported(replace(run, state=replace(run.own, angular_velocity=came))) == ""

@@ -65,7 +65,8 @@ def _is_own_in_single(reported: ReportedRun, single: Sequence[str]) -> bool:
 def _grain_reported(reported: ReportedRun) -> str:
     for field, what in (("angular_velocity", "omega"), ("orientation", "the attitude")):
         came, own = (getattr(x, field)[1:] for x in (reported.state, reported.own))
-        if (grain := grain_of(came)) is not None and grain_of(own) != grain:
+        # a number that is reported again and again shows its last digits once
+        if (grain := grain_of(np.unique(came))) is not None and grain_of(own) != grain:
             return f"{what} is rounded to multiples of 2^{grain} in the run"
     return ""
 
