@@ -169,6 +169,11 @@ class CaseCauses:
         """Whether a run of the integrator fails, or what all runs share."""
         return bool(self._shared_rows) if integrator is None else integrator in self._failing
 
+    def steps_follow(self, integrator: str, text: str) -> bool:
+        """Whether the cause of an integrator's runs on another scenario makes those here."""
+        own = self._integrators.get(integrator)
+        return own is not None and not self._explains_runs and own.follows(text)
+
     def siblings_follow(self, name: str) -> bool:
         """Whether the cause on another scenario makes what fails here, of siblings alone."""
         failed = {(row.gate, row.metric) for row in self._shared_rows}

@@ -10,6 +10,7 @@ fits one scenario and is contradicted by another is not named.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -24,7 +25,7 @@ from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditio
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.stepping.after_run import AfterRun, taken_of_run_before
-from omegadot.diagnosis.wording.kinds import beside_others, is_named
+from omegadot.diagnosis.wording.kinds import beside_others, is_named, kind_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import (
     EvaluationStates,
@@ -57,6 +58,7 @@ class Causes:
         self._engines: dict[str, EngineOverScenarios] = {}
         self._cases: dict[str, dict[str, CaseCauses]] = {}
         self._texts: dict[tuple[str, str, str | None], str] = {}
+        self._followed: dict[tuple[str, str, str], str] = {}
         self._conditions: dict[tuple[str, tuple[object, ...]], Conditions] = {}
         self._asked: dict[str, Asked] = {}
         self._unsteady: dict[str, bool] = {}
@@ -73,13 +75,15 @@ class Causes:
                 engine, judged.case, judged.truth, states, found.result, found.shared, found.runs
             )
         self._cases.setdefault(name, {})[judged.case.name] = causes
-        self._texts, self._conditions = {}, {}  # what was found before may not hold any more
+        # what was found before may not hold any more
+        self._texts, self._conditions, self._followed = {}, {}, {}
         return causes
 
     def text(self, engine: str, case: str, run: JudgedRun | None) -> str:
         """The cause of a run on one case, or of what all runs share there.
 
-        Where none is named, that of most other cases that fail stands before what is seen here.
+        Where none is named, it is one of another case that makes what is seen here as well; or else
+        that of most other cases that fail stands before this.
         """
         integrator = None if run is None else run.integrator.name
         text = self._text(engine, case, integrator)
@@ -96,6 +100,14 @@ class Causes:
         for name, other in others.items() if integrator is None and not text else ():
             if is_named(other) and own.siblings_follow(name):
                 return other
+        if integrator is not None:
+            key = (engine, case, integrator)
+            if key not in self._followed:
+                known = _of_most(list(others.values()))
+                made = (one for one in known if own.steps_follow(integrator, one))
+                self._followed[key] = next(made, "")
+            if self._followed[key]:
+                return self._followed[key]
         return beside_others(text, list(others.values()))
 
     def _text(self, engine: str, case: str, integrator: str | None) -> str:
@@ -194,6 +206,13 @@ def diagnose(
         if found:
             break
     return list(dict.fromkeys(found))
+
+
+def _of_most(texts: Sequence[str]) -> list[str]:
+    """The causes of the kind that is named most often."""
+    kinds = Counter(kind_of(text) for text in texts if is_named(text))
+    most = kinds.most_common(1)[0][0] if kinds else ""
+    return [text for text in dict.fromkeys(texts) if is_named(text) and kind_of(text) == most]
 
 
 def _by_length(runs: Sequence[JudgedRun]) -> list[JudgedRun]:

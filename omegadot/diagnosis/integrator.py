@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,12 +16,13 @@ from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.onsets import SOUND_UNTIL, onset_law
 from omegadot.diagnosis.reported.requests import AGAIN
+from omegadot.diagnosis.reported.singles import IN_SINGLE
 from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
 from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
-from omegadot.diagnosis.stepping.where_stepped import where_stepped
+from omegadot.diagnosis.stepping.where_stepped import makes_runs, where_stepped
 from omegadot.diagnosis.wording.kinds import (
     agreed,
     either,
@@ -40,6 +42,7 @@ from omegadot.harness.judging.judged_run import JudgedRun
 # steps have lost explains them.
 VAIN, VAIN_BESIDE_ORDER = 8, 3
 LOGGED = "the run is logged"
+AFTER_STEP = f"{IN_SINGLE} after each step"
 OF_ONE_FIELD = "alone is wrong in the run"  # which the order that it has lost may explain
 
 
@@ -105,6 +108,11 @@ class IntegratorCauses:
             own = [law] if law else own
         return own if any(map(is_named, own)) else together or own
 
+    def follows(self, text: str) -> bool:
+        """Whether a cause that is named on another scenario makes the runs of this one."""
+        with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+            return makes_runs(text, self._integrator, self._over.kept, self._case.name)
+
     def _where(self, text: str) -> str:
         """A cause in every step, with the scenarios on which alone it acts."""
         places, key = self._over.places, (text, len(self._over.kept))
@@ -141,7 +149,7 @@ class IntegratorCauses:
         slight = either([slight_jump_cause(steps)]) if not jumps(steps) else []
         if slight:  # by which the rates at no step are no rates
             found = [one for one in self._of_trajectories() if not is_fact(one)]
-            return found or slight
+            return found or self._single(steps) or slight
         found = self._in_steps.sentences(steps) or self._of_trajectories()
         if self._case.name in self._over.turned and all(map(is_fact, found)):
             begins = self._over.begins
@@ -151,6 +159,8 @@ class IntegratorCauses:
             found = jumped or found
         last = found or jumped or either(kinematic_causes(steps))
         last = last or either([still_cause(steps)])
+        if not any(map(is_named, last)):
+            last = self._single(steps) or last
         if last:
             return last
         return self._in_steps.known(steps) or self._known_of_runs()
@@ -162,6 +172,17 @@ class IntegratorCauses:
         of_system = again == AGAIN["reloaded"]
         kept = kept_place(scenes, self._case, self._truth.yardstick.eps) if of_system else ""
         return f"{again}: {kept}" if kept else again
+
+    def _single(self, steps: VanishingSteps) -> list[str]:
+        """That numbers after a step are of single precision, as the runs of most scenarios are.
+
+        One step does not show whether they are kept so, or only so reported.
+        """
+        if not steps.single:
+            return []
+        every = (text for texts, _ in self._over.causes.values() for text in texts)
+        known = Counter(t for t in every if t.startswith(steps.single) and IN_SINGLE in t)
+        return [known.most_common(1)[0][0] if known else f"{steps.single} {AFTER_STEP}"]
 
     def _short_steps(self, steps: VanishingSteps) -> list[str]:
         """Steps that are too short to move a body; none where that is not what is wrong.

@@ -25,6 +25,7 @@ from omegadot.diagnosis.reported.run_causes import (
 )
 from omegadot.diagnosis.reported.sample_causes import (
     intervals,
+    last_sample,
     not_unit,
     omega_dot_late,
     one_field,
@@ -245,6 +246,8 @@ def _of_reported(
     seen = seen or next(filter(None, (cause(reported) for cause in SEEN)), "")
     if seen:
         return RunCauses((seen,))
+    if whole and reported.is_own:
+        return HARDLY_OFF  # which any cause fits that changes nothing on this motion
     found = [*misread(reported), *late(reported)]
     found += filter(None, (cause(reported) for cause in CAUSES_REPORTED))
     found = [text for text in found if ADDED not in text] or found
@@ -255,7 +258,8 @@ def _of_reported(
         return RunCauses(tuple(dict.fromkeys(found)), is_decisive(reported))
     # Beside a guess it is its error that one quantity shows, where the motion is the same by many.
     alone = (one_field,) if reported.is_declared or is_decisive(reported) else ()
-    last = (not_unit, another_start, *((intervals, *alone) if whole and clear else ()))
+    seen_last = (last_sample, intervals, *alone) if whole and clear else ()
+    last = (not_unit, another_start, *seen_last)
     text = next(filter(None, (cause(reported) for cause in last)), "")
     if text:
         return RunCauses((text,), is_decisive(reported))

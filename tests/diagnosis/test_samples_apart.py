@@ -12,8 +12,10 @@ from omegadot.diagnosis.reported.field_causes import field_causes
 from omegadot.diagnosis.reported.late import late
 from omegadot.diagnosis.reported.precision import precision_reported
 from omegadot.diagnosis.reported.run import ReportedRun
+from omegadot.diagnosis.reported.sample_causes import last_sample
+from omegadot.diagnosis.wording.kinds import is_fact
 from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.rotations import normalize
+from omegadot.reference_impl.rotations import normalize, turn_in_body
 
 
 @pytest.fixture(scope="module")
@@ -80,3 +82,52 @@ def test_a_place_that_each_step_moves_further_is_named() -> None:
     other = falling.state.position * (1.0 + 1e-3 * falling.time[:, None] ** 3)
     state = replace(falling.state, position=other)
     assert not any("each step moves" in t for t in field_causes(replace(falling, state=state)))
+
+
+@pytest.mark.parametrize("samples", [3, 6, 20])
+def test_omega_kept_in_single_precision_is_not_said_to_be_reported_so(
+    sound: ReportedRun, samples: int
+) -> None:
+    """Caught: omega kept so for a few steps, in which it is off by no more than a last digit."""
+    few = sound.until(samples)
+    single = few.own.angular_velocity.astype(np.float32).astype(float)
+    logged = replace(few, state=replace(few.own, angular_velocity=single))
+    assert precision_reported(logged) == "omega is reported in single precision, and kept in double"
+    turned = turn_in_body(
+        few.own.orientation, np.full(3, 1e-9), 1.0
+    )  # as omega's rounding makes it
+    kept = replace(few, state=replace(logged.state, orientation=turned))
+    assert precision_reported(kept) == "omega is kept in single precision"
+
+
+def test_what_is_wrong_in_the_last_sample_alone_is_named_with_it() -> None:
+    """Caught: "omega alone is wrong in the run", and a difference quotient, of one number."""
+    run = own_run("damped-tumble")
+    omega = run.own.angular_velocity.copy()
+    omega[-1] *= 1.0 + 1e-7
+    wrong = replace(run, state=replace(run.own, angular_velocity=omega))
+    assert last_sample(wrong) == "omega of the last sample alone is wrong, by up to 1e-7 of it"
+    assert is_fact(last_sample(wrong))
+    omega[-2] *= 1.0 + 1e-7
+    assert last_sample(replace(run, state=replace(run.own, angular_velocity=omega))) == ""
+    assert last_sample(run) == last_sample(wrong.until(20)) == ""
+
+
+def test_no_way_is_named_by_which_the_right_values_are_as_near() -> None:
+    """Caught: a difference quotient over a tiny step, whose rounding hides what is wrong."""
+    run = own_run("t-handle")
+    tiny = replace(run, sweep=replace(run.sweep, timestep=1e-9, steps=10, every=1))
+    times = tiny.sweep.times
+    tiny = replace(tiny, time=times, growth=run.growth[: len(times)])
+    own = tiny.stepped()
+    omega = own.angular_velocity.copy()
+    omega[-1] *= 1.0 + 1e-9
+    came = replace(own, angular_velocity=omega)
+    assert field_causes(replace(tiny, own=own, state=came)) == []
+
+
+def test_one_number_again_and_again_is_no_grain() -> None:
+    """Caught: "omega is rounded to multiples of 2^-22", of single numbers of a constant omega."""
+    run = own_run("principal-spin-major")
+    came = np.full_like(run.own.angular_velocity, 5.0 * 2.0**-22 + 0.75)
+    assert precision_reported(replace(run, state=replace(run.own, angular_velocity=came))) == ""

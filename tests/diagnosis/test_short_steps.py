@@ -146,3 +146,19 @@ def test_the_velocity_of_a_pivoted_body_by_an_omega_of_the_step_before_is_named(
         velocity = rotate(q, cross(omega, arm)) + 0.0 * ends.linear_velocity
         placed = replace(ends, linear_velocity=velocity, position=rotate(ends.orientation, arm))
         assert vanishing_steps(case.system, probe, placed).late_velocity == what
+
+
+def test_what_a_step_returns_in_single_precision_is_seen() -> None:
+    """Caught: "none is known" where omega is constant, and a run shows no rounding of it."""
+    case = builtin("free-bar")
+    states = random_states(case, 6, [1])
+    w = np.linalg.norm(states.angular_velocity, axis=-1)
+    probe = Probe(states, (2.0**-7 / w)[:, None] / 2.0 ** np.arange(DOUBLE.count))
+    ends = one_step(case, probe)
+    assert vanishing_steps(case.system, probe, ends).single == ""
+    single = {k: v.astype(np.float32).astype(float) for k, v in vars(ends).items()}
+    omega = replace(ends, angular_velocity=single["angular_velocity"])
+    assert vanishing_steps(case.system, probe, omega).single == "omega is"
+    assert vanishing_steps(case.system, probe, State(**single)).single == "the state is"
+    place = replace(ends, position=single["position"])
+    assert vanishing_steps(case.system, probe, place).single == "the position is"

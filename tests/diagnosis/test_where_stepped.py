@@ -12,7 +12,8 @@ from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.other_schemes import ENDS
 from omegadot.diagnosis.stepping.step_ends import kept_ends, with_end
-from omegadot.diagnosis.stepping.where_stepped import where_stepped
+from omegadot.diagnosis.stepping.where_stepped import makes_runs, where_stepped
+from omegadot.diagnosis.stepping.whole_substeps import substepped
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.case import Case, Sweep
 from omegadot.reference_impl.schemes import SCHEMES
@@ -73,3 +74,30 @@ def test_a_body_at_rest_shows_nothing_of_what_scales_omega() -> None:
     still = replace(one.initial, angular_velocity=np.zeros(3))
     end = kept_ends(one.system)[text](still, still, 0.01)
     assert np.array_equal(end.angular_velocity, np.zeros(3))
+
+
+def test_the_cause_of_others_is_that_of_a_run_which_it_makes() -> None:
+    """Caught: "on N other scenarios: X; here: the attitude is off", where X makes what is here."""
+    integrator = Integrator("own", NAME, dict.fromkeys(CHANNELS, 1))
+    first, second = EVERY[:2]
+    wrong, sound, beside = run_of(first, True), run_of(first, False), run_of(second, False)
+
+    def made(text: str, *runs: KeptRun, how: Integrator = integrator) -> bool:
+        return makes_runs(text, how, [*runs, beside], first.name)
+
+    assert made(TEXT, wrong)
+    assert made(TEXT, wrong, how=replace(integrator, scheme=None))
+    assert made(f"{TEXT} (free; other numbers on 2 more)", wrong)
+    other = "it is stepped by lie-rk4, though semi-implicit-euler is declared"
+    slip = f"it is stepped by {NAME}, but the attitude moves by the omega of the step's start"
+    for text in (other, slip, "damping is ignored", f"either {TEXT}, or {slip}"):
+        assert not made(text, wrong)
+    assert not made(TEXT, sound)  # which does not fail
+    assert not made(TEXT, replace(sound, fails=True))
+    assert not made(TEXT, wrong, sound)  # one without it
+    lie = SCHEMES["lie-rk4"]
+    _, state = step_body(lie, first.system, first.initial, 0.02, STEPS, 1)
+    assert made(other, replace(wrong, state=state))
+    two = substepped(SCHEMES[NAME], 2)
+    _, state = step_body(two, first.system, first.initial, 0.02, STEPS, 1)
+    assert made(f"each step is taken in two equal substeps of {NAME}", replace(wrong, state=state))

@@ -7,7 +7,7 @@ attitude is also held against those on the way from the one before.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -29,6 +29,7 @@ from omegadot.written import written
 
 LEAST = 5  # samples
 NEAR = 1e-6  # a share that is none, or all
+SMALL = ", for small angles"
 QUANTITIES = {
     "angular_velocity": ("omega", "rad/s"),
     "linear_velocity": ("the linear velocity", "m/s"),
@@ -48,7 +49,7 @@ def field_causes(reported: ReportedRun) -> list[str]:
         right = replace(came, **{name: getattr(own, name)})
         if reported.agrees(right[later], own[later], later):
             made = _ways(reported, name, what, unit)
-            return [text for text, v, slack in made if _is(reported, name, v, slack)]
+            return _plain(text for text, v, slack in made if _is(reported, name, v, slack))
     name = "orientation"
     right = replace(came, orientation=own.orientation)
     if not reported.agrees(right[later], own[later], later):
@@ -58,8 +59,19 @@ def field_causes(reported: ReportedRun) -> list[str]:
 
 
 def _is(reported: ReportedRun, name: str, values: Array, slack: float) -> bool:
+    """Whether these values are the logged ones, and the right ones are not, within the rounding."""
     other, later = replace(reported.own, **{name: values}), slice(1, None)
-    return reported.agrees(reported.state[later], other[later], later, slack)
+    came, own = reported.state[later], reported.own[later]
+    made = reported.agrees(came, other[later], later, slack)
+    return made and not reported.agrees(came, own, later, slack)
+
+
+def _plain(found: Iterable[str]) -> list[str]:
+    """Without those that add to another what makes no difference here."""
+    texts = list(found)
+    return [
+        text for text in texts if not text.endswith(SMALL) or text.removesuffix(SMALL) not in texts
+    ]
 
 
 def _ways(reported: ReportedRun, name: str, what: str, unit: str) -> Iterator[Way]:
@@ -136,7 +148,7 @@ def _quotients(reported: ReportedRun, every: State, name: str, what: str) -> Ite
             if name == "angular_velocity":
                 turn = quaternion_product(conjugate(start.orientation), own.orientation)
                 small = 2.0 * turn[..., 1:] * np.sign(turn[..., :1])
-                yield f"{text} {which} before, for small angles", small / over, slack
+                yield f"{text} {which} before{SMALL}", small / over, slack
 
 
 def _change(name: str, before: State, after: State) -> Array:

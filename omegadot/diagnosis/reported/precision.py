@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.reported.run import ReportedRun
-from omegadot.diagnosis.wording.digits import listed
+from omegadot.diagnosis.reported.singles import IN_SINGLE, MOTION, fields_in_single, named_single
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.runs.trajectory import grain_of
 from omegadot.reference_impl.system import Array, State
 
-EPS_SINGLE = float(np.finfo(np.float32).eps)
-MOTION = {"orientation": "attitude", "angular_velocity": "omega"}
-PLACES = {"position": "the position", "linear_velocity": "the linear velocity"}
+HALF_A_DIGIT = 0.5 * float(np.finfo(np.float32).eps)
 MOST_DECIMALS = 11
 DECIMAL = {
     "angular_velocity": "omega",
@@ -36,41 +37,36 @@ def precision_reported(reported: ReportedRun) -> str:
     """
     if rounded := _grain_reported(reported) or _packed_reported(reported):
         return rounded
-
-    def single(state: State, field: str) -> bool:
-        kept = getattr(state, field)[1:]
-        moves = bool(np.ptp(kept, axis=0).any())  # a body put to sleep has zeros
-        return moves and np.array_equal(kept, kept.astype(np.float32).astype(float))
-
-    found, places = (
-        [s for f, s in fields.items() if single(reported.state, f) and not single(reported.own, f)]
-        for fields in (MOTION, PLACES)
-    )
-    if places and not found:
-        return _places_single(reported, places)
-    what = "state" if len(found) == 2 else "".join(found)
-    pairs = zip(vars(reported.state).values(), vars(reported.own).values(), strict=True)
-    if found and all(np.all(np.abs(a - b) <= EPS_SINGLE * np.abs(b)) for a, b in pairs):
-        return f"the {what} is reported in single precision, and kept in double"
-    single_is_due = reported.truth.yardstick.eps > EPS
-    return f"the {what} is kept in single precision" if found and not single_is_due else ""
-
-
-def _places_single(reported: ReportedRun, places: list[str]) -> str:
-    """Of places alone, in a run of double precision."""
     if reported.truth.yardstick.eps > EPS:
+        return ""  # it is due
+    single = fields_in_single(reported.state[1:], reported.own[1:])
+    named = named_single(single)
+    if not named:
         return ""
-    names = [field for field, what in PLACES.items() if what in places]
-    pairs = [(getattr(reported.state, f)[1:], getattr(reported.own, f)[1:]) for f in names]
-    rounded = all(np.all(np.abs(a - b) <= EPS_SINGLE * np.abs(b)) for a, b in pairs)
-    verb = "are" if len(places) > 1 else "is"
-    return f"{listed(places)} {verb} {'reported' if rounded else 'kept'} in single precision"
+    if not _is_own_in_single(reported, single):
+        return f"{named} kept {IN_SINGLE}"
+    return f"{named} reported {IN_SINGLE}" + ", and kept in double" * bool({*single} & {*MOTION})
+
+
+def _is_own_in_single(reported: ReportedRun, single: Sequence[str]) -> bool:
+    """Whether the reference's run differs by the rounding of what is logged, and by no more.
+
+    What is kept in single precision adds its roundings up, and other quantities follow it.
+    """
+    pairs = {f: (getattr(reported.state, f)[1:], getattr(reported.own, f)[1:]) for f in single}
+    for came, own in pairs.values():
+        rounding = ROUNDINGS * EPS * float(np.max(np.abs(own)))
+        if not np.all(np.abs(came - own) <= HALF_A_DIGIT * np.abs(own) + rounding):
+            return False
+    others = replace(reported.state, **{field: getattr(reported.own, field) for field in single})
+    return reported.agrees(others, reported.own)
 
 
 def _grain_reported(reported: ReportedRun) -> str:
     for field, what in (("angular_velocity", "omega"), ("orientation", "the attitude")):
         came, own = (getattr(x, field)[1:] for x in (reported.state, reported.own))
-        if (grain := grain_of(came)) is not None and grain_of(own) != grain:
+        # a number that is reported again and again shows its last digits once
+        if (grain := grain_of(np.unique(came))) is not None and grain_of(own) != grain:
             return f"{what} is rounded to multiples of 2^{grain} in the run"
     return ""
 

@@ -135,16 +135,36 @@ def one_field(reported: ReportedRun) -> str:
             continue  # schemes that are no guess here have the same omega and another attitude
         right = {name: getattr(reported.own, name) for name in names}
         if reported.agrees(replace(reported.state, **right), reported.own):
-            own = right[names[0]]
-            off = float(np.max(np.abs(getattr(reported.state, names[0]) - own)))
-            size = float(np.max(np.abs(own)))
-            by = (
-                f", by up to {written(off / size, 2)} of it"
-                if size > 0.0
-                else ", where it is to be nothing"
-            )
-            return f"{text} alone is wrong in the run{by}"
+            return f"{text} alone is wrong in the run{_off_by(reported, names[0])}"
     return ""
+
+
+def last_sample(reported: ReportedRun) -> str:
+    """All samples are sound but for one quantity of the last; of more of its quantities "".
+
+    What is wrong in the last step would move the others with it, or be one step's error.
+    """
+    count = len(reported.time)
+    before, end = slice(0, count - 1), slice(count - 1, count)
+    state, own = reported.state, reported.own
+    if count < LEAST_BESIDE or not reported.agrees(state[before], own[before], before):
+        return ""
+    if reported.agrees(state[end], own[end], end):
+        return ""
+    sweeps, knob = reported.case.sweeps_of(reported.integrator), reported.sweep.knob
+    if any(one.knob == knob and reported.time[-1] < one.times[-1] for one in sweeps):
+        return ""  # a run that is looked at until it is off
+    for text, names in ALONE.items():
+        right = {name: getattr(own, name)[end] for name in names}
+        if reported.agrees(replace(state[end], **right), own[end], end):
+            return f"{text} of the last sample alone is wrong{_off_by(reported, names[0], end)}"
+    return ""
+
+
+def _off_by(reported: ReportedRun, name: str, samples: slice = slice(None)) -> str:
+    came, own = (getattr(one, name)[samples] for one in (reported.state, reported.own))
+    off, size = float(np.max(np.abs(came - own))), float(np.max(np.abs(own)))
+    return f", by up to {written(off / size, 2)} of it" if size else ", where it is to be nothing"
 
 
 def first_wrong(reported: ReportedRun) -> int | None:

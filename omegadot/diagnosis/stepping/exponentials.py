@@ -1,4 +1,4 @@
-"""A wrong exponential at small turns: one number of its series, and up to which turn it is taken.
+"""A wrong exponential of a step's turn: one number of its series, and at which turns it is taken.
 
 Every turn u of a scheme is by the quaternion ``(C, S u)`` made unit, with ``C = cos(x/2)`` and
 ``S = sin(x/2)/x`` as series in ``x = |u|``. One number in these is fitted to the attitudes of all
@@ -117,18 +117,24 @@ def _fitted(
 def _limit(
     by: SchemeOf, plain: Sequence[tuple[KeptRun, NDArray[np.bool_]]], series: Series, c: float
 ) -> str | None:
-    """Up to which turn it is taken; None where an interval is by neither, or no turn sorts."""
-    low, high, shown = 0.0, np.inf, 0
+    """Up to which turn it is taken, or from which on.
+
+    None where an interval is by neither, or where no turn sorts those that show which it is by.
+    """
+    wrong, exact = list[Array](), list[Array]()
     for run, right in plain:
         made, turns = _sound(run, by, series, c), _turns(run)
         if not np.all(made | right):
             return None
-        low = max(low, float(np.max(turns[made & ~right], initial=0.0)))
-        high = min(high, float(np.min(turns[right & ~made], initial=np.inf)))
-        shown += int(np.count_nonzero(made & ~right))
-        if low >= high:
-            return None
-    if shown < LEAST or (high == np.inf and series.wrong is None):
-        return None  # a series that is too short at every turn is a scheme of its own
-    below = f", where the turn is below a limit between {limits(low, high, 'rad')}"
-    return below if high < np.inf else ""
+        wrong.append(turns[made & ~right])
+        exact.append(turns[right & ~made])
+    one, other = np.concatenate(wrong), np.concatenate(exact)
+    if len(one) < LEAST:
+        return None
+    if not len(other):  # a series that is too short at every turn is a scheme of its own
+        return "" if series.wrong is not None else None
+    for side, low, high in (("below", one, other), ("above", other, one)):
+        least, most = float(np.max(low)), float(np.min(high))
+        if least < most:
+            return f", where the turn is {side} a limit between {limits(least, most, 'rad')}"
+    return None

@@ -17,6 +17,7 @@ from omegadot.diagnosis.stepping.share_laws import laws_of
 from omegadot.diagnosis.stepping.share_points import points_of
 from omegadot.diagnosis.stepping.solved import solved_causes
 from omegadot.diagnosis.stepping.stage_slips import slips_in_stages, stage_slips
+from omegadot.diagnosis.stepping.whole_substeps import substeps_of_runs
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
 
@@ -59,7 +60,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         declared = integrator.scheme is not None
         if by is None:
             return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
-        found = length_causes(by, runs)
+        found = substeps_of_runs(integrator, by, chosen) or length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         found = found or stage_slips(integrator, by, chosen)
         found = found or exponential_causes(by, runs)

@@ -144,20 +144,15 @@ def _old_velocity(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple
     return motion.retract(q, h * mixed), after
 
 
-def _by_series(order: int) -> Step:
-    """The exponential by its series: ``1 - a^2/8`` and ``1/2`` for order 2, a the turn in rad."""
-
-    def step(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
-        v = v + h * motion.acceleration(q, v)
-        turn = h * v[..., -3:]
-        square = np.sum(turn * turn, axis=-1, keepdims=True)
-        first = 1.0 - square / 8.0 if order > 1 else np.ones_like(square)
-        rest = (0.5 - square / 48.0 if order > 2 else 0.5) * turn
-        turned = quaternion_product(q[..., -4:], np.concatenate((first, rest), axis=-1))
-        places = motion.retract(q, h * v)[..., :-4]
-        return motion.normalize(np.concatenate((places, turned), axis=-1)), v
-
-    return step
+def _by_third_order(motion: Motion, q: Array, v: Array, h: float | Array) -> tuple[Array, Array]:
+    """``1 - a^2/8`` and ``1/2 - a^2/48``, a the turn in rad; the second order ends any step."""
+    v = v + h * motion.acceleration(q, v)
+    turn = h * v[..., -3:]
+    square = np.sum(turn * turn, axis=-1, keepdims=True)
+    quaternion = np.concatenate((1.0 - square / 8.0, (0.5 - square / 48.0) * turn), axis=-1)
+    turned = quaternion_product(q[..., -4:], quaternion)
+    places = motion.retract(q, h * v)[..., :-4]
+    return motion.normalize(np.concatenate((places, turned), axis=-1)), v
 
 
 # What states less comes first: on many bodies the velocity of translation is constant.
@@ -170,8 +165,7 @@ EULER: dict[str, Step] = {
     "the position moves by the mean of the velocities before and after": _mean_place,
     "attitude and position move by the mean of the velocities before and after": _mean_velocity,
     "the attitude moves by one straight step of the quaternion, normalised": _straight,
-    "the turn of a step is taken by the second-order series of the exponential": _by_series(2),
-    "the turn of a step is taken by the third-order series of the exponential": _by_series(3),
+    "the turn of a step is taken by the third-order series of the exponential": _by_third_order,
 }
 OF_SCHEME = {"rk4-quaternion": RUNGE_KUTTA, "semi-implicit-euler": EULER, **tableau_slips()}
 # Their steps end with a quaternion that is made unit.

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.reported.singles import fields_in_single, named_single
 from omegadot.gates.bounds.scales import EPS, ROUNDINGS_PER_EVALUATION, norm
 from omegadot.gates.steps.limits import Limit, Tolerated, extrapolated
 from omegadot.gates.steps.limits import limits as rates_at_no_step
@@ -39,7 +40,8 @@ class VanishingSteps:
 
     start and moved: from the two shortest steps.  limit: from the shortest five, which knows it to
     rounding where the steps are smooth.  longer: from the five before, in double precision.
-    rounded: which quantity comes back in a few decimals, and in how many.
+    rounded: which quantity comes back in a few decimals, and in how many.  single: ``omega is``, of
+    what comes back in single precision.
     late_velocity: by which omega and attitude a pivoted body's velocity is that of no place now; ""
     where it is the right one.  stays_below: s, the longest step up to which none changes anything,
     and the shortest that does; zero and infinity where there is none.
@@ -56,6 +58,7 @@ class VanishingSteps:
     late_velocity: str = ""
     rounded: str = ""
     stays_below: tuple[float, float] = (0.0, np.inf)
+    single: str = ""
 
     @property
     def evidence(self) -> Evidence:
@@ -126,8 +129,11 @@ def vanishing_steps(
     before = [f[:, -RANGE - 1 : -1] for f in vars(stepped).values()]
     longer = State(*map(extrapolated, before)) if before[0].shape[1] == RANGE else None
     late, still = _late_velocity(system, probe, stepped, eps), _stays_below(probe, stepped, rates)
-    seen = (late, _rounded(probe, stepped), still)
-    return VanishingSteps(system, probe.states, rates, *states, eps, longer, *seen)
+    set_ = State(*(values[:, None] for values in vars(probe.states).values()))
+    single = named_single(fields_in_single(stepped, set_)) if eps == EPS else ""
+    of_numbers = _rounded(probe, stepped)
+    known = (system, probe.states, rates, *states, eps, longer)
+    return VanishingSteps(*known, late, of_numbers, still, single)
 
 
 def _rounded(probe: Probe, stepped: State) -> str:

@@ -1,4 +1,8 @@
-"""On which scenarios alone a step ends wrongly or has a slip in it, where others would show it."""
+"""On which scenarios a step ends wrongly, has a slip in it, or is of another scheme.
+
+On which alone, where others would show it; and whether what is named on others makes the runs of
+one on which nothing is.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +12,23 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
+from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT, scheme_named
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.other_schemes import ENDS
 from omegadot.diagnosis.stepping.slips import slipped
 from omegadot.diagnosis.stepping.step_ends import kept_ends, with_end
+from omegadot.diagnosis.stepping.whole_substeps import scheme_of_substeps
 from omegadot.diagnosis.wording.features import Features, in_common
-from omegadot.diagnosis.wording.kinds import AT_STEPS
-from omegadot.reference_impl.schemes import Scheme
+from omegadot.diagnosis.wording.kinds import AT_STEPS, EITHER, OR
+from omegadot.reference_impl.coordinates import canonical
+from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.system import System
 
 OF_SLIP = re.compile("it is stepped by (.+?), but (.+)")
+OF_OTHER = re.compile(r"it is stepped by ([^,]+?), (?:though .+ is declared|which is of order .+)")
+OF_NUMBERS = re.compile(r" \(.+; other numbers on \d+ more\)$")
+
+FINEST = "lie-rk4"  # beside which a scheme of a lower order shows
 
 
 def where_stepped(
@@ -51,6 +61,40 @@ def where_stepped(
     count = f"{len(against)} other{'s' * (len(against) > 1)}"
     where = f", but only where {' or where '.join(common)}" if 0 < len(common) < 3 else ""
     return f"{plain}{where or f', not on {count} that would show it'}{mark}{tail}"
+
+
+def makes_runs(text: str, integrator: Integrator, runs: Sequence[KeptRun], name: str) -> bool:
+    """Whether steps with what a text names lead from each sample to the next, and others do not.
+
+    runs: of all scenarios, sound and failing.  name: of the one whose runs these are.  Of several
+    causes that explain the same, each must.
+    """
+    by, plain = scheme_of(integrator, runs), OF_NUMBERS.sub("", text.partition(AT_STEPS)[0])
+    every = plain.removeprefix(EITHER).split(OR) if plain.startswith(EITHER) else [plain]
+    own = [run for run in runs if run.name == name]
+    return all(_makes(one, by, integrator, own) for one in every)
+
+
+def _makes(text: str, by: SchemeOf | None, integrator: Integrator, runs: Sequence[KeptRun]) -> bool:
+    shown = False
+    for run in runs:
+        way = canonical(run.system, by.coordinates if by else integrator.coordinates)
+        pair = _with_and_without(text, by, run.system) or _other(text, by)
+        if pair is None or way not in pair[0].coordinates:
+            return False
+        if not np.all(run.sound(SchemeOf(pair[0], way))):
+            return False
+        shown |= run.fails and not np.all(run.sound(SchemeOf(pair[1], way)))
+    return shown
+
+
+def _other(text: str, by: SchemeOf | None) -> tuple[Scheme, Scheme] | None:
+    """Another scheme than is declared or due, or its substeps, beside what it is not."""
+    found = OF_OTHER.fullmatch(text)
+    if found is None or found[1] not in {**SCHEMES, **EXPLICIT}:
+        return scheme_of_substeps(text)
+    due = by.scheme if by is not None and by.scheme.name != found[1] else None
+    return scheme_named(found[1]), due or scheme_named(FINEST)
 
 
 def _with_and_without(

@@ -16,6 +16,7 @@ from omegadot.diagnosis.stepping.other_schemes import (
     other_schemes,
     slips,
 )
+from omegadot.diagnosis.stepping.whole_substeps import substeps_of_run
 from omegadot.gates.bounds.scales import norm
 from omegadot.harness.judging.judged_run import is_finite
 
@@ -34,6 +35,7 @@ def stepping_causes(reported: ReportedRun, equations: bool) -> Iterator[str]:
     yield from filter(None, (asleep(reported), still(reported)))
     others = other_schemes(reported) if reported.is_declared else []
     yield from others
+    yield from substeps_of_run(reported)
     yield from other_ends(reported)
     yield from filter(None, (turn_held(reported),))
     slipped = slips(reported)

@@ -16,6 +16,7 @@ FACTS = (
     "reported twice",
     "only the first steps are wrong",
     "the last of the run, are wrong",
+    "of the last sample alone is wrong",
     "are wrong only where",
     "the run is the same for a while and another after",
     "samples came back",
@@ -33,6 +34,7 @@ OF_ONE_RUN = (
     "the same at every sample of a run",
 )
 AT_STEPS = ", at steps of"
+EITHER, OR = "either ", ", or "
 # One number in every run, or it is another cause.
 CONSTANTS = ("low-pass", "it is filtered", "every time is too", "every time is scaled by")
 SAME = 0.01  # relative, of such a number; it has three digits
@@ -148,4 +150,4 @@ def beside_others(text: str, others: Sequence[str]) -> str:
 def either(texts: Sequence[str]) -> list[str]:
     """One sentence of causes that explain the same; none without any."""
     known = [text for text in dict.fromkeys(texts) if text]
-    return ["either " + ", or ".join(known)] if len(known) > 1 else known
+    return [EITHER + OR.join(known)] if len(known) > 1 else known
