@@ -42,7 +42,7 @@ def coarse(limit: float) -> Exponential:
     return exponential
 
 
-def causes(exponential: Exponential, h: float = 0.05) -> list[str]:
+def causes(exponential: Exponential, h: float = 0.05, every: int = 1) -> list[str]:
     def step(
         system: System, motion: Motion, q: Array, v: Array, h: float, n: int
     ) -> tuple[Array, Array]:
@@ -50,7 +50,7 @@ def causes(exponential: Exponential, h: float = 0.05) -> list[str]:
         turned = quaternion_product(q[-4:], exponential(h * v[-3:]))
         return np.concatenate((motion.retract(q, h * v)[:-4], turned)), v
 
-    runs = [kept(one, step, k * h, 1) for one in CASES for k in (1.0, 0.3)]
+    runs = [kept(one, step, k * h, every) for one in CASES for k in (1.0, 0.3)]
     by = SchemeOf(SCHEMES[EULER], "com-world")
     runs = [replace(run, fails=not bool(np.all(run.sound(by)))) for run in runs]
     return causes_over_runs(Integrator("own", EULER, dict.fromkeys(CHANNELS, 1)), runs)
@@ -95,6 +95,15 @@ def test_a_series_of_larger_turns_alone_is_named_with_its_limit() -> None:
     assert "ends before x^4/384 in cos(x/2) and x^2/48 in sin(x/2)/x, where the turn is" in text
     low, high = (float(one) for one in text.split(" above a limit between ")[1].split()[:3:2])
     assert low <= 0.05 <= high
+
+
+def test_a_limit_shows_between_samples_of_several_steps() -> None:
+    """Caught: silence where no sample is one step after another, or a limit that intervals cross
+    taken for none."""
+    (text,) = causes(series(lambda x: 0.5, 0.1, cosine=0.0), every=5)
+    assert "ends before x^2/8 in cos(x/2) and x^2/48 in sin(x/2)/x, where the turn is" in text
+    low, high = (float(one) for one in text.split(" between ")[1].split()[:3:2])
+    assert low < 0.1 <= high
 
 
 def test_turns_that_are_off_by_no_series_are_not_named() -> None:

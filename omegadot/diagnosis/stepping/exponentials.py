@@ -37,15 +37,24 @@ SETTLED = 1e-9
 
 def exponential_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     """The series by which small turns are taken; none where an interval is by neither."""
-    single = [run.short for run in runs if run.sweep.every == 1]
+    single = [run for run in runs if run.sweep.every == 1]
+    every = series_to_try()
+    found = _causes_in(by, single, every)
+    if found or len(single) == len(runs):
+        return found
+    # an interval of several steps may be by both: no number is fitted to it
+    return _causes_in(by, runs, [one for one in every if one.wrong is None])
+
+
+def _causes_in(by: SchemeOf, runs: Sequence[KeptRun], every: Sequence[Series]) -> list[str]:
     with np.errstate(all="ignore"):
-        plain = [(run, _sound(run, by, None, 0.0)) for run in single]
+        plain = [(run.short, _sound(run.short, by, None, 0.0)) for run in runs]
         wrong = [(run, sound) for run, sound in plain if run.fails and not sound.all()]
         if len({run.name for run, _ in wrong}) < LEAST or not _along(by, *wrong[0]):
             return []
         # those of the largest turns show most of the series
         wrong.sort(key=lambda one: -float(np.max(_turns(one[0])[~one[1]])))
-        for series in series_to_try():
+        for series in every:
             c = 0.0 if series.wrong is None else _fitted(by, wrong[:FITTED], series)
             limit = None if c is None else _limit(by, plain, series, c)
             if c is not None and limit is not None and series_named(series, c):
@@ -76,8 +85,8 @@ def _sound(run: KeptRun, by: SchemeOf, series: Series | None, c: float) -> NDArr
 
 
 def _turns(run: KeptRun) -> Array:
-    """(m,) rad, of each interval, by omega at its end."""
-    return norm(run.state.angular_velocity[1:]) * run.lengths
+    """(m,) rad, of a step of each interval, by omega at its end."""
+    return norm(run.state.angular_velocity[1:]) * run.sweep.timestep
 
 
 def _along(by: SchemeOf, run: KeptRun, sound: NDArray[np.bool_]) -> bool:
@@ -121,20 +130,29 @@ def _limit(
 
     None where an interval is by neither, or where no turn sorts those that show which it is by.
     """
-    wrong, exact = list[Array](), list[Array]()
+    wrong, exact, both = list[Array](), list[Array](), list[Array]()
     for run, right in plain:
         made, turns = _sound(run, by, series, c), _turns(run)
-        if not np.all(made | right):
-            return None
         wrong.append(turns[made & ~right])
         exact.append(turns[right & ~made])
+        if not np.all(made | right):
+            if run.sweep.every == 1:
+                return None
+            both.append(_between_samples(run)[:, ~(made | right)])
     one, other = np.concatenate(wrong), np.concatenate(exact)
+    mixed = np.concatenate(both, axis=1) if both else np.zeros((2, 0))
     if len(one) < LEAST:
         return None
     if not len(other):  # a series that is too short at every turn is a scheme of its own
-        return "" if series.wrong is not None else None
+        return "" if series.wrong is not None and not mixed.size else None
     for side, low, high in (("below", one, other), ("above", other, one)):
         least, most = float(np.max(low)), float(np.min(high))
-        if least < most:
+        if least < most and np.all((mixed[0] < most) & (mixed[1] > least)):
             return f", where the turn is {side} a limit between {limits(least, most, 'rad')}"
     return None
+
+
+def _between_samples(run: KeptRun) -> Array:
+    """(2, m) rad: the least and the largest turn of a step in each interval, by its ends."""
+    turns = norm(run.state.angular_velocity) * run.sweep.timestep
+    return np.stack((np.minimum(turns[1:], turns[:-1]), np.maximum(turns[1:], turns[:-1])))
