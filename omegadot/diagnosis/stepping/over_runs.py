@@ -11,6 +11,7 @@ from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
 from omegadot.diagnosis.stepping.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
+from omegadot.diagnosis.stepping.limits_over_runs import limit_causes
 from omegadot.diagnosis.stepping.old_operands import old_operands
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.share_laws import laws_of
@@ -59,7 +60,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         declared = integrator.scheme is not None
         if by is None:
             return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
-        found = length_causes(by, runs)
+        found = either(limit_causes(by, runs)) or length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         found = found or stage_slips(integrator, by, chosen)
         found = found or exponential_causes(by, runs)
