@@ -16,6 +16,7 @@ from omegadot.diagnosis.stepping.old_operands import old_operands
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.share_laws import laws_of
 from omegadot.diagnosis.stepping.share_points import points_of
+from omegadot.diagnosis.stepping.skipped_steps import skipped_steps
 from omegadot.diagnosis.stepping.solved import solved_causes
 from omegadot.diagnosis.stepping.stage_slips import slips_in_stages, stage_slips
 from omegadot.diagnosis.wording.kinds import either
@@ -60,7 +61,8 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         declared = integrator.scheme is not None
         if by is None:
             return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
-        found = either(limit_causes(by, runs)) or length_causes(by, runs)
+        found = either(limit_causes(by, runs)) or skipped_steps(by, runs)
+        found = found or length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         found = found or stage_slips(integrator, by, chosen)
         found = found or exponential_causes(by, runs)
