@@ -104,6 +104,14 @@ class IntegratorCauses:
             own = [law] if law else own
         return own if any(map(is_named, own)) else together or own
 
+    def outgrown(self, name: str) -> bool:
+        """Whether what makes the steps of another scenario makes the runs here, too fast to see."""
+        steps = self.steps
+        if steps is None or self._kept.again:
+            return False
+        with np.errstate(all="ignore"):
+            return self._in_steps.outgrown(steps, name)
+
     def _where(self, text: str) -> str:
         """A cause in every step, with the scenarios on which alone it acts."""
         places, key = self._over.places, (text, len(self._over.kept))
