@@ -181,6 +181,10 @@ class CaseCauses:
         alone = failed == {("equation", siblings.METRIC)}
         return alone and one is not None and self._siblings.follow(self._case, one)
 
+    def outgrown(self, integrator: str, name: str) -> bool:
+        """Whether the cause on another scenario makes the runs here, and outgrows their steps."""
+        return not self._explains_runs and self._integrators[integrator].outgrown(name)
+
     def _has(self, name: str, source: str) -> bool:
         return source in self._across.scenes[name].evidence
 

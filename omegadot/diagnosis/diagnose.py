@@ -97,8 +97,10 @@ class Causes:
             if other
         }
         own = self._cases[engine][case]
-        for name, other in others.items() if integrator is None and not text else ():
-            if is_named(other) and own.siblings_follow(name):
+        for name, other in others.items() if integrator is not None or not text else ():
+            if is_named(other) and (
+                own.siblings_follow(name) if integrator is None else own.outgrown(integrator, name)
+            ):
                 return other
         if integrator is not None:
             key = (engine, case, integrator)

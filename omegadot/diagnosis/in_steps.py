@@ -10,7 +10,7 @@ import numpy as np
 from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.equations.wrong_equation import known_difference
-from omegadot.diagnosis.kept_case import KeptCase
+from omegadot.diagnosis.kept_case import KeptCase, source_of
 from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.stepping.follows import Followed
 from omegadot.diagnosis.stepping.jumps import STOPPED, jump_cause, jumps
@@ -155,6 +155,24 @@ class StepCauses:
         forward = self._across.scenes[self._kept.name].evidence.get(FORWARD)
         whole = forward is not None and bool(np.all(forward.sound))
         return f"{seen or either}{WHOLE if whole else ''}"
+
+    def outgrown(self, steps: VanishingSteps, name: str) -> bool:
+        """Whether what makes the steps of another scenario outgrows those of this one.
+
+        They show nothing then, and the steps of another integrator have it here, by its own number.
+        """
+        scenes, own, here = self._across.scenes, self._kept.source, self._kept.name
+        evidence, elsewhere = scenes[here].evidence, scenes[name].evidence
+        if own not in evidence or evidence[own].clear or own not in elsewhere:
+            return False
+        named = bool(self._across.cause(name, own)) and elsewhere[own].clear
+        for source in evidence if named else ():
+            if source == own or not source.startswith(source_of("")):
+                continue
+            one = self._across.chosen(here, source)
+            if one is not None and one.fitting(elsewhere[own]) is not None:
+                return outruns(one, steps)
+        return False
 
     def known(self, steps: VanishingSteps) -> list[str]:
         """What is known of the steps' equation where nothing fits."""

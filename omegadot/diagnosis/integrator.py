@@ -113,6 +113,14 @@ class IntegratorCauses:
         with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
             return makes_runs(text, self._integrator, self._over.kept, self._case.name)
 
+    def outgrown(self, name: str) -> bool:
+        """Whether what makes the steps of another scenario makes the runs here, too fast to see."""
+        steps = self.steps
+        if steps is None or self._kept.again:
+            return False
+        with np.errstate(all="ignore"):
+            return self._in_steps.outgrown(steps, name)
+
     def _where(self, text: str) -> str:
         """A cause in every step, with the scenarios on which alone it acts."""
         places, key = self._over.places, (text, len(self._over.kept))

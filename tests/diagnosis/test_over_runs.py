@@ -110,6 +110,13 @@ def test_how_a_load_goes_over_a_run_is_named(share: Share, phrase: str) -> None:
         (lambda h: 1.0 / round(1.0 / h), "rounded to a whole number of steps in a second"),
         (lambda h: h * (1.0 + h), "by another part at each step size"),
         (lambda h: 1.01 * h, ""),
+        (lambda h: min(h, 0.0101), "of a step is limited to 0.0101 s, and the clock goes on as"),
+        (lambda h: max(h, 0.0101), "the length of a step is held above 0.0101 s"),
+        (lambda h: 0.0101, "the length of a step is 0.0101 s, whatever was requested"),
+        (lambda h: 0.0007 * round(h / 0.0007), "of a step is rounded to a multiple of 0.0007 s"),
+        (lambda h: 0.0007 * max(1, int(h / 0.0007)), "is cut off to a multiple of 0.0007 s"),
+        (lambda h: round(h, 3), "the length of a step is rounded to 3 decimals"),
+        (lambda h: h + 0.0003, "0.0003 s is added to the length of a step"),
     ],
 )
 def test_steps_of_another_length_in_each_run_are_named(
@@ -122,7 +129,7 @@ def test_steps_of_another_length_in_each_run_are_named(
     ) -> tuple[Array, Array]:
         return euler(motion, q, v, length(h), np.zeros(3))
 
-    found = causes(step, plans=((0.02, 1), (0.009, 2), (0.0123, 1)))
+    found = causes(step, plans=((0.0201, 1), (0.00903, 2), (0.0123, 1), (0.0053, 1)))
     assert phrase in found[0] if phrase else found == []
 
 

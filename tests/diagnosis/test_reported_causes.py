@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -17,7 +18,7 @@ from omegadot.diagnosis.reported.requests import again_cause, place_cause
 from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
 from omegadot.diagnosis.stepping.slips import OF_SCHEME, slipped
 from omegadot.diagnosis.wording.conditions import only_where
-from omegadot.diagnosis.wording.kinds import agreed, beside_others, kind_of
+from omegadot.diagnosis.wording.kinds import agreed, beside_others, is_fact, kind_of
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.rows import Row
@@ -84,6 +85,37 @@ def test_a_factor_of_the_clock_is_one_of_every_run() -> None:
     assert clock_of_runs([fast, (fine.times, fine)], [0], EPS) == (seen,)
     assert seen.startswith("times are off by up to")
     assert clock_of_runs([right], [0], EPS) == ()
+
+
+@pytest.mark.parametrize(
+    ("clock", "text"),
+    [
+        (lambda t: float(f"{t:.6g}"), "rounded to 6 significant digits"),
+        (lambda t: round(t, 4), "rounded to 4 decimals"),
+        (lambda t: round(t, 3), "rounded to milliseconds"),
+        (lambda t: np.floor(t * 1e3) / 1e3, "cut off to milliseconds"),
+        (lambda t: np.round(t * 60) / 60, "rounded to ticks of 1/60 s"),
+        (lambda t: t + 1e-6 * np.cos(1e3 * t), ""),
+    ],
+)
+def test_how_a_clock_is_rounded_is_named(clock: Callable[[float], float], text: str) -> None:
+    """Caught: decimals taken for significant digits, and any small error for a rounding."""
+    every = (SWEEP, Sweep(SWEEP.timestep / 2.0, 80, 8), Sweep(7.0 * SWEEP.timestep, 60, 1))
+    runs = [(np.array(list(map(clock, sweep.times))), sweep) for sweep in every]
+    *found, seen = clock_of_runs(runs, [0, 1], EPS)
+    assert found == [f"the clock is {text}"] * bool(text)
+    assert is_fact(seen)
+    # of which one run is not rounded
+    assert clock_of_runs([*runs, (every[0].times, every[0])], [0, 1], EPS) == (seen,)
+
+
+def test_a_rounding_of_the_clock_is_the_one_of_most_scenarios() -> None:
+    """Times below 10 s have five decimals and six digits, or as many as they have decimals."""
+    digits, decimals = (
+        f"the clock is rounded to {x}" for x in ("6 significant digits", "5 decimals")
+    )
+    over = {"one": ([digits, decimals], True), "other": ([digits], True)}
+    assert agreed([digits, decimals], over) == [digits]
 
 
 def test_a_factor_of_the_clock_is_one_of_every_scenario() -> None:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from omegadot.diagnosis.reported.clock_roundings import roundings_of
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.gates.case import Sweep
 from omegadot.reference_impl.system import Array
@@ -14,6 +15,7 @@ from omegadot.written import written
 UNITS = {1e3: "milliseconds", 1e6: "microseconds", 1e9: "nanoseconds"}
 GRIDS = {1e-3: "milliseconds", 1e-6: "microseconds", 1e-9: "nanoseconds"}
 SAME = 1e-9  # relative, of a factor that is looked for
+COARSE = ("times are off by", "the times are whole")
 FACTORS = ("every time is too", "every time is scaled by")
 EPS_SINGLE = float(np.finfo(np.float32).eps)
 
@@ -24,7 +26,8 @@ def clock_of_runs(
     """What is wrong with the clock of the runs of one integrator on a scenario; () where nothing.
 
     runs: times as reported.  failed: the places of those that fail a gate. A factor is one of every
-    run; after it what is seen of the first of these, which holds where another scenario has none.
+    run, and so is a rounding; after it what is seen of the first of these, which holds where
+    another scenario has none.
     """
     for place in failed:
         text = clock_cause(*runs[place], eps)
@@ -33,7 +36,8 @@ def clock_of_runs(
             same = all(_goes_by(ratio, *run, eps) for run in runs)
             return (*[text] * same, _off(time - sweep.times, sweep))
         if text:
-            return (text,)
+            coarse = text.startswith(COARSE)
+            return (*(roundings_of(runs, eps) if coarse else ()), text)
     return ()
 
 

@@ -11,10 +11,12 @@ from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
 from omegadot.diagnosis.stepping.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
+from omegadot.diagnosis.stepping.limits_over_runs import limit_causes
 from omegadot.diagnosis.stepping.old_operands import old_operands
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.share_laws import laws_of
 from omegadot.diagnosis.stepping.share_points import points_of
+from omegadot.diagnosis.stepping.skipped_steps import skipped_steps
 from omegadot.diagnosis.stepping.solved import solved_causes
 from omegadot.diagnosis.stepping.stage_slips import slips_in_stages, stage_slips
 from omegadot.diagnosis.stepping.whole_substeps import substeps_of_runs
@@ -60,7 +62,8 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         declared = integrator.scheme is not None
         if by is None:
             return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
-        found = substeps_of_runs(integrator, by, chosen) or length_causes(by, runs)
+        found = substeps_of_runs(integrator, by, chosen) or either(limit_causes(by, runs))
+        found = found or skipped_steps(by, runs) or length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         found = found or stage_slips(integrator, by, chosen)
         found = found or exponential_causes(by, runs)

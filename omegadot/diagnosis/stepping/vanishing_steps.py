@@ -63,8 +63,8 @@ class VanishingSteps:
     @property
     def evidence(self) -> Evidence:
         """omega-dot and the linear acceleration that the steps follow."""
-        angular, angular_bound = better(self.rates["omega"])
-        linear, linear_bound = better(self.rates["linear_momentum"])
+        angular, angular_bound = within_range(self.rates["omega"])
+        linear, linear_bound = within_range(self.rates["linear_momentum"])
         if self.system.load.pivot is not None and not np.all(stays_in_place(self, self.start)):
             linear_bound = np.full_like(linear_bound, np.inf)  # placed by another pivot
         # A wrong rate rounds as well; the bound of the right one, which may be zero, leaves it out.
@@ -206,6 +206,16 @@ def better(limit: Limit) -> tuple[Array, Array]:
     best = np.argmin(bound, axis=0)
     places = np.arange(bound.shape[1])
     return limit.found[best, places], limit.bound[best, places]
+
+
+def within_range(limit: Limit) -> tuple[Array, Array]:
+    """The same, where a size can be formed of it; else nothing is known, and the due rate stands.
+
+    Where a wrong term outgrows what steps are short for, its powers leave the range of numbers.
+    """
+    found, bound = better(limit)
+    beyond = np.isfinite(found).all(-1) & ~np.isfinite(norm(found))
+    return np.where(beyond[:, None], limit.expected, found), np.where(beyond, np.inf, bound)
 
 
 def common_factor(rates: dict[str, Limit]) -> float | None:

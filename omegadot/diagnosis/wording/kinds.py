@@ -36,7 +36,10 @@ OF_ONE_RUN = (
 AT_STEPS = ", at steps of"
 EITHER, OR = "either ", ", or "
 # One number in every run, or it is another cause.
-CONSTANTS = ("low-pass", "it is filtered", "every time is too", "every time is scaled by")
+CONSTANTS = (
+    *("low-pass", "it is filtered", "every time is too", "every time is scaled by"),
+    *("the clock is rounded to", "the clock is cut off to"),
+)
 SAME = 0.01  # relative, of such a number; it has three digits
 MOST_NAMED = 3  # between which nothing decides
 SHARE = 0.5  # of the runs that were looked at, at least, a cause must explain
