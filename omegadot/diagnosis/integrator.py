@@ -95,6 +95,9 @@ class IntegratorCauses:
         if asleep and not self._kept.again:
             return [asleep]
         failing = self._over.fails[self._case.name] and not self._kept.again
+        begins = self._over.begins_at(self._integrator, self._case.name) if failing else ""
+        if begins:
+            return [begins]
         together = self._over.together(self._integrator) if failing else []
         if any(map(is_named, together)):
             return together

@@ -103,6 +103,7 @@ def _steps(
     tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
     stepped = State(**answer.result)
     steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
+    over.steps[case.name], over.given[case.name] = steps, case.initial
     over.stays_below[case.name] = steps.stays_below
     if beginning is not None and not steps.sound:
         over.keeps_pace[case.name] = keeps_pace(beginning, steps)

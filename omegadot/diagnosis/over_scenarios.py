@@ -21,7 +21,10 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 from omegadot.diagnosis.stepping.rests import Rests, sleep_law
+from omegadot.diagnosis.stepping.starts import Starts, other_start
+from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import is_named
+from omegadot.reference_impl.system import State
 from omegadot.written import written
 
 
@@ -38,7 +41,8 @@ class OverScenarios:
     angle in rad first steps turn the body, and whether later ones are seen not to.  rests: at what
     states the body is put to rest.  places: causes in every step, with where they act.  substeps:
     in which of these a load acts, of causes that scale it.  onsets: where failed runs begin to be
-    wrong that are sound until then.
+    wrong that are sound until then.  steps and given: first steps from many states, as they vanish,
+    and the state that runs are given.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -55,9 +59,21 @@ class OverScenarios:
     places: dict[tuple[str, int], str] = field(default_factory=dict)
     substeps: dict[tuple[str, int], str] = field(default_factory=dict)
     onsets: dict[str, list[Onset]] = field(default_factory=dict)
+    steps: dict[str, VanishingSteps] = field(default_factory=dict)
+    given: dict[str, State] = field(default_factory=dict)
+    _starts: tuple[tuple[int, int], Starts | None] = ((0, 0), None)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool] = (0, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
+
+    def begins_at(self, integrator: Integrator, name: str) -> str:
+        """At which other state all runs begin, where that makes those of this scenario; else ""."""
+        count = (len(self.steps), len(self.kept))
+        if self._starts[0] != count:
+            how = (self.steps, self.given, self.kept)
+            self._starts = count, other_start(integrator, *how)
+        found = self._starts[1]
+        return found.statement if found is not None and name in found.names else ""
 
     def together(self, integrator: Integrator) -> list[str]:
         """What makes all runs of the integrator that have been kept; none where none does."""
