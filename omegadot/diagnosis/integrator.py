@@ -96,8 +96,10 @@ class IntegratorCauses:
             return [asleep]
         failing = self._over.fails[self._case.name] and not self._kept.again
         begins = self._over.begins_at(self._integrator, self._case.name) if failing else ""
-        if begins:
-            return [begins]
+        fails = self._over.fails[self._case.name]
+        other = begins or (self._over.ends_at(self._integrator, self._case.name) if fails else "")
+        if other:
+            return [other]
         together = self._over.together(self._integrator) if failing else []
         if any(map(is_named, together)):
             return together

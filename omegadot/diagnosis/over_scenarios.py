@@ -21,6 +21,7 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 from omegadot.diagnosis.stepping.rests import Rests, sleep_law
+from omegadot.diagnosis.stepping.run_ends import Ends, RunEnd, other_ends
 from omegadot.diagnosis.stepping.starts import Starts, other_start
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import is_named
@@ -42,7 +43,7 @@ class OverScenarios:
     states the body is put to rest.  places: causes in every step, with where they act.  substeps:
     in which of these a load acts, of causes that scale it.  onsets: where failed runs begin to be
     wrong that are sound until then.  steps and given: first steps from many states, as they vanish,
-    and the state that runs are given.
+    and the state that runs are given.  ends: the last two samples of every run.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -61,6 +62,8 @@ class OverScenarios:
     onsets: dict[str, list[Onset]] = field(default_factory=dict)
     steps: dict[str, VanishingSteps] = field(default_factory=dict)
     given: dict[str, State] = field(default_factory=dict)
+    ends: list[RunEnd] = field(default_factory=list)
+    _ends: tuple[int, Ends | None] = (0, None)
     _starts: tuple[tuple[int, int], Starts | None] = ((0, 0), None)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool] = (0, False)
@@ -73,6 +76,13 @@ class OverScenarios:
             how = (self.steps, self.given, self.kept)
             self._starts = count, other_start(integrator, *how)
         found = self._starts[1]
+        return found.statement if found is not None and name in found.names else ""
+
+    def ends_at(self, integrator: Integrator, name: str) -> str:
+        """Which other step the last sample of all runs is of, where that explains a scenario."""
+        if self._ends[0] != len(self.ends):
+            self._ends = len(self.ends), other_ends(integrator, self.ends, self.kept)
+        found = self._ends[1]
         return found.statement if found is not None and name in found.names else ""
 
     def together(self, integrator: Integrator) -> list[str]:
