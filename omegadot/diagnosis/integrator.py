@@ -78,7 +78,7 @@ class IntegratorCauses:
             seen = known_of_runs(self._truth, self._result, failed, shortest)
             if seen is not None:
                 self._over.seen[self._case.name] = seen
-            if self._kept.again or not self._over.likely(self._integrator):
+            if not self._over.likely(self._integrator, bool(self._kept.again)):
                 found = self._of_case()
                 if any(SOUND_UNTIL in text for text in found):
                     how = (self._case, self._truth, self._result, self._runs)

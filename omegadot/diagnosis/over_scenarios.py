@@ -66,24 +66,29 @@ class OverScenarios:
     _ends: tuple[int, Ends | None] = (0, None)
     _starts: tuple[tuple[int, int], Starts | None] = ((0, 0), None)
     _together: tuple[int, list[str]] = (0, [])
-    _likely: tuple[int, bool] = (0, False)
+    _likely: tuple[int, bool, bool] = (0, False, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
 
     def begins_at(self, integrator: Integrator, name: str) -> str:
         """At which other state all runs begin, where that makes those of this scenario; else ""."""
+        found = self._other_start(integrator)
+        return found.statement if found is not None and name in found.names else ""
+
+    def _other_start(self, integrator: Integrator) -> Starts | None:
         count = (len(self.steps), len(self.kept))
         if self._starts[0] != count:
-            how = (self.steps, self.given, self.kept)
-            self._starts = count, other_start(integrator, *how)
-        found = self._starts[1]
-        return found.statement if found is not None and name in found.names else ""
+            self._starts = count, other_start(integrator, self.steps, self.given, self.kept)
+        return self._starts[1]
 
     def ends_at(self, integrator: Integrator, name: str) -> str:
         """Which other step the last sample of all runs is of, where that explains a scenario."""
+        found = self._other_ends(integrator)
+        return found.statement if found is not None and name in found.names else ""
+
+    def _other_ends(self, integrator: Integrator) -> Ends | None:
         if self._ends[0] != len(self.ends):
             self._ends = len(self.ends), other_ends(integrator, self.ends, self.kept)
-        found = self._ends[1]
-        return found.statement if found is not None and name in found.names else ""
+        return self._ends[1]
 
     def together(self, integrator: Integrator) -> list[str]:
         """What makes all runs of the integrator that have been kept; none where none does."""
@@ -91,16 +96,22 @@ class OverScenarios:
             self._together = len(self.kept), causes_over_runs(integrator, self.kept)
         return self._together[1]
 
-    def likely(self, integrator: Integrator) -> bool:
+    def likely(self, integrator: Integrator, again: bool) -> bool:
         """Whether the runs that have been kept so far have a cause together.
 
         It is looked for again each time that twice as many scenarios fail.
+        again: whether two answers to one request differ, which but for their ends has another.
         """
         failing = len({run.name for run in self.kept if run.fails}).bit_length()
         if self._likely[0] != failing:
-            found = causes_over_runs(integrator, self.kept) if failing > 1 else []
-            self._likely = failing, any(map(is_named, found))
-        return self._likely[1]
+            self._likely = failing, False, False
+            if failing > 1:
+                ended = self._other_ends(integrator) is not None
+                known = ended or self._other_start(integrator) is not None
+                known = known or any(map(is_named, causes_over_runs(integrator, self.kept)))
+                self._likely = failing, known, ended
+        _, found, ended = self._likely
+        return ended if again else found
 
     @property
     def begins(self) -> str:
