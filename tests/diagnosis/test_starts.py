@@ -29,13 +29,18 @@ from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import State
 
-CASES = (
+MADE = (
     case("free", {}),
     case("falling", {"gravity": GRAVITY}),
     case("driven", {"torque": BODY_TORQUE}),
     case("driven-in-world", {"torque": WORLD_TORQUE}),
     case("top", {"gravity": GRAVITY, "pivot": PIVOT}),
     case("top-driven", {"pivot": PIVOT, "torque": WORLD_TORQUE, "gravity": GRAVITY}),
+)
+# Every second one begins at a quaternion whose scalar part is negative.
+CASES = tuple(
+    replace(one, initial=replace(one.initial, orientation=one.initial.orientation * signs))
+    for one, signs in zip(MADE, 3 * ([1.0, 1.0, 1.0, 1.0], [-1.0, 1.0, 1.0, 1.0]), strict=True)
 )
 SCHEME, H, STEPS = "semi-implicit-euler", 0.02, 12
 Change = Callable[[State], State]
@@ -97,6 +102,12 @@ def conjugated_in_part(state: State) -> State:
     return replace(state, orientation=other)
 
 
+def unsigned(state: State) -> State:
+    """The scalar part of the quaternion by its size."""
+    w = np.abs(state.orientation[..., :1])
+    return replace(state, orientation=np.concatenate((w, state.orientation[..., 1:]), axis=-1))
+
+
 @pytest.mark.parametrize("log_given", [False, True])
 @pytest.mark.parametrize(
     ("start", "text"),
@@ -110,6 +121,14 @@ def conjugated_in_part(state: State) -> State:
         (
             lambda s: replace(s, linear_velocity=s.linear_velocity[..., [0, 2, 1]]),
             "with y and z of the linear velocity swapped",
+        ),
+        (
+            lambda s: replace(s, orientation=s.orientation[..., [0, 1, 3, 2]]),
+            "with y and z of the quaternion swapped",
+        ),
+        (
+            unsigned,
+            "with the quaternion's scalar part without its sign",
         ),
         (lambda s: replace(s, angular_velocity=-s.angular_velocity), "with omega reversed"),
         (

@@ -61,6 +61,7 @@ def other_starts(name: str, given: State, begins: State) -> Iterator[OtherStart]
 def _attitudes() -> Iterator[OtherStart]:
     of = "with the quaternion"
     yield OtherStart(f"{of} conjugated", lambda s: conjugate(s.orientation))
+    yield OtherStart(f"{of}'s scalar part without its sign", _unsigned)
     yield OtherStart(
         "at the identity, whatever attitude it is given",
         lambda s: 0.0 * s.orientation + np.array([1.0, 0.0, 0.0, 0.0]),
@@ -74,13 +75,17 @@ def _attitudes() -> Iterator[OtherStart]:
             text = f"turned by half a turn about the {axes}'s {axis} axis"
             yield OtherStart(text, _by_turn(turn, world))
     for order, signs in signed_orders():
-        text = f"with the quaternion's vector part another: {order_text(order, signs)}"
 
         def made(s: State, order: list[int] = order, signs: Array = signs) -> Array:
             q = s.orientation
             return np.concatenate((q[..., :1], signs * q[..., 1:][..., order]), axis=-1)
 
-        yield OtherStart(text, made)
+        yield OtherStart(_reordered("the quaternion", order, signs), made)
+
+
+def _unsigned(state: State) -> Array:
+    q = state.orientation
+    return np.concatenate((np.abs(q[..., :1]), q[..., 1:]), axis=-1)
 
 
 def _rolled(shift: int) -> Made:
@@ -124,7 +129,7 @@ def _turned(given: Array, begins: Array) -> Iterator[OtherStart]:
 
 def _vectors(name: str, what: str) -> Iterator[OtherStart]:
     yield OtherStart(f"with {what} zero", lambda s: 0.0 * getattr(s, name))
-    for order, signs in sorted(signed_orders(), key=lambda one: -_plainness(*one)):
+    for order, signs in _orders():
 
         def made(s: State, order: list[int] = order, signs: Array = signs) -> Array:
             return np.asarray(signs * getattr(s, name)[..., order])
@@ -136,6 +141,11 @@ def _vectors(name: str, what: str) -> Iterator[OtherStart]:
             return turn(s.orientation, getattr(s, name))
 
         yield OtherStart(f"with {what} turned by {text}", turned)
+
+
+def _orders() -> list[tuple[list[int], Array]]:
+    """Those that change the fewest axes first."""
+    return sorted(signed_orders(), key=lambda one: -_plainness(*one))
 
 
 def _plainness(order: Sequence[int], signs: Array) -> int:
@@ -151,7 +161,7 @@ def _reordered(what: str, order: list[int], signs: Array) -> str:
         return f"with {what} reversed"
     if not moved and np.count_nonzero(signs < 0.0) == 1:
         return f"with the sign of {what}'s {'xyz'[int(np.argmin(signs))]} changed"
-    return f"with the axes of {what.removeprefix('the ')} others: {order_text(order, signs)}"
+    return f"with {what} in other axes: {order_text(order, signs)}"
 
 
 def _by(name: str, k: float) -> Made:
