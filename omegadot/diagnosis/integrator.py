@@ -82,7 +82,7 @@ class IntegratorCauses:
             seen = known_of_runs(self._truth, self._result, failed, shortest)
             if seen is not None:
                 self._over.seen[self._case.name] = seen
-            if self._kept.again or not self._over.likely(self._integrator):
+            if not self._over.likely(self._integrator, bool(self._kept.again)):
                 found = self._of_case()
                 if any(SOUND_UNTIL in text for text in found):
                     how = (self._case, self._truth, self._result, self._runs)
@@ -99,6 +99,11 @@ class IntegratorCauses:
         if asleep and not self._kept.again:
             return [asleep]
         failing = self._over.fails[self._case.name] and not self._kept.again
+        begins = self._over.begins_at(self._integrator, self._case.name) if failing else ""
+        fails = self._over.fails[self._case.name]
+        other = begins or (self._over.ends_at(self._integrator, self._case.name) if fails else "")
+        if other:
+            return [other]
         together = self._over.together(self._integrator) if failing else []
         if any(map(is_named, together)):
             return together

@@ -12,8 +12,9 @@ from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.reported.run import reported_run
 from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, begins_turned, keeps_pace
 from omegadot.diagnosis.stepping.jumps import first_turn
-from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
+from omegadot.diagnosis.stepping.kept_run import kept_run
 from omegadot.diagnosis.stepping.rests import RunWithRests, rests_of
+from omegadot.diagnosis.stepping.run_ends import run_end
 from omegadot.diagnosis.stepping.step_orders import order_lost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
@@ -27,7 +28,7 @@ from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.reference_impl.schemes import SCHEMES
-from omegadot.reference_impl.system import State, System
+from omegadot.reference_impl.system import Array, State, System
 
 OBSERVED = "observed_order"
 
@@ -75,7 +76,10 @@ def kept_case(
     if beginning is not None:
         over.beginnings[case.name] = beginning
     over.fails[case.name] = any(run.fails for run in runs)
-    over.kept += _kept_runs(case.name, truth, result, runs)
+    for state, growth, run in _whole_runs(truth, result, runs):
+        how = (case.name, truth, run.sweep, state, growth, run.fails)
+        over.kept += filter(None, (kept_run(*how),))
+        over.ends += filter(None, (run_end(*how),))
     failed = (row for run in runs for row in run.rows if row.verdict == "fail")
     turned_wrong = any(row.channel == "attitude" for row in failed)
     brief = all(len(run.sweep.times) < LEAST_SAMPLES for run in runs)
@@ -103,6 +107,7 @@ def _steps(
     tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
     stepped = State(**answer.result)
     steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
+    over.steps[case.name], over.given[case.name] = steps, case.initial
     over.stays_below[case.name] = steps.stays_below
     if beginning is not None and not steps.sound:
         over.keeps_pace[case.name] = keeps_pace(beginning, steps)
@@ -146,17 +151,14 @@ def _has_past(runs: Sequence[JudgedRun]) -> bool:
     return any(not row.value <= 1.0 for row in rows)
 
 
-def _kept_runs(
-    name: str, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
-) -> Iterator[KeptRun]:
-    """The first samples of the runs that were answered in full, in double precision."""
+def _whole_runs(
+    truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> Iterator[tuple[State, Array, JudgedRun]]:
+    """The runs that were answered in full, in double precision, with how far rounding may grow."""
     for run in runs if truth.in_precision(result.precision) is truth else ():
         answer = result.runs.get((run.integrator.name, run.sweep.knob))
         if answer is not None and answer.ok and len(answer.result["time"]) == len(run.sweep.times):
-            growth = truth.growth[truth.rows(run.sweep)]
-            state = State(**answer.result["state"])
-            one = kept_run(name, truth, run.sweep, state, growth, run.fails)
-            yield from () if one is None else (one,)
+            yield State(**answer.result["state"]), truth.growth[truth.rows(run.sweep)], run
 
 
 def _with_rests(

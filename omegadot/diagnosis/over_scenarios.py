@@ -21,7 +21,11 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 from omegadot.diagnosis.stepping.rests import Rests, sleep_law
+from omegadot.diagnosis.stepping.run_ends import Ends, RunEnd, other_ends
+from omegadot.diagnosis.stepping.starts import Starts, other_start
+from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import is_named
+from omegadot.reference_impl.system import State
 from omegadot.written import written
 
 
@@ -38,7 +42,8 @@ class OverScenarios:
     angle in rad first steps turn the body, and whether later ones are seen not to.  rests: at what
     states the body is put to rest.  places: causes in every step, with where they act.  substeps:
     in which of these a load acts, of causes that scale it.  onsets: where failed runs begin to be
-    wrong that are sound until then.
+    wrong that are sound until then.  steps and given: first steps from many states, as they vanish,
+    and the state that runs are given.  ends: the last two samples of every run.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -55,9 +60,35 @@ class OverScenarios:
     places: dict[tuple[str, int], str] = field(default_factory=dict)
     substeps: dict[tuple[str, int], str] = field(default_factory=dict)
     onsets: dict[str, list[Onset]] = field(default_factory=dict)
+    steps: dict[str, VanishingSteps] = field(default_factory=dict)
+    given: dict[str, State] = field(default_factory=dict)
+    ends: list[RunEnd] = field(default_factory=list)
+    _ends: tuple[int, Ends | None] = (0, None)
+    _starts: tuple[tuple[int, int], Starts | None] = ((0, 0), None)
     _together: tuple[int, list[str]] = (0, [])
-    _likely: tuple[int, bool] = (0, False)
+    _likely: tuple[int, bool, bool] = (0, False, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
+
+    def begins_at(self, integrator: Integrator, name: str) -> str:
+        """At which other state all runs begin, where that makes those of this scenario; else ""."""
+        found = self._other_start(integrator)
+        return found.statement if found is not None and name in found.names else ""
+
+    def _other_start(self, integrator: Integrator) -> Starts | None:
+        count = (len(self.steps), len(self.kept))
+        if self._starts[0] != count:
+            self._starts = count, other_start(integrator, self.steps, self.given, self.kept)
+        return self._starts[1]
+
+    def ends_at(self, integrator: Integrator, name: str) -> str:
+        """Which other step the last sample of all runs is of, where that explains a scenario."""
+        found = self._other_ends(integrator)
+        return found.statement if found is not None and name in found.names else ""
+
+    def _other_ends(self, integrator: Integrator) -> Ends | None:
+        if self._ends[0] != len(self.ends):
+            self._ends = len(self.ends), other_ends(integrator, self.ends, self.kept)
+        return self._ends[1]
 
     def together(self, integrator: Integrator) -> list[str]:
         """What makes all runs of the integrator that have been kept; none where none does."""
@@ -65,16 +96,22 @@ class OverScenarios:
             self._together = len(self.kept), causes_over_runs(integrator, self.kept)
         return self._together[1]
 
-    def likely(self, integrator: Integrator) -> bool:
+    def likely(self, integrator: Integrator, again: bool) -> bool:
         """Whether the runs that have been kept so far have a cause together.
 
         It is looked for again each time that twice as many scenarios fail.
+        again: whether two answers to one request differ, which but for their ends has another.
         """
         failing = len({run.name for run in self.kept if run.fails}).bit_length()
         if self._likely[0] != failing:
-            found = causes_over_runs(integrator, self.kept) if failing > 1 else []
-            self._likely = failing, any(map(is_named, found))
-        return self._likely[1]
+            self._likely = failing, False, False
+            if failing > 1:
+                ended = self._other_ends(integrator) is not None
+                known = ended or self._other_start(integrator) is not None
+                known = known or any(map(is_named, causes_over_runs(integrator, self.kept)))
+                self._likely = failing, known, ended
+        _, found, ended = self._likely
+        return ended if again else found
 
     @property
     def begins(self) -> str:

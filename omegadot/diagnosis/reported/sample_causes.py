@@ -54,7 +54,12 @@ def not_unit(reported: ReportedRun) -> str:
 
 
 def half_step(reported: ReportedRun) -> str:
-    """Attitude, omega or velocity, but for the start, are those of half a step before or after."""
+    """Attitude, omega or velocity, but for the start, are those of half a step before or after.
+
+    Of a run that is sound as it is none is, though what stays the same is that of any time.
+    """
+    if reported.agrees(reported.state, reported.own):
+        return ""
     h = reported.sweep.timestep
     q, w = reported.own.orientation, reported.own.angular_velocity
     rates, v = forward_dynamics(reported.case.system, reported.own), reported.own.linear_velocity

@@ -111,18 +111,27 @@ def kept_run(
     count = count if good.all() else int(np.argmin(good))
     if count < 3 or sweep.every > MOST_STEPS or sweep.accuracy is not None:
         return None
-    yardstick = truth.yardstick
-    open_ = yardstick.round_off(sweep.timestep, numbers[:count], growth[:count])
-    later = slice(1, count)
-    momentum = open_["linear_momentum"][later] * yardstick.sizes["linear_momentum"]
-    bounds = {
-        "omega": open_["omega"][later] * yardstick.rate,
-        "attitude": open_["attitude"][later],
-        "velocity": momentum / yardstick.scale.mass,
-        "position": open_["position"][later],
-    }
+    bounds = bounds_of_samples(truth, sweep, growth, slice(1, count))
     kept = State(*(np.array(f[:count]) for f in vars(state).values()))
-    return KeptRun(name, yardstick.system, sweep, sweep.times[:count], kept, bounds, fails)
+    return KeptRun(name, truth.yardstick.system, sweep, sweep.times[:count], kept, bounds, fails)
+
+
+def bounds_of_samples(
+    truth: Truth, sweep: Sweep, growth: Array, samples: slice
+) -> dict[str, Array]:
+    """Per channel in rad/s, rad, m/s and m: what rounding may do up to each of these samples.
+
+    growth: (n,), of all samples or of the first.
+    """
+    yardstick = truth.yardstick
+    open_ = yardstick.round_off(sweep.timestep, sweep.sample_steps[: len(growth)], growth)
+    momentum = open_["linear_momentum"][samples] * yardstick.sizes["linear_momentum"]
+    return {
+        "omega": open_["omega"][samples] * yardstick.rate,
+        "attitude": open_["attitude"][samples],
+        "velocity": momentum / yardstick.scale.mass,
+        "position": open_["position"][samples],
+    }
 
 
 def scheme_of(integrator: Integrator, runs: Sequence[KeptRun]) -> SchemeOf | None:

@@ -19,6 +19,7 @@ from omegadot.diagnosis.stepping.share_points import points_of
 from omegadot.diagnosis.stepping.skipped_steps import skipped_steps
 from omegadot.diagnosis.stepping.solved import solved_causes
 from omegadot.diagnosis.stepping.stage_slips import slips_in_stages, stage_slips
+from omegadot.diagnosis.stepping.tared import tared_causes
 from omegadot.diagnosis.stepping.whole_substeps import substeps_of_runs
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
@@ -65,7 +66,7 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         found = substeps_of_runs(integrator, by, chosen) or either(limit_causes(by, runs))
         found = found or skipped_steps(by, runs) or length_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
-        found = found or stage_slips(integrator, by, chosen)
+        found = found or tared_causes(by, chosen) or stage_slips(integrator, by, chosen)
         found = found or exponential_causes(by, runs)
         return found or solved_causes(by, runs, declared) or place_causes(by, runs)
 

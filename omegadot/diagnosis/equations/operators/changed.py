@@ -92,7 +92,7 @@ def changed_vectors(evidence: Evidence, steps: bool) -> list[tuple[Changed, Arra
     for operand in acting(evidence):
         if operand.reported and (steps or evidence.system.load.pivot is None):
             continue  # on a free body it is the same as omega-dot
-        inputs = FLIPS if operand.came is None and operand.unit else ()
+        inputs = FLIPS if operand.came is None and operand.unit and not operand.rounded else ()
         plain = [
             one
             for one in (*(QUATERNIONS if operand.unit == "" else VECTORS), *inputs)
@@ -104,7 +104,8 @@ def changed_vectors(evidence: Evidence, steps: bool) -> list[tuple[Changed, Arra
         close = np.all(few.shares(operand.put(few, lanes)) <= SLACK, axis=-1)
         close &= np.any(lanes, axis=(-1, -2))  # what leaves nothing is missing
         likely = [one for one, good in zip(plain, close, strict=True) if good]
-        likely += NUMBERS if operand.unit and not operand.constant else ()
+        numbered = operand.unit and not (operand.constant or operand.rounded)
+        likely += NUMBERS if numbered else ()
         fitted = [(one, one.fit(evidence)) for one in (Changed(operand, x) for x in likely)]
         found += [(one, p) for one, p in fitted if p is not None]
     return found

@@ -1,4 +1,4 @@
-"""Vectors of an equation that may be changed: its terms, what goes in, and what comes out."""
+"""What may be changed of an equation: its terms, what goes in, and what comes out."""
 
 from __future__ import annotations
 
@@ -9,20 +9,25 @@ import numpy as np
 
 from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.reference_impl.cross_product import cross
-from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
+from omegadot.reference_impl.inertia import lever, moving_inertia
+from omegadot.reference_impl.loads import (
+    applied_torque,
+    damping_torque,
+    gravity_torque,
+    weight,
+)
 from omegadot.reference_impl.motion import (
     center_of_mass_acceleration,
     forward_dynamics,
 )
-from omegadot.reference_impl.rotations import normalize, rotate_inverse
+from omegadot.reference_impl.rotations import normalize, rotate_inverse, rotation_matrix
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 
 @dataclass(frozen=True)
 class Operand:
-    """One vector, (n, 3) or (n, 4), of the right equation.
+    """One vector or matrix, (n, 3), (n, 4) or (n, 9), of the right equation.
 
     of: its values at states.  put: the accelerations with others in its place.  came: the values in
     the engine, where they follow from what was found.  constant: the same at every state of a
@@ -103,6 +108,79 @@ def _attitude(what: str, term: Callable[[System, State], Array], unit: bool = Tr
     return Operand(name, "", lambda e: e.states.orientation, put, rounded=not unit)
 
 
+def _in_term(
+    name: str,
+    of: Callable[[System, State], Array],
+    term: Callable[[System, State, Array], Array],
+    unit: str = "",
+) -> Operand:
+    """What goes into one torque, (n, ...), of which it may be rounded there alone."""
+
+    def values(e: Evidence) -> Array:
+        one = of(e.system, e.states)
+        return np.broadcast_to(one, (len(e.sound), one.shape[-1]))
+
+    def put(e: Evidence, v: Array) -> Acceleration:
+        return pushed(e, term(e.system, e.states, v) - term(e.system, e.states, values(e)))
+
+    return Operand(name, unit, values, put, rounded=True)
+
+
+def _by_matrix(vector: Array, matrix: Array) -> Array:
+    """``R^T v`` of matrices (..., 9)."""
+    return np.asarray(vector @ matrix.reshape(*matrix.shape[:-1], 3, 3))
+
+
+def _entries(_: System, states: State) -> Array:
+    return rotation_matrix(states.orientation).reshape(-1, 9)
+
+
+def _arm(system: System) -> Array:
+    return np.zeros(3) if system.load.pivot is None else np.asarray(lever(system), dtype=float)
+
+
+def _down(system: System, states: State) -> Array:
+    return rotate_inverse(states.orientation, weight(system))
+
+
+def _weighed(system: System, _: State, matrix: Array) -> Array:
+    return cross(_arm(system), _by_matrix(weight(system), matrix))
+
+
+def _twisted(system: System, _: State, matrix: Array) -> Array:
+    return _by_matrix(np.asarray(system.load.torque_world), matrix)
+
+
+IN_TERMS = (
+    _in_term("the rotation matrix in the torque of gravity", _entries, _weighed),
+    _in_term("the rotation matrix in the torque in world axes", _entries, _twisted),
+    _in_term(
+        "the rotation matrix in all loads",
+        _entries,
+        lambda s, x, m: _weighed(s, x, m) + _twisted(s, x, m),
+    ),
+    _in_term(
+        "the lever in the torque of gravity",
+        lambda s, x: _arm(s),
+        lambda s, x, v: cross(v, _down(s, x)),
+        "m",
+    ),
+    _in_term(
+        "the weight in the torque of gravity",
+        lambda s, x: weight(s),
+        lambda s, x, v: cross(_arm(s), rotate_inverse(x.orientation, v)),
+        "N",
+    ),
+    _in_term("the weight, taken to body axes,", _down, lambda s, x, v: cross(_arm(s), v), "N"),
+    _in_term(
+        "I omega in the gyroscopic term",
+        lambda s, x: apply(moving_inertia(s), x.angular_velocity),
+        lambda s, x, v: -cross(x.angular_velocity, v),
+        "kg m^2/s",
+    ),
+)
+
+
 def _whole_omega(e: Evidence, w: Array) -> Acceleration:
     return forward_dynamics(e.system, replace(e.states, angular_velocity=w))
 
@@ -151,6 +229,7 @@ OPERANDS = (
         lambda e, v: replace(e.true, linear=v),
         lambda e: e.found.linear,
     ),
+    *IN_TERMS,
 )
 
 
@@ -161,6 +240,11 @@ def acting(evidence: Evidence) -> Iterator[Operand]:
         values = one.of(evidence)
         torque = one.unit == "N m"
         if not np.any(values) or (torque and any(np.array_equal(values, x) for x in seen)):
+            continue
+        if one in IN_TERMS:
+            with_none = one.put(evidence, 0.0 * values).angular
+            if not np.array_equal(with_none, evidence.true.angular):
+                yield one
             continue
         if one.unit == "" and np.array_equal(
             one.put(evidence, 0.0 * values + [0.5, 0.5, -0.5, 0.5]).angular, evidence.true.angular

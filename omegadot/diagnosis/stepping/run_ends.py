@@ -1,0 +1,125 @@
+"""Runs whose last sample is the state of another step than its time, all others being right."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.kept_run import (
+    CHANNELS,
+    MOST_STEPS,
+    SLACK,
+    KeptRun,
+    SchemeOf,
+    bounds_of_samples,
+    scheme_of,
+)
+from omegadot.gates.bounds.scales import norm
+from omegadot.gates.case import Sweep
+from omegadot.gates.truth import Truth
+from omegadot.reference_impl.rotations import normalize, rotation_between
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import Array, State, System
+
+FURTHER = "the last sample of every run is the state one step further than its time"
+MISSING = "the last step is missing: the end is the state one step before"
+LEAST = 3  # runs, of two scenarios at least, whose last sample is another step's
+
+
+@dataclass(frozen=True)
+class RunEnd:
+    """The last two samples of a run (2, ...), with as many steps between them.
+
+    bounds: per channel, what rounding may do there.  fails: whether the run fails a gate.
+    """
+
+    name: str
+    system: System
+    sweep: Sweep
+    state: State
+    steps: int
+    bounds: dict[str, float]
+    fails: bool
+
+
+@dataclass(frozen=True)
+class Ends:
+    """statement: what the last sample of runs is.  names: of the scenarios that this explains."""
+
+    statement: str
+    names: frozenset[str]
+
+
+def run_end(
+    name: str, truth: Truth, sweep: Sweep, state: State, growth: Array, fails: bool
+) -> RunEnd | None:
+    """None where a sample is not finite, or too many steps lie between the two."""
+    numbers, last = sweep.sample_steps, slice(-2, None)
+    finite = all(bool(np.isfinite(f[last]).all()) for f in vars(state).values())
+    if sweep.accuracy is not None or len(numbers) < 2 or not finite:
+        return None
+    steps = int(numbers[-1] - numbers[-2])
+    if steps > MOST_STEPS:
+        return None
+    each = bounds_of_samples(truth, sweep, growth, last)
+    bounds = {channel: float(values[-1]) for channel, values in each.items()}
+    kept = State(*(np.array(f[last]) for f in vars(state).values()))
+    return RunEnd(name, truth.yardstick.system, sweep, kept, steps, bounds, fails)
+
+
+def other_ends(
+    integrator: Integrator, ends: Sequence[RunEnd], kept: Sequence[KeptRun]
+) -> Ends | None:
+    """Which other step the last sample of all runs is of; None where one is not, or none is."""
+    with np.errstate(all="ignore"):
+        by = scheme_of(integrator, kept) if any(one.fails for one in ends) else None
+        if by is None:
+            return None
+        for shift, text in ((1, FURTHER), (-1, MISSING)):
+            shown = _shown(ends, by, shift)
+            if shown:
+                return Ends(text, frozenset(shown - _wrong_before(kept, by)))
+    return None
+
+
+def _shown(ends: Sequence[RunEnd], by: SchemeOf, shift: int) -> set[str]:
+    """The scenarios that show it; none where one run contradicts it."""
+    names, count = set[str](), 0
+    # of the runs that fail those of few steps rule most out
+    for end in sorted(ends, key=lambda one: (not one.fails, one.steps)):
+        if not _is_after(end, by, end.steps + shift):
+            return set()
+        if not _is_after(end, by, end.steps):
+            names.add(end.name)
+            count += 1
+    return names if count >= LEAST and len(names) > 1 else set()
+
+
+def _is_after(end: RunEnd, by: SchemeOf, steps: int) -> bool:
+    """Whether so many steps of the scheme lead from the sample before to the last."""
+    start, came = end.state[:1], end.state[1:]
+    unit = State(**{**vars(start), "orientation": normalize(start.orientation)})
+    plan = (end.sweep.timestep, steps, max(steps, 1), by.coordinates)
+    found = step_body(by.scheme, end.system, unit, *plan)[1][-1]
+    apart = {
+        "omega": came.angular_velocity - found.angular_velocity,
+        "attitude": rotation_between(found.orientation, came.orientation),
+        "velocity": came.linear_velocity - found.linear_velocity,
+        "position": came.position - found.position,
+    }
+    return all(bool(norm(apart[c])[0] <= SLACK * end.bounds[c]) for c in CHANNELS)
+
+
+def _wrong_before(kept: Sequence[KeptRun], by: SchemeOf) -> set[str]:
+    """Scenarios of which a failed run is wrong before its last sample as well."""
+    found = set[str]()
+    for run in (run.short for run in kept if run.fails):
+        if run.name not in found:
+            whole = len(run.times) == len(run.sweep.times)
+            sound = run.sound(by)
+            if not (sound[:-1] if whole else sound).all():
+                found.add(run.name)
+    return found

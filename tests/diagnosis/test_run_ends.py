@@ -1,0 +1,75 @@
+"""Runs whose last sample alone is the state of the step after its time, or before it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, case
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.kept_run import KeptRun
+from omegadot.diagnosis.stepping.run_ends import FURTHER, MISSING, RunEnd, other_ends
+from omegadot.gates.case import Case, Sweep
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.schemes.scheme import CHANNELS
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import State
+
+CASES = (
+    case("free", {}),
+    case("driven", {"torque": BODY_TORQUE}),
+    case("top", {"gravity": GRAVITY, "pivot": PIVOT}),
+)
+SCHEME, H = "semi-implicit-euler", 0.02
+OWN = Integrator("own", SCHEME, dict.fromkeys(CHANNELS, 1))
+PLANS = ((18, 3), (17, 3), (12, 1))  # steps, and of which each one is a sample
+BOUND = 1e-11
+
+
+def run_of(one: Case, plan: tuple[int, int], shift: int) -> tuple[KeptRun, RunEnd]:
+    steps, every = plan
+    sweep = Sweep(H, steps, every)
+    _, states = step_body(SCHEMES[SCHEME], one.system, one.initial, H, steps + 1, 1)
+    numbers = sweep.sample_steps.copy()
+    numbers[-1] += shift
+    state = states[numbers]
+    count = len(numbers) - int(np.diff(sweep.sample_steps)[-1] != every)
+    names = ("omega", "attitude", "velocity", "position")
+    bounds = {c: np.full(count - 1, BOUND) for c in names}
+    last = int(np.diff(sweep.sample_steps)[-1])
+    end = RunEnd(one.name, one.system, sweep, state[-2:], last, dict.fromkeys(names, BOUND), True)
+    kept = state[:count]
+    return KeptRun(one.name, one.system, sweep, sweep.times[:count], kept, bounds, True), end
+
+
+def found(*shifts: int, spoiled: str = "") -> tuple[str, set[str]]:
+    """Of runs whose last samples are this many steps off, in turn, with one scenario spoiled."""
+    plans = [(one, plan) for one in CASES for plan in PLANS]
+    pairs = [run_of(*how, shifts[k % len(shifts)]) for k, how in enumerate(plans)]
+    kept = [pair[0] for pair in pairs]
+    for place, run in enumerate(kept):
+        if run.name == spoiled:
+            w = run.state.angular_velocity.copy()
+            w[2] += 1e-3
+            kept[place] = replace(run, state=State(**{**vars(run.state), "angular_velocity": w}))
+    ends = other_ends(OWN, [pair[1] for pair in pairs], kept)
+    return ("", set()) if ends is None else (ends.statement, set(ends.names))
+
+
+@pytest.mark.parametrize(("shift", "text"), [(1, FURTHER), (-1, MISSING)])
+def test_another_step_at_the_end_of_every_run_is_one_cause(shift: int, text: str) -> None:
+    """Caught: of an interval one step short, "the last interval is stepped in full"."""
+    assert found(shift) == (text, {"free", "driven", "top"})
+
+
+def test_what_is_not_so_of_every_run_is_not_named() -> None:
+    """Caught: an end of another step named where runs of another length are right."""
+    assert found(0) == ("", set())
+    assert found(1, 0, 0) == ("", set())
+    assert found(1, -1, 1) == ("", set())
+
+
+def test_a_scenario_that_is_wrong_before_its_end_is_left_to_other_causes() -> None:
+    assert found(1, spoiled="driven") == (FURTHER, {"free", "top"})
