@@ -44,25 +44,34 @@ class _Run:
 
 def skipped_steps(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     """Which steps of a run are not taken, or taken twice; none where all runs have no law of it."""
+    right = dict[int, Mask]()
     for more, how in KINDS.items():
-        every = _sorted(by, runs, more)
-        if len({run.name for run in every if np.any(run.shown)}) >= SCENARIOS:
-            text = _law(every, how)
-            return [text] if text else []
+        wrong, shown = list[int](), set[str]()
+        for number, run in sorted(enumerate(runs), key=lambda pair: pair[1].sweep.every):
+            if not run.fails:
+                continue
+            if number not in right:
+                right[number] = run.sound(by)
+            if not np.all(right[number]):
+                one = _sorted(by, run, more, right[number])
+                if 2 * np.count_nonzero(one.shown) < np.count_nonzero(~one.right):
+                    break  # it is wrong by something else
+                wrong.append(number)
+                shown.add(run.name)
+        else:
+            if len(shown) >= SCENARIOS:
+                every = [_sorted(by, run, more, right.get(k)) for k, run in enumerate(runs)]
+                text = _law(every, how)
+                return [text] if text else []
+            if not wrong:
+                return []
     return []
 
 
-def _sorted(by: SchemeOf, runs: Sequence[KeptRun], more: int) -> list[_Run]:
-    """All runs, or none where one is wrong by something else."""
-    found = list[_Run]()
-    for run in sorted(runs, key=lambda one: (not one.fails, one.sweep.every)):
-        first, right = run.first_steps, run.sound(by)
-        last, other = first + run.sweep.every - 1, _is_made(run, by, run.sweep.every + more)
-        one = _Run(run.name, run.sweep.timestep, first, last, right, other)
-        if 2 * np.count_nonzero(~right & ~other) > np.count_nonzero(~right):
-            return []
-        found.append(one)
-    return found
+def _sorted(by: SchemeOf, run: KeptRun, more: int, right: Mask | None) -> _Run:
+    first, other = run.first_steps, _is_made(run, by, run.sweep.every + more)
+    last, right = first + run.sweep.every - 1, run.sound(by) if right is None else right
+    return _Run(run.name, run.sweep.timestep, first, last, right, other)
 
 
 def _is_made(run: KeptRun, by: SchemeOf, count: int) -> Mask:
