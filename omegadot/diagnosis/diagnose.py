@@ -11,7 +11,7 @@ fits one scenario and is contradicted by another is not named.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -96,21 +96,28 @@ class Causes:
             for other in (self._text(engine, name, integrator),)
             if other
         }
+        same = self._same_as_others(engine, case, integrator, text, others)
+        return same or beside_others(text, list(others.values()))
+
+    def _same_as_others(
+        self, engine: str, case: str, integrator: str | None, text: str, others: Mapping[str, str]
+    ) -> str:
+        """A cause of other cases, by name, that makes what is seen of this one; "" where none."""
         own = self._cases[engine][case]
-        for name, other in others.items() if integrator is not None or not text else ():
-            if is_named(other) and (
-                own.siblings_follow(name) if integrator is None else own.outgrown(integrator, name)
-            ):
-                return other
-        if integrator is not None:
-            key = (engine, case, integrator)
-            if key not in self._followed:
-                known = _of_most(list(others.values()))
-                made = (one for one in known if own.steps_follow(integrator, one))
-                self._followed[key] = next(made, "")
-            if self._followed[key]:
-                return self._followed[key]
-        return beside_others(text, list(others.values()))
+        named = {name: other for name, other in others.items() if is_named(other)}
+        if integrator is None:
+            follows = (name for name in named if not text and own.siblings_follow(name))
+            return named.get(next(follows, ""), "")
+        outgrown = (name for name in named if own.outgrown(integrator, name))
+        found = named.get(next(outgrown, ""), "")
+        if found:
+            return found
+        key = (engine, case, integrator)
+        if key not in self._followed:
+            known = _of_most(list(others.values()))
+            made = (one for one in known if own.steps_follow(integrator, one))
+            self._followed[key] = next(made, "")
+        return self._followed[key]
 
     def _text(self, engine: str, case: str, integrator: str | None) -> str:
         key = (engine, case, integrator)
