@@ -223,7 +223,10 @@ def test_letters_that_the_output_cannot_hold_end_nothing(
     quick_scenario(tmp_path)
     result = omegadot("run", "quick.toml", "--engine", "reference:lie-rk4", folder=tmp_path)
     assert result.code == 0, result.err
-    assert "?" in result.out
+    assert "the Newton-Euler equations" in result.out  # a letter that another stands for
+    missing = omegadot("run", "\N{GREEK SMALL LETTER OMEGA}.toml", folder=tmp_path)
+    assert missing.code == 2
+    assert "?.toml" in missing.err  # one that none stands for
 
 
 def test_an_extended_type_that_there_is_not_is_refused(

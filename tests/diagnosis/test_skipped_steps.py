@@ -63,6 +63,7 @@ def test_steps_that_are_not_taken_are_named_by_number(
     [
         lambda n, t: int(t < 0.2 or t > 0.22),  # by the time
         lambda n, t: n * n % 7 != 2,  # by no period
+        lambda n, t: int(n != 11 or t < 0.15),  # one step, in runs of the longer steps alone
         lambda n, t: 1,
     ],
 )

@@ -27,7 +27,8 @@ def _is_single(values: Array) -> bool:
     """A body put to sleep has zeros, which are single numbers too."""
     rows = np.reshape(values, (-1, values.shape[-1]))
     moves = bool(np.ptp(rows, axis=0).any())
-    return moves and np.array_equal(rows, rows.astype(np.float32).astype(float))
+    with np.errstate(over="ignore"):  # what single precision cannot hold is not in it
+        return moves and np.array_equal(rows, rows.astype(np.float32).astype(float))
 
 
 def named_single(fields: Sequence[str]) -> str:

@@ -43,7 +43,7 @@ class AfterRun:
     steps: VanishingSteps
     same_step: State
 
-    def rate(self, channel: str) -> tuple[Array, Array, float]:
+    def rate_off(self, channel: str) -> tuple[Array, Array, float]:
         """How far a rate of the first steps is off (3,), the right one, and the bound of both."""
         limit = self.steps.rates[channel]
         found, bound = better(limit)
@@ -158,7 +158,9 @@ def _of_rate(
 
     With the number of kinds of runs before that it is so after, and whether it is the whole.
     """
-    rows = [(one.kind, *one.rate(channel), _other(one, quantity, torque, index)) for one in seen]
+    rows = [
+        (one.kind, *one.rate_off(channel), _other(one, quantity, torque, index)) for one in seen
+    ]
     free = [one for one in seen if one.steps.system.load.pivot is None]
     if channel in ("linear_momentum", "position") and len(free) < len(seen):
         return

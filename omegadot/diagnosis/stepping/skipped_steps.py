@@ -117,6 +117,8 @@ def _periods(runs: Sequence[_Run], first: int) -> Iterator[int]:
         for run in runs
         for k in np.flatnonzero(run.shown & (run.first > first))[:1]
     ]
+    if not later:
+        return  # no run shows a second one
     low, high = max(low for low, _ in later), min(high for _, high in later)
     yield from range(max(low, 1), min(high, low + MOST_NUMBERS) + 1)
 
