@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.defect import kept_apart
 from omegadot.diagnosis.equations.evidence import ALONG, FORWARD, INVERSE, INVERTED
 from omegadot.diagnosis.equations.siblings import AFTER_ANOTHER
 from omegadot.diagnosis.equations.wrong_equation import (
@@ -66,6 +67,7 @@ class CaseCauses:
             name: IntegratorCauses(engine, case, truth, result, own)
             for name, own in by_name.items()
         }
+        self._defects: list[str] = []  # of the search, which costs no verdict
         self._failing = {run.integrator.name for run in runs if run.fails}
         self._shared_rows = [row for row in shared if row.verdict == "fail"]
         # Inverse dynamics are no part of a run, which then has causes of its own.
@@ -82,9 +84,10 @@ class CaseCauses:
 
     def release(self) -> None:
         """Work out what needs the trajectories, and let go of them."""
-        with np.errstate(all="ignore"):
-            for one in self._integrators.values():
+        for one in self._integrators.values():
+            with np.errstate(all="ignore"), kept_apart(self._defects):
                 one.release(wanted=not self._explains_runs)
+            one.let_go()
 
     def sentences(self, integrator: str | None) -> list[str]:
         """The causes, the most basic first; of one integrator, or of what all runs share.
@@ -92,10 +95,12 @@ class CaseCauses:
         A wrong model or equation is looked for first, and explains the runs after it: these are
         looked at by themselves only where neither gate failed.
         """
-        with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+        defects, found = list(self._defects), list[str]()
+        with np.errstate(all="ignore"), kept_apart(defects):
             own = None if integrator is None else self._integrators[integrator]
             found = own.sentences() if own is not None and not self._explains_runs else []
-            return found or (self._shared() if self._shared_rows else [])
+            found = found or (self._shared() if self._shared_rows else [])
+        return found or defects[-1:]
 
     def subject(self, integrator: str | None, text: str) -> Subject | None:
         """What the cause that `sentences` names is about; None where no condition is looked for."""

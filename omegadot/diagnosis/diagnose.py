@@ -17,6 +17,7 @@ from functools import partial
 import numpy as np
 
 from omegadot.diagnosis.case_causes import CaseCauses
+from omegadot.diagnosis.defect import kept_apart
 from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.judges import changes_by_itself
@@ -85,7 +86,12 @@ class Causes:
         Where none is named, it is one of another case that makes what is seen here as well; or else
         that of most other cases that fail stands before this.
         """
-        integrator = None if run is None else run.integrator.name
+        defects, found = list[str](), ""
+        with kept_apart(defects):
+            found = self._text_or_others(engine, case, None if run is None else run.integrator.name)
+        return found or "".join(defects)
+
+    def _text_or_others(self, engine: str, case: str, integrator: str | None) -> str:
         text = self._text(engine, case, integrator)
         if is_named(text):
             return text

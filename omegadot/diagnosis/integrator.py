@@ -74,7 +74,7 @@ class IntegratorCauses:
         return self._integrator
 
     def release(self, wanted: bool) -> None:
-        """Work out what needs the trajectories, where it is wanted, and let go of them."""
+        """Work out what needs the trajectories, where it is wanted."""
         if wanted and any(run.fails for run in self._runs) and self._result is not None:
             failed = [run for run in self._runs if run.fails]
             steps = [r.sweep.timestep for r in self._runs if r.sweep.accuracy is None]
@@ -87,6 +87,9 @@ class IntegratorCauses:
                 if any(SOUND_UNTIL in text for text in found):
                     how = (self._case, self._truth, self._result, self._runs)
                     self._over.onsets[self._case.name] = onsets_of(*how)
+
+    def let_go(self) -> None:
+        """Keep the trajectories no longer."""
         self._result, self._runs = None, []
 
     def sentences(self) -> list[str]:

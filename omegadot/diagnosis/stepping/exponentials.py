@@ -114,10 +114,10 @@ def _fitted(
     for _ in range(TRIES):
         here = off(c)
         slope = (off(c + delta) - here) / delta
-        moved = -float(slope @ here) / float(slope @ slope)
-        c += moved
+        moved = -np.float64(slope @ here) / np.float64(slope @ slope)
+        c = float(c + moved)
         if not np.isfinite(c):
-            return None
+            return None  # or the number makes no difference
         if abs(moved) < SETTLED * abs(right):
             break
     return c
