@@ -206,6 +206,9 @@ class IntegratorCauses:
         Where no step moves any, whatever its length, the run may as well be logged late.
         """
         every = self._over.stays_below.values()
+        longest = max(still for still, _ in every)
+        if any(run.moves and run.timestep <= longest for run in self._over.kept):
+            return []  # it is the first step alone
         limit = least_step(every)
         if any(np.isfinite(moving) for _, moving in every):
             return [limit] if limit else []

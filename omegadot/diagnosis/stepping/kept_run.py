@@ -63,6 +63,16 @@ class KeptRun:
         return np.diff(self.times)
 
     @property
+    def timestep(self) -> float:
+        """s, of its steps."""
+        return self.sweep.timestep
+
+    @property
+    def moves(self) -> bool:
+        """Whether a sample after the first two is another than the one before."""
+        return any(bool(np.any(np.diff(field[1:], axis=0))) for field in vars(self.state).values())
+
+    @property
     def short(self) -> KeptRun:
         """Its first samples alone."""
         count = FEW_SAMPLES + 1
