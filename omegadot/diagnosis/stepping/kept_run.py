@@ -69,8 +69,9 @@ class KeptRun:
 
     @property
     def moves(self) -> bool:
-        """Whether a sample after the first two is another than the one before."""
-        return any(bool(np.any(np.diff(field[1:], axis=0))) for field in vars(self.state).values())
+        """Whether every single step after the first changes the state."""
+        changes = [np.any(np.diff(f[1:], axis=0), axis=-1) for f in vars(self.state).values()]
+        return self.sweep.every == 1 and bool(np.all(np.any(changes, axis=0)))
 
     @property
     def short(self) -> KeptRun:
