@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-NONE_KNOWN = "none is known"  # begins what is no cause
+from omegadot.diagnosis.experiments.conditioned import UNKNOWN
 
 
 @contextmanager
@@ -18,6 +18,4 @@ def kept_apart(defects: list[str]) -> Iterator[None]:
     except Exception as error:  # a search may fail in any way on the numbers of a wrong engine
         frame = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{type(error).__name__} in {Path(frame.filename).name}:{frame.lineno}"
-        defects.append(
-            f"{NONE_KNOWN}; its search ended in {where}: a defect of omegadot, report it"
-        )
+        defects.append(f"{UNKNOWN}; its search ended in {where}: a defect of omegadot, report it")

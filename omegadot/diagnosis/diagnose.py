@@ -152,7 +152,7 @@ class Causes:
 
     @property
     def lost(self) -> dict[str, str]:
-        """By engine, the experiment in which it hung or crashed, and how."""
+        """By engine, the experiment in which it crashed or gave no answer, and how."""
         return {name: asked.lost_in for name, asked in self._asked.items() if asked.lost_in}
 
     def _changes(self, engine: str, own: CaseCauses) -> bool:

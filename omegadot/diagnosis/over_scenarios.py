@@ -38,8 +38,7 @@ class OverScenarios:
     off.  beginnings: of the failed runs.  kept: the first samples of every run.  turned: by what
     angle in rad first steps turn the body, and whether later ones are seen not to.  stays_below: s,
     up to which length steps change nothing, and from which on they do.  keeps_pace: whether runs go
-    on as much too fast, or too slowly, as first steps do.
-    angle in rad first steps turn the body, and whether later ones are seen not to.  rests: at what
+    on as much too fast, or too slowly, as first steps do.  rests: at what
     states the body is put to rest.  places: causes in every step, with where they act.  substeps:
     in which of these a load acts, of causes that scale it.  onsets: where failed runs begin to be
     wrong that are sound until then.  steps and given: first steps from many states, as they vanish,

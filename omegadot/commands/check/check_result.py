@@ -24,9 +24,9 @@ class CheckResult:
     where it did not start.  drawn: the random systems among the scenarios that were not named.
     only_skipped: a sentence where every check, or every one but those of the model, was skipped,
     which is no pass.  baselines: the files that were written.  failing: for each kind of failure,
-    three at most, the simplest system found.  lost: a sentence for each engine that crashed or hung
-    in an experiment on a cause.  planned: the checks that were to be made.  interrupted: what was
-    being done when Ctrl-C came; "" where nothing was.
+    three at most, the simplest system found.  lost: a sentence for each engine that crashed or
+    did not answer in an experiment on a cause.  planned: the checks that were to be made.
+    interrupted: what was being done when Ctrl-C came; "" where nothing was.
     """
 
     by_check: Mapping[Check, Result]

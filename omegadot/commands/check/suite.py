@@ -103,7 +103,7 @@ class Suite:
 
     @property
     def lost(self) -> tuple[str, ...]:
-        """A sentence for each engine that crashed or hung as causes were looked for."""
+        """A sentence for each engine that crashed or timed out as causes were looked for."""
         return tuple(
             f"{name} gave no answer in an experiment on a cause, the last that was made: {how}."
             for name, how in self._causes.lost.items()

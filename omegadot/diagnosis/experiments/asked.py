@@ -23,7 +23,8 @@ MOST_SECONDS = 30.0  # of waiting for one engine's answers, whatever the number 
 class Asked:
     """lost: the answer that is given from then on; None as long as requests are made.
 
-    waited: s, for its answers.  lost_in: the request that hung or crashed, and how; "" without one.
+    waited: s, for its answers.  lost_in: the request that crashed or timed out, and
+    how; "" without one.
     """
 
     driver: Driver

@@ -112,10 +112,10 @@ def _turned(given: Array, begins: Array) -> Iterator[OtherStart]:
         axis = turn[1:] / max(float(norm(turn[1:])), np.finfo(float).tiny)
         for plain, shown in PLAIN_ANGLES.items():
             if abs(angle - plain) <= CLOSE:
-                angle, told = plain, shown
+                angle, size = plain, shown
                 break
         else:
-            told = f"{number(float(f'{angle:.4g}'))} rad"
+            size = f"{number(float(f'{angle:.4g}'))} rad"
         main = int(np.argmax(np.abs(axis)))
         if abs(abs(axis[main]) - 1.0) <= CLOSE:
             axis = np.sign(axis[main]) * np.eye(3)[main]
@@ -124,7 +124,7 @@ def _turned(given: Array, begins: Array) -> Iterator[OtherStart]:
         else:
             about = f"about {vector(np.round(axis, 4))} in {axes} axes"
         plain_turn = np.concatenate(([np.cos(angle / 2.0)], np.sin(angle / 2.0) * axis))
-        yield OtherStart(f"turned by {told} {about}", _by_turn(plain_turn, world))
+        yield OtherStart(f"turned by {size} {about}", _by_turn(plain_turn, world))
 
 
 def _vectors(name: str, what: str) -> Iterator[OtherStart]:

@@ -12,6 +12,7 @@ from omegadot.diagnosis.reported.sample_causes import first_wrong
 from omegadot.written import written
 
 SOUND_UNTIL = "is sound until"
+ALL_STEPS = ", whatever the step's length"
 LEAST = 2  # runs, which distinguish a number of steps from a time
 
 
@@ -48,16 +49,20 @@ def onset_law(onsets: Sequence[Onset]) -> str:
     if len(onsets) < LEAST or all(np.isinf(one.steps[1]) for one in onsets):
         return ""
     laws = [
-        _between([one.steps for one in onsets], "for its first {} steps, and wrong by step {}"),
-        _between([one.times for one in onsets], "until t = {} s, and wrong by t = {} s"),
+        _between(
+            [one.steps for one in onsets],
+            "for its first {} steps, and wrong by step {}" + ALL_STEPS,
+        ),
+        _between(
+            [one.times for one in onsets], "until t = {} s, and wrong by t = {} s" + ALL_STEPS
+        ),
         _between(
             [tuple(100.0 * x for x in one.shares) for one in onsets],
             "for the first {} % of its time, and wrong by {} % of it",
         ),
     ]
     known = [law for law in laws if law]
-    wholes = {laws[0]: ", whatever the step's length", laws[1]: ", whatever the step's length"}
-    return f"every run is sound {known[0]}{wholes.get(known[0], '')}" if len(known) == 1 else ""
+    return f"every run is sound {known[0]}" if len(known) == 1 else ""
 
 
 def _between(ranges: Sequence[tuple[float, ...]], text: str) -> str:
