@@ -175,6 +175,19 @@ def test_two_terms_that_cancel_at_some_samples_have_the_order_of_the_first() -> 
     assert not shown.resolved
 
 
+def test_a_higher_power_is_no_first_of_two_terms() -> None:
+    """Caught: a cubic takes 120 parts of a fourth power for a first one."""
+    finest = 0.08 / 2**5
+
+    def of_step(h: float) -> Array:
+        r = h / finest
+        return SAMPLES * (-3.45e-7 * r**2 + 4.8e-8 * r**3 + 3.08e-10 * r**4)
+
+    seen = order_of(signed(of_step))
+    assert seen is not None
+    assert not seen.resolved or seen.value == 2.0
+
+
 @pytest.mark.parametrize("stays", [2e-4, -2e-4])
 def test_an_error_that_stays_is_no_first_of_two_terms(stays: float) -> None:
     """Caught: a fault that is there from one time on, under an error that vanishes."""
