@@ -7,19 +7,16 @@ import numpy as np
 import pytest
 
 from omegadot.gates.errors.excess import excess_of
-from omegadot.gates.errors.orders import (
-    LARGEST_RISE,
-    NEAR_ROUNDING,
+from omegadot.gates.errors.highest_order import highest_order
+from omegadot.gates.errors.observed_order import (
     ORDER_TOLERANCE,
-    SATURATE,
     VANISHED,
-    Errors,
     ObservedOrder,
-    highest_order,
     is_whole,
     observed_order,
-    order_of,
 )
+from omegadot.gates.errors.orders import NEAR_ROUNDING, SATURATE, order_of
+from omegadot.gates.errors.sweep_errors import LARGEST_RISE, Errors
 from omegadot.reference_impl.system import Array
 
 BOUND = 1e-12

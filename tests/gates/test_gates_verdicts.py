@@ -5,13 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from omegadot.gates.errors.orders import (
-    NEAR_ROUNDING,
-    ORDER_TOLERANCE,
-    SATURATE,
-    VANISHED,
-    ObservedOrder,
-)
+from omegadot.gates.errors.observed_order import ORDER_TOLERANCE, VANISHED, ObservedOrder
+from omegadot.gates.errors.orders import NEAR_ROUNDING, SATURATE
 from omegadot.gates.errors.verdicts import Evidence, Finding, judge
 
 BOUND = np.array([1e-15, 1e-12, 1e-11])

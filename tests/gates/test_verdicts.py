@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from omegadot.gates.errors.orders import ObservedOrder, observed_order
+from omegadot.gates.errors.observed_order import ObservedOrder, observed_order
 from omegadot.gates.errors.verdicts import Evidence, judge
 
 BOUND = np.full(3, 1e-12)

@@ -11,7 +11,7 @@ from omegadot.commands.schemes.schemes import SchemesResult
 from omegadot.commands.schemes.table import remarks_of, tables_of
 from omegadot.diagnosis.scheme_study.orders import COARSEST
 from omegadot.diagnosis.scheme_study.record import Record
-from omegadot.gates.errors.orders import ORDER_TOLERANCE
+from omegadot.gates.errors.observed_order import ORDER_TOLERANCE
 from omegadot.reports.text.text_grid import plain_console, text_grid
 from omegadot.written import written
 

@@ -22,7 +22,7 @@ from omegadot.diagnosis.scheme_study.study import OWN_STEPS, Order, ProbeStudy
 from omegadot.diagnosis.scheme_study.subject import NoAnswerError, Stepper
 from omegadot.gates.case import Case
 from omegadot.gates.errors.measured_run import CHANNELS, orders_for
-from omegadot.gates.errors.orders import ORDER_TOLERANCE
+from omegadot.gates.errors.observed_order import ORDER_TOLERANCE
 from omegadot.gates.rows import Row
 from omegadot.gates.states.equation import forward_rows, inverse_rows
 from omegadot.gates.states.model import body_rows, state_rows

@@ -10,7 +10,7 @@ import numpy as np
 from omegadot.diagnosis.scheme_study.probes import Probe, truth_of
 from omegadot.diagnosis.scheme_study.subject import Stepper
 from omegadot.gates.errors.measured_run import CHANNELS
-from omegadot.gates.errors.orders import ORDER_TOLERANCE
+from omegadot.gates.errors.observed_order import ORDER_TOLERANCE
 from omegadot.harness.judging.judged_run import is_finite
 
 COARSEST = 0.4  # rad a step: an error of order 4 then has decades to go before it meets rounding

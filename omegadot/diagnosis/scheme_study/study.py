@@ -21,7 +21,7 @@ from omegadot.diagnosis.scheme_study.subject import (
     stepper_of,
 )
 from omegadot.gates.errors.measured_run import CHANNELS, orders_for
-from omegadot.gates.errors.orders import ORDER_TOLERANCE
+from omegadot.gates.errors.observed_order import ORDER_TOLERANCE
 from omegadot.gates.truth import scheme_key
 from omegadot.harness.arguments import integrators_chosen
 from omegadot.harness.plan import EngineChoice

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.gates.errors.orders import (
+from omegadot.gates.errors.sweep_errors import (
     CLEAR_OF_ROUNDING,
     FEWEST_SAMPLES,
     HORIZONS,

@@ -12,13 +12,10 @@ from omegadot.gates.bounds.opened import opened_by_scheme
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Sweep
 from omegadot.gates.errors.excess import excess_of
-from omegadot.gates.errors.orders import (
-    FEWEST_STEPS,
-    Errors,
-    ObservedOrder,
-    highest_order,
-    order_of,
-)
+from omegadot.gates.errors.highest_order import highest_order
+from omegadot.gates.errors.observed_order import ObservedOrder
+from omegadot.gates.errors.orders import order_of
+from omegadot.gates.errors.sweep_errors import FEWEST_STEPS, Errors
 from omegadot.gates.errors.verdicts import BLOWN_UP_UNSEEN, OF_EITHER, Evidence, Finding, judge
 from omegadot.gates.truth import Companion, Truth, scheme_key
 from omegadot.reference_impl.energy import total_energy

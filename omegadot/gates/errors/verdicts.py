@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from omegadot.gates.bounds.scales import EPS
-from omegadot.gates.errors.orders import ORDER_TOLERANCE, ObservedOrder, is_whole
+from omegadot.gates.errors.observed_order import ORDER_TOLERANCE, ObservedOrder, is_whole
 from omegadot.reference_impl.system import Array
 from omegadot.written import written
 

@@ -14,13 +14,8 @@ from omegadot.gates.errors.measured_run import (
     MeasuredRun,
     errors_of,
 )
-from omegadot.gates.errors.orders import (
-    ORDER_TOLERANCE,
-    VANISHED,
-    ObservedOrder,
-    is_whole,
-    order_of,
-)
+from omegadot.gates.errors.observed_order import ORDER_TOLERANCE, VANISHED, ObservedOrder, is_whole
+from omegadot.gates.errors.orders import order_of
 from omegadot.gates.errors.verdicts import STIFF
 from omegadot.gates.rows import Row
 from omegadot.gates.truth import SchemeKey, Truth, scheme_key
