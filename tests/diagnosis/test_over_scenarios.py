@@ -24,7 +24,7 @@ from omegadot.diagnosis.wording.kinds import over_run
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states
 from omegadot.harness.requests.siblings import siblings_of
-from omegadot.reference_impl.inertia import parallel_axis
+from omegadot.reference_impl.inertia import moving_inertia, parallel_axis
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.loads import damping_torque, gravity_torque
 from omegadot.reference_impl.motion import forward_dynamics
@@ -149,6 +149,20 @@ def test_a_torque_along_principal_axes_is_named() -> None:
 
     (text,) = set(causes_over(turned, (CASES[3], CASES[5])).values())
     assert text == "the torque in body axes is taken along the principal axes of inertia"
+
+
+def test_principal_axes_about_the_pivot_are_not_those_of_the_body() -> None:
+    """Caught: the tensor about the centre of mass alone, which has other axes."""
+
+    def turned(system: System, states: State) -> Acceleration:
+        axes = np.linalg.eigh(np.asarray(moving_inertia(system), dtype=float))[1]
+        load = replace(system.load, torque_body=axes @ system.load.torque_body)
+        return forward_dynamics(replace(system, load=load), states)
+
+    driven = [case for case in CASES if np.any(case.system.load.torque_body)]
+    assert any(case.system.load.pivot is not None for case in driven)
+    (text,) = set(causes_over(turned, tuple(driven)).values())
+    assert text.endswith("the principal axes of the inertia about the pivot")
 
 
 def test_what_is_lost_in_several_channels_is_one_sentence() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from omegadot.diagnosis.equations.equation_form import Form, form_of
 from omegadot.diagnosis.equations.families.family import Family
 from omegadot.diagnosis.wording.digits import vector
 from omegadot.diagnosis.wording.laws import SAME
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, System
 
 
@@ -46,19 +47,27 @@ def _load_vector(name: str, what: str, unit: str) -> Family:
 
     def alike(pairs: Sequence[tuple[System, Array]]) -> str:
         """Of torques: whether they are the requested ones, taken along the principal axes."""
-        if not name.startswith("torque") or not all(
-            _turned(getattr(s.load, name), p, s) for s, p in pairs
-        ):
-            return ""
-        return "these are the numbers of the requested one along the inertia's principal axes"
+        for text, tensor in TENSORS.items() if name.startswith("torque") else ():
+            if all(_turned(getattr(s.load, name), p, tensor(s)) for s, p in pairs):
+                return f"these are the numbers of the requested one along {text}"
+        return ""
 
     part = "torque" if name.startswith("torque") else name
     return Family(name, part, starts, form, text, right, unit, alike=alike)
 
 
-def _turned(requested: Array, acting: Array, system: System) -> bool:
+# What the principal axes are of.
+TENSORS: dict[str, Callable[[System], Array]] = {
+    "the inertia's principal axes": lambda s: np.asarray(s.body.inertia, dtype=float),
+    "the principal axes of the inertia about the pivot": lambda s: np.asarray(
+        moving_inertia(s), dtype=float
+    ),
+}
+
+
+def _turned(requested: Array, acting: Array, tensor: Array) -> bool:
     """Whether a vector is another along the principal axes, whatever their order and signs."""
-    axes = np.linalg.eigh(np.asarray(system.body.inertia, dtype=float))[1]
+    axes = np.linalg.eigh(tensor)[1]
     along, back = (np.sort(np.abs(turn @ requested)) for turn in (axes.T, axes))
     size = SAME * float(np.linalg.norm(requested))
     reached, came = np.sort(np.abs(acting)), np.sort(np.abs(axes.T @ acting))

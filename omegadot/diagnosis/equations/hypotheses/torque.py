@@ -22,6 +22,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     over_diagonal,
     own_inertia,
 )
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.system import Array, Load, System
 
 
@@ -54,12 +55,13 @@ def torque_hypotheses() -> Iterator[Hypothesis]:
             "torque_body": 0 * one.torque_body,
         },
     )
-    for handed, nearest, back in product(SIGNS, (False, True), (False, True)):
-        yield Hypothesis(
-            "the torque in body axes is taken along the principal axes of inertia",
-            "torque",
-            system=given(handed, nearest, back, _along_principal_axes),
-        )
+    for of, tensor in (("inertia", own_inertia), ("the inertia about the pivot", moving_inertia)):
+        for handed, nearest, back in product(SIGNS, (False, True), (False, True)):
+            yield Hypothesis(
+                f"the torque in body axes is taken along the principal axes of {of}",
+                "torque",
+                system=given(tensor, handed, nearest, back, _along_principal_axes),
+            )
     for frame in ("body", "world"):
         yield of_load(
             f"the torque in {frame} axes is missing",
@@ -185,11 +187,15 @@ SIGNS: tuple[Callable[[Array], Array], ...] = (
 
 
 def _along_principal_axes(
-    signs: Callable[[Array], Array], nearest: bool, back: bool, system: System
+    of: Callable[[System], Array],
+    signs: Callable[[Array], Array],
+    nearest: bool,
+    back: bool,
+    system: System,
 ) -> System:
     """By ascending moments, or each axis the nearest to one of the body's."""
-    tensor = own_inertia(system)
-    if not np.any(tensor - diagonal(tensor)):
+    tensor = np.asarray(of(system), dtype=float)
+    if nearest and not np.any(tensor - diagonal(tensor)):
         return system  # these are the body's axes
     axes = np.linalg.eigh(tensor)[1]
     axes = signs(axes[:, np.argmax(np.abs(axes), axis=1)] if nearest else axes)
