@@ -19,6 +19,7 @@ from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.reported.singles import IN_SINGLE
 from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
 from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
+from omegadot.diagnosis.stepping.kept_run import scheme_of
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
@@ -105,6 +106,8 @@ class IntegratorCauses:
         begins = self._over.begins_at(self._integrator, self._case.name) if failing else ""
         fails = self._over.fails[self._case.name]
         other = begins or (self._over.ends_at(self._integrator, self._case.name) if fails else "")
+        if fails and not other:
+            other = self._over.moved_at(self._integrator, self._case.name)
         if other:
             return [other]
         together = self._over.together(self._integrator) if failing else []
@@ -207,7 +210,9 @@ class IntegratorCauses:
         """
         every = self._over.stays_below.values()
         longest = max(still for still, _ in every)
-        if any(run.moves and run.timestep <= longest for run in self._over.kept):
+        brief = [run for run in self._over.kept if run.timestep <= longest]
+        by = scheme_of(self._integrator, self._over.kept) if brief else None
+        if any(run.moves or (by is not None and run.goes_on(by)) for run in brief):
             return []  # it is the first step alone
         limit = least_step(every)
         if any(np.isfinite(moving) for _, moving in every):

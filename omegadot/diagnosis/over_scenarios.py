@@ -18,6 +18,7 @@ from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.reported.onsets import Onset
 from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.kept_run import KeptRun
+from omegadot.diagnosis.stepping.moved_samples import Moved, moved_samples
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 from omegadot.diagnosis.stepping.rests import Rests, sleep_law
@@ -63,6 +64,7 @@ class OverScenarios:
     given: dict[str, State] = field(default_factory=dict)
     ends: list[RunEnd] = field(default_factory=list)
     _ends: tuple[int, Ends | None] = (0, None)
+    _moved: tuple[int, Moved | None] = (0, None)
     _starts: tuple[tuple[int, int], Starts | None] = ((0, 0), None)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool, bool] = (0, False, False)
@@ -89,6 +91,16 @@ class OverScenarios:
             self._ends = len(self.ends), other_ends(integrator, self.ends, self.kept)
         return self._ends[1]
 
+    def moved_at(self, integrator: Integrator, name: str) -> str:
+        """Which samples of all runs are of another step, where that explains a scenario."""
+        found = self._moved_samples(integrator)
+        return found.statement if found is not None and name in found.names else ""
+
+    def _moved_samples(self, integrator: Integrator) -> Moved | None:
+        if self._moved[0] != len(self.kept):
+            self._moved = len(self.kept), moved_samples(integrator, self.kept)
+        return self._moved[1]
+
     def together(self, integrator: Integrator) -> list[str]:
         """What makes all runs of the integrator that have been kept; none where none does."""
         if self._together[0] != len(self.kept):
@@ -107,6 +119,7 @@ class OverScenarios:
             if failing > 1:
                 ended = self._other_ends(integrator) is not None
                 known = ended or self._other_start(integrator) is not None
+                known = known or self._moved_samples(integrator) is not None
                 known = known or any(map(is_named, causes_over_runs(integrator, self.kept)))
                 self._likely = failing, known, ended
         _, found, ended = self._likely

@@ -36,7 +36,8 @@ class CaseResult:
     """What one engine answered for one scenario; answers that failed are kept as such.
 
     integrators: those that are run, as the engine declares them for this system.
-    runs: by integrator and its step or accuracy.
+    runs: by integrator and its step or accuracy.  begun: of those that raise, whose scheme is not
+    known, the samples until then, and no numbers from there on.
     first_steps, restarts: of integrators whose scheme is unknown, what was requested and what came:
     steps from several states, and the sample from which a run was restarted with some of its rest.
     alone, inverse_alone: forward and inverse dynamics of the first random state by itself.
@@ -59,6 +60,7 @@ class CaseResult:
     path: Answer = INTERRUPTED
     inverse: Answer = INTERRUPTED
     runs: dict[tuple[str, float], Answer] = field(default_factory=dict)
+    begun: dict[tuple[str, float], State] = field(default_factory=dict)
     first_steps: dict[str, tuple[Probe, Answer]] = field(default_factory=dict)
     restarts: dict[tuple[str, float], tuple[int, Sweep, Answer]] = field(default_factory=dict)
     alone: Answer = LACKING

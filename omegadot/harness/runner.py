@@ -37,6 +37,7 @@ from omegadot.harness.requests.truth_requests import (
     case_truth,
     reference_runs,
 )
+from omegadot.harness.requests.until_raised import request_until_raised
 
 
 class Runner:
@@ -128,6 +129,7 @@ class Runner:
             self.on_advance(tasks_of(engine, case))
         else:
             result.runs.update(driver.run_all(case, lambda: self.on_advance(1)))
+            request_until_raised(driver, case, result)
             probe_steps(driver, case, evaluation_states, result)
         if engine.name != "exact":
             request_again(driver, case, evaluation_states, result)

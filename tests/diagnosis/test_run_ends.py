@@ -10,7 +10,7 @@ from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, case
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.kept_run import KeptRun
-from omegadot.diagnosis.stepping.run_ends import FURTHER, MISSING, RunEnd, other_ends
+from omegadot.diagnosis.stepping.run_ends import RunEnd, other_ends
 from omegadot.gates.case import Case, Sweep
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.scheme import CHANNELS
@@ -26,12 +26,13 @@ SCHEME, H = "semi-implicit-euler", 0.02
 OWN = Integrator("own", SCHEME, dict.fromkeys(CHANNELS, 1))
 PLANS = ((18, 3), (17, 3), (12, 1))  # steps, and of which each one is a sample
 BOUND = 1e-11
+FURTHER = "the last sample of every run is the state one step further than its time"
 
 
 def run_of(one: Case, plan: tuple[int, int], shift: int) -> tuple[KeptRun, RunEnd]:
     steps, every = plan
     sweep = Sweep(H, steps, every)
-    _, states = step_body(SCHEMES[SCHEME], one.system, one.initial, H, steps + 1, 1)
+    _, states = step_body(SCHEMES[SCHEME], one.system, one.initial, H, steps + 3, 1)
     numbers = sweep.sample_steps.copy()
     numbers[-1] += shift
     state = states[numbers]
@@ -58,10 +59,25 @@ def found(*shifts: int, spoiled: str = "") -> tuple[str, set[str]]:
     return ("", set()) if ends is None else (ends.statement, set(ends.names))
 
 
-@pytest.mark.parametrize(("shift", "text"), [(1, FURTHER), (-1, MISSING)])
+@pytest.mark.parametrize(
+    ("shift", "text"),
+    [
+        (1, FURTHER),
+        (-1, "the last step is missing: the end is the state one step before"),
+        (3, "the last sample of every run is the state three steps further than its time"),
+        (-2, "the last sample of every run is the state two steps before its time"),
+    ],
+)
 def test_another_step_at_the_end_of_every_run_is_one_cause(shift: int, text: str) -> None:
     """Caught: of an interval one step short, "the last interval is stepped in full"."""
     assert found(shift) == (text, {"free", "driven", "top"})
+
+
+@pytest.mark.parametrize(("shift", "off"), [(1, "further than"), (-1, "before")])
+def test_another_step_after_a_short_interval_alone_is_one_cause(shift: int, off: str) -> None:
+    """Caught: no cause, as the runs that end with a whole interval are right."""
+    text = f"after an interval shorter than the others, is the state one step {off} its time"
+    assert found(0, shift, 0) == (f"the last sample, {text}", {"free", "driven", "top"})
 
 
 def test_what_is_not_so_of_every_run_is_not_named() -> None:

@@ -118,17 +118,29 @@ def test_every_quaternion_is_of_unit_length(sample: int, prepared: Prepared) -> 
     assert row.bound == 16 * EPS * (steps + 1)
 
 
-@pytest.mark.parametrize("field", ["orientation", "angular_velocity"])
-def test_single_precision_is_distinguished_from_double(field: str, prepared: Prepared) -> None:
+@pytest.mark.parametrize(
+    ("fields", "channel", "kept"),
+    [
+        (["orientation"], "attitude", "attitude is kept"),
+        (["angular_velocity"], "omega", "omega is kept"),
+        (["orientation", "angular_velocity"], "attitude", "attitude and omega are kept"),
+    ],
+)
+def test_single_precision_is_distinguished_from_double(
+    fields: list[str], channel: str, kept: str, prepared: Prepared
+) -> None:
+    """Caught: "the state is kept in single precision", where one quantity alone is."""
+
     class Single(Reported):
         def reports_found(self, state: State) -> State:
-            values = getattr(state, field).copy()
-            values[1:] = values[1:].astype(np.float32)
-            return replace(state, **{field: values})
+            singles = {name: getattr(state, name).copy() for name in fields}
+            for values in singles.values():
+                values[1:] = values[1:].astype(np.float32)
+            return replace(state, **singles)
 
     row = rows_of(prepared, Single())["precision"]
-    assert (row.verdict, row.bound) == ("fail", EPS)
-    assert "single precision" in row.note
+    assert (row.channel, row.verdict, row.bound) == (channel, "fail", EPS)
+    assert row.note == f"{kept} in single precision, and double is declared"
 
 
 def test_a_constant_omega_may_be_a_single_by_chance(prepared: Prepared) -> None:

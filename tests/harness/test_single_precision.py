@@ -139,7 +139,8 @@ def test_singles_that_are_declared_doubles_fail(engine: type[Single]) -> None:
     found = judged("free", declared_double(engine))
     assert {"model", "equation", "trajectory"} <= found.failed
     notes = {row.note for row in found.rows if row.metric == "precision"}
-    assert notes == {"the state is kept in single precision, and double is declared"}
+    kept = "attitude and omega are kept in single precision"
+    assert notes == {f"{kept}, and double is declared"}
 
 
 def test_samples_at_a_rounded_clock_stand_where_the_exact_ones_do() -> None:

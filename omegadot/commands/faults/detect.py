@@ -26,6 +26,7 @@ from omegadot.harness.judging.refine import MOST_HALVINGS, Refinements, refine
 from omegadot.harness.judging.runs import judge_case
 from omegadot.harness.requests.repeats import request_again
 from omegadot.harness.requests.step_probes import probe_steps
+from omegadot.harness.requests.until_raised import request_until_raised
 
 GATES = ("model", "equation", "scheme", "invariants", "trajectory")
 
@@ -120,6 +121,7 @@ def _runs(
         runs = judge_case(prepared.truth, case, own, {})
         if _any_fails(runs):
             return runs
+    request_until_raised(driver, case, own)
     probe_steps(driver, case, at, own)
     request_again(driver, case, at, own)
     return _judged(pool, prepared, driver, own)

@@ -103,6 +103,22 @@ class KeptRun:
                 "position": came.position - ends.position,
             }
 
+    def made(self, by: SchemeOf, count: int) -> NDArray[np.bool_]:
+        """(n - 1,): whether so many steps lead from each sample to the next.
+
+        No number is below none.
+        """
+        if count < 0:
+            return np.zeros(len(self.times) - 1, dtype=bool)
+        own = replace(self, sweep=replace(self.sweep, every=count))
+        apart = self.apart(own.ends(by) if count else self.state[:-1])
+        good = [norm(apart[c]) <= SLACK * self.bounds[c] for c in CHANNELS]
+        return np.asarray(np.all(good, axis=0))
+
+    def goes_on(self, by: SchemeOf) -> bool:
+        """Whether a scheme's steps, and not none, lead on from the first sample after the start."""
+        return bool(np.any(self.sound(by)[1:] & ~self.made(by, 0)[1:]))
+
     def sound(self, by: SchemeOf, slack: float = SLACK) -> NDArray[np.bool_]:
         """(n - 1,): whether the scheme leads from each sample to the next."""
         apart = self.apart(self.ends(by))

@@ -24,8 +24,11 @@ from omegadot.reference_impl.rotations import normalize, rotation_between
 from omegadot.reference_impl.stepping import step_body
 from omegadot.reference_impl.system import Array, State, System
 
-FURTHER = "the last sample of every run is the state one step further than its time"
 MISSING = "the last step is missing: the end is the state one step before"
+EVERY = "the last sample of every run is the state {} its time"
+SHORT = "the last sample, after an interval shorter than the others, is the state {} its time"
+MOST_SHIFT = 3  # steps
+COUNTS = ("", "one step", "two steps", "three steps")
 LEAST = 3  # runs, of two scenarios at least, whose last sample is another step's
 
 
@@ -43,6 +46,11 @@ class RunEnd:
     steps: int
     bounds: dict[str, float]
     fails: bool
+
+    @property
+    def is_short(self) -> bool:
+        """Whether its last interval is shorter than the others."""
+        return self.steps < self.sweep.every
 
 
 @dataclass(frozen=True)
@@ -78,29 +86,45 @@ def other_ends(
         by = scheme_of(integrator, kept) if any(one.fails for one in ends) else None
         if by is None:
             return None
-        for shift, text in ((1, FURTHER), (-1, MISSING)):
-            shown = _shown(ends, by, shift)
-            if shown:
-                return Ends(text, frozenset(shown - _wrong_before(kept, by)))
+        shifts = [sign * k for k in range(1, MOST_SHIFT + 1) for sign in (1, -1)]
+        for short in (False, True):
+            for shift in shifts:
+                shown = _shown(ends, by, shift, short)
+                if shown:
+                    names = frozenset(shown - _wrong_before(kept, by))
+                    return Ends(statement_of(shift, short), names)
     return None
 
 
-def _shown(ends: Sequence[RunEnd], by: SchemeOf, shift: int) -> set[str]:
+def statement_of(shift: int, short: bool) -> str:
+    """Which step the last sample is of. short: of runs alone whose last interval is shorter."""
+    if shift == -1 and not short:
+        return MISSING
+    off = f"{COUNTS[abs(shift)]} {'further than' if shift > 0 else 'before'}"
+    return (SHORT if short else EVERY).format(off)
+
+
+def _shown(ends: Sequence[RunEnd], by: SchemeOf, shift: int, short: bool) -> set[str]:
     """The scenarios that show it; none where one run contradicts it."""
     names, count = set[str](), 0
     # of the runs that fail those of few steps rule most out
     for end in sorted(ends, key=lambda one: (not one.fails, one.steps)):
-        if not _is_after(end, by, end.steps + shift):
+        moved = end.is_short or not short
+        if not _is_after(end, by, end.steps + shift * moved):
             return set()
-        if not _is_after(end, by, end.steps):
+        if moved and not _is_after(end, by, end.steps):
             names.add(end.name)
             count += 1
     return names if count >= LEAST and len(names) > 1 else set()
 
 
 def _is_after(end: RunEnd, by: SchemeOf, steps: int) -> bool:
-    """Whether so many steps of the scheme lead from the sample before to the last."""
-    start, came = end.state[:1], end.state[1:]
+    """Whether so many steps of the scheme lead from the sample before to the last.
+
+    Below none they lead from the last to the one before.
+    """
+    start, came = (end.state[:1], end.state[1:])[:: -1 if steps < 0 else 1]
+    steps = abs(steps)
     unit = State(**{**vars(start), "orientation": normalize(start.orientation)})
     plan = (end.sweep.timestep, steps, max(steps, 1), by.coordinates)
     found = step_body(by.scheme, end.system, unit, *plan)[1][-1]

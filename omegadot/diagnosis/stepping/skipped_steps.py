@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
-from omegadot.gates.bounds.scales import norm
-from omegadot.reference_impl.system import State
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 
 SCENARIOS = 2  # at least, that show it
 MOST_NUMBERS = 64  # in question for the first such step, and for those from one to the next
@@ -69,18 +67,9 @@ def skipped_steps(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
 
 
 def _sorted(by: SchemeOf, run: KeptRun, more: int, right: Mask | None) -> _Run:
-    first, other = run.first_steps, _is_made(run, by, run.sweep.every + more)
+    first, other = run.first_steps, run.made(by, run.sweep.every + more)
     last, right = first + run.sweep.every - 1, run.sound(by) if right is None else right
     return _Run(run.name, run.sweep.timestep, first, last, right, other)
-
-
-def _is_made(run: KeptRun, by: SchemeOf, count: int) -> Mask:
-    """Whether so many steps lead from each sample to the next."""
-    ends: State = run.state[:-1]
-    if count:
-        ends = replace(run, sweep=replace(run.sweep, every=count)).ends(by)
-    apart = run.apart(ends)
-    return np.asarray(np.all([norm(apart[c]) <= SLACK * run.bounds[c] for c in CHANNELS], axis=0))
 
 
 def _law(runs: Sequence[_Run], how: str) -> str:

@@ -75,10 +75,12 @@ def _where_worse(measured: MeasuredRun, channel: str) -> str:
 def reported_rows(truth: Truth, measured: MeasuredRun, state: State, precision: str) -> list[Row]:
     """The start, the quaternion's length and, where it is found, single precision."""
     found = [_start(measured), _length(measured.sweep, state, truth.yardstick.eps)]
-    if precision == "float64" and _is_single(state, truth.at(measured.sweep)):
-        note = "the state is kept in single precision, and double is declared"
+    single = _in_single(state, truth.at(measured.sweep)) if precision == "float64" else []
+    if single:
+        kept = f"{' and '.join(single)} {'are' if len(single) > 1 else 'is'} kept"
+        note = f"{kept} in single precision, and double is declared"
         eps = float(np.finfo(np.float32).eps)
-        found.append(Row(GATE, "attitude", "precision", eps, "1", EPS, "fail", note))
+        found.append(Row(GATE, single[0], "precision", eps, "1", EPS, "fail", note))
     return found
 
 
@@ -112,16 +114,20 @@ def _length(sweep: Sweep, state: State, eps: float) -> Row:
     return within(GATE, "attitude", "unit_length", worst, "1", bound, note)
 
 
-def _is_single(state: State, exact: State) -> bool:
-    """Whether attitude or omega move, and every value after the start is a single's number."""
-    pairs = (
-        (state.orientation[1:], exact.orientation[1:]),
-        (state.angular_velocity[1:], exact.angular_velocity[1:]),
-    )
-    return any(
-        _singles(reported) and not _singles(true) and np.ptp(reported, 0).any()
-        for reported, true in pairs
-    )
+def _in_single(state: State, exact: State) -> list[str]:
+    """Of attitude and omega those that move, and of which every value after the start is a single.
+
+    What is a single's number in the exact motion as well shows nothing.
+    """
+    pairs = {
+        "attitude": (state.orientation[1:], exact.orientation[1:]),
+        "omega": (state.angular_velocity[1:], exact.angular_velocity[1:]),
+    }
+    return [
+        channel
+        for channel, (reported, true) in pairs.items()
+        if _singles(reported) and not _singles(true) and np.ptp(reported, 0).any()
+    ]
 
 
 def _singles(values: Array) -> bool:

@@ -58,6 +58,11 @@ def row(
     Each lies within the round-off bound of one trajectory, so that they differ by twice that at
     most. A scheme that is not known may step the angular momentum; where that amplifies rounding at
     every step, two runs that differ show nothing.
+
+    From where rounding has made another motion of a run that is faster than the exact one there is
+    no bound. The run's own speed gives none: by how much steps of a radian and more amplify the
+    rounding of both halves depends on the scheme, which is not known. Such a run is off by the size
+    of the motion itself, and the gate of the trajectory holds that against finer steps.
     """
     yardstick = truth.of_kept(sweep, state).yardstick.of_momentum()
     again = slice(sample, sample + len(restarted.angular_velocity))

@@ -14,7 +14,8 @@ Refinements = dict[str, dict[Sweep, tuple[Sweep, Answer]]]
 def refine(driver: Driver, case: Case, runs: list[JudgedRun], finer: Refinements) -> list[str]:
     """Run the integrators that are still unresolved at half their finest step so far.
 
-    Error-controlled ones are run at the accuracy, or at the spacing of samples, that they need.
+    Those that raise at every step so far are run at the step that they need, and error-controlled
+    ones at the accuracy, or at the spacing of samples.
 
     The new runs go into `finer`. Returns the integrators that were run; none when all is decided,
     when a run failed, or after the most halvings.
@@ -24,10 +25,13 @@ def refine(driver: Driver, case: Case, runs: list[JudgedRun], finer: Refinements
     wanted = {run.integrator.name: run.finer for run in runs if run.unresolved}
     for name in sorted(wanted):
         known = finer.setdefault(name, {})
-        halvings = len(known) + 1
-        if halvings > MOST_HALVINGS or any(not answer.ok for _, answer in known.values()):
+        raised = all(run.outcome == "raised" for run in runs if run.integrator.name == name)
+        lost = [a for _, a in known.values() if not (a.ok or (raised and a.outcome == "raised"))]
+        if len(known) >= MOST_HALVINGS or lost:
             continue
-        sweep = wanted[name] or finest.refined(2**halvings)
+        stepped = [one for one in known if one.accuracy is None]
+        shortest = min((finest, *stepped), key=lambda one: one.timestep)
+        sweep = wanted[name] or shortest.refined(2)
         known[sweep] = (sweep, driver.run(case, name, sweep))
         done.append(name)
     return done

@@ -39,6 +39,7 @@ from omegadot.harness.judging.no_solution import (
     unjudged_row,
 )
 from omegadot.harness.judging.probed import rows_with_probes
+from omegadot.harness.judging.raised import judge_raised
 from omegadot.harness.requests.step_probes import roundings_in
 from omegadot.reference_impl.system import State
 from omegadot.workers.harness_end.process import Answer
@@ -75,8 +76,15 @@ def _judge_steps(
         measured = measured_runs.get(sweep)
         if measured is None:
             note = reason_without_a_solution(truth, integrator, sweep, answers)
-            unsolved = JudgedRun(integrator, sweep, "diverged", note, [unjudged_row(note)], note)
-            yield unsolved if note else failed(integrator, sweep, answer, eps)
+            begun = result.begun.get((integrator.name, sweep.timestep))
+            if note:
+                rows = [unjudged_row(note)]
+                yield JudgedRun(integrator, sweep, "diverged", note, rows, note)
+            elif begun is not None:
+                tried = [*answers, *finer]
+                yield judge_raised(truth, integrator, sweep, begun, tried, declared, known)
+            else:
+                yield failed(integrator, sweep, answer, eps)
             continue
         state = states[sweep]
         findings = findings_of(measured, declared, known)

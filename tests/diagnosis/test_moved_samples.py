@@ -1,0 +1,117 @@
+"""Samples that are the state of another step than their time's, by their number in every run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_over_runs import CASES, STEPS, euler, kept
+
+from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
+from omegadot.diagnosis.stepping.moved_samples import moved_samples
+from omegadot.reference_impl.schemes import SCHEMES, Motion
+from omegadot.reference_impl.schemes.scheme import CHANNELS
+from omegadot.reference_impl.system import Array, System
+
+EULER = "semi-implicit-euler"
+BY = SchemeOf(SCHEMES[EULER], "com-world")
+PLANS = ((0.02, 1), (0.009, 2), (0.004, 5))
+FIRST = "the first sample after the start is the state {}, at the right time"
+Shift = Callable[[int], int]
+
+
+def step(
+    system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+) -> tuple[Array, Array]:
+    return euler(motion, q, v, h, np.zeros(3))
+
+
+def moved(run: KeptRun, every: int, shift: Shift) -> KeptRun:
+    """Each sample as of so many steps more. run: of which each step is a sample."""
+    places = np.arange(0, len(run.times), every)[: STEPS + 1]
+    numbers = np.maximum(places + [shift(i) if i else 0 for i in range(len(places))], 0)
+    sweep = replace(run.sweep, steps=int(places[-1]), every=every)
+    bounds = {c: values[: len(places) - 1] for c, values in run.bounds.items()}
+    state = run.state[np.minimum(numbers, len(run.times) - 1)]
+    found = replace(run, sweep=sweep, times=sweep.times, state=state, bounds=bounds)
+    return replace(found, fails=not bool(np.all(found.sound(BY))))
+
+
+def found(*shifts: Shift, scheme: str | None = EULER, spoiled: str = "") -> tuple[str, set[str]]:
+    """Of runs whose samples are moved in one of these ways, in turn."""
+    runs = list[KeptRun]()
+    for one in CASES:
+        for h, every in PLANS:
+            whole = kept(one, step, h, 1)
+            runs.append(moved(whole, every, shifts[len(runs) % len(shifts)]))
+            if one.name == spoiled:
+                w = runs[-1].state.angular_velocity.copy()
+                w[-1] += 1e-3
+                state = replace(runs[-1].state, angular_velocity=w)
+                runs[-1] = replace(runs[-1], state=state, fails=True)
+    seen = moved_samples(Integrator("own", scheme, dict.fromkeys(CHANNELS, 1)), runs)
+    return ("", set()) if seen is None else (seen.statement, set(seen.names))
+
+
+@pytest.mark.parametrize("scheme", [EULER, None])
+@pytest.mark.parametrize(
+    ("shift", "text"),
+    [
+        (lambda i: -(i == 1), FIRST.format("one step early")),
+        (lambda i: int(i == 1), FIRST.format("one step further")),
+        (
+            lambda i: -(i == 4),
+            "sample 4 of a run is the state one step early, at the right time",
+        ),
+        (lambda i: -2 * (i == 1), FIRST.format("two steps early")),
+        (
+            lambda i: -(i % 2 == 0),
+            "of every 2 samples of a run the last is the state one step early, at the right time",
+        ),
+        (
+            lambda i: int(i % 3 == 1),
+            "of every 3 samples of a run one is the state one step further, at the right time: "
+            "first sample 1",
+        ),
+    ],
+)
+def test_samples_of_another_step_are_one_cause(shift: Shift, text: str, scheme: str | None) -> None:
+    """Caught: "only the first steps are wrong", and "steps of 0.01 s do not move the body"."""
+    assert found(shift, scheme=scheme) == (text, {one.name for one in CASES})
+
+
+def test_what_is_not_so_of_every_run_is_not_named() -> None:
+    """Caught: one run's samples taken for those of all."""
+    assert found(lambda i: 0) == ("", set())
+    assert found(lambda i: -(i == 1), lambda i: 0) == ("", set())
+    assert found(lambda i: -(i == 1), lambda i: -(i == 2)) == ("", set())
+    assert found(lambda i: -(i >= 1)) == ("", set())
+
+
+def test_a_scenario_that_is_wrong_elsewhere_is_left_to_other_causes() -> None:
+    text, names = found(lambda i: -(i == 1), spoiled="damped")
+    assert text == FIRST.format("one step early")
+    assert names == {one.name for one in CASES} - {"damped"}
+
+
+def test_a_first_step_that_is_not_taken_is_no_sample_of_another_step() -> None:
+    """Caught: a run that stays one step behind, of which one sample shows it as well."""
+
+    def skip(
+        system: System, motion: Motion, q: Array, v: Array, h: float, n: int
+    ) -> tuple[Array, Array]:
+        return euler(motion, q, v, h, np.zeros(3)) if n else (q, v)
+
+    runs = [replace(kept(one, skip, h, every), fails=True) for one in CASES for h, every in PLANS]
+    assert moved_samples(Integrator("own", EULER, dict.fromkeys(CHANNELS, 1)), runs) is None
+    assert all(run.goes_on(BY) for run in runs)  # and its later steps are not too short to act
+
+
+def test_steps_that_move_nothing_do_not_go_on() -> None:
+    runs = [
+        kept(one, lambda s, m, q, v, h, n: (q, v), h, every) for one in CASES for h, every in PLANS
+    ]
+    assert not any(run.goes_on(BY) for run in runs)
