@@ -109,7 +109,8 @@ class Across:
             limited = self._rule(limited_inertia, INVERSE)
             if limited and limited == self._rule(limited_inertia, FORWARD):
                 return [limited]
-        return [f"in inverse dynamics, {limited}"] if limited else self._inverse.causes(name)
+        own = f"in inverse dynamics, {limited.removeprefix('in the dynamics, ')}"
+        return [own] if limited else self._inverse.causes(name)
 
     def formula_of_torque(self, name: str) -> str:
         """The formula of a wrong torque; "" where none holds on the whole run."""

@@ -66,9 +66,11 @@ def _cuts(inertia: Array) -> Iterator[_Cut]:
     for name, part in (("xx, yy, zz", np.tril(inertia)), ("zz, yy, xx", np.triu(inertia))):
         start = np.linalg.inv(part)
         for sweeps in range(1, SWEEPS + 1):
-            text = f"what {_times(sweeps, 'sweep')} of Gauss-Seidel in the order {name} give"
+            give = "gives" if sweeps == 1 else "give"
+            text = f"what {_times(sweeps, 'sweep')} of Gauss-Seidel in the order {name} {give}"
             made = _series(inertia, start, sweeps - 1)
-            yield _Cut(f"{SOLVED} {text}, from zero", made)
+            if sweeps > 1:  # one is the inverse of a triangle, which is named so
+                yield _Cut(f"{SOLVED} {text}, from zero", made)
             left = np.linalg.matrix_power(one - start @ inertia, sweeps)
             yield _Cut(f"{SOLVED} {text}, from the diagonal's inverse", made + left @ over)
     norms = np.linalg.norm(inertia, 1) * np.linalg.norm(inertia, np.inf)
@@ -80,7 +82,8 @@ def _cuts(inertia: Array) -> Iterator[_Cut]:
     for name, start in starts.items():
         for steps in range(1, STEPS + 1):
             made = _newton(inertia, start, steps)
-            text = f"what {_times(steps, 'step')} of Newton-Schulz from {name} give"
+            give = "gives" if steps == 1 else "give"
+            text = f"what {_times(steps, 'step')} of Newton-Schulz from {name} {give}"
             yield _Cut(f"{SOLVED} {text}", made)
 
 
