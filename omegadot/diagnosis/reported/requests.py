@@ -22,6 +22,9 @@ AGAIN = {
 }
 
 
+ONE_ALONE = "one state requested by itself is answered wrongly; the same among others is right"
+
+
 def again_cause(rows: Sequence[Row]) -> str:
     """Of the failed rows of a run those in which two answers to one request differ; else ""."""
     failed = {row.metric for row in rows if row.verdict == "fail"}
@@ -52,7 +55,7 @@ def batch_cause(failed: set[tuple[str, str]]) -> str:
     """One state by itself and the same among others; failed: the gates and metrics of the rows."""
     together = {"residual", "residual_on_path"} & {metric for _, metric in failed}
     if ("equation", "residual_alone") in failed and not together:
-        return "one state requested by itself is answered wrongly; the same among others is right"
+        return ONE_ALONE
     return ""
 
 
