@@ -18,22 +18,14 @@ import numpy as np
 
 from omegadot.diagnosis.case_causes import CaseCauses
 from omegadot.diagnosis.defect import kept_apart
-from omegadot.diagnosis.equations.across import Across
 from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.experiments.asked import Asked
-from omegadot.diagnosis.experiments.in_batches import (
-    InBatches,
-    alone_text,
-    in_batches,
-    in_small_batches,
-    is_of_batches,
-    sources_of,
-)
+from omegadot.diagnosis.experiments.in_batches import InBatches
 from omegadot.diagnosis.experiments.judges import changes_by_itself
 from omegadot.diagnosis.experiments.run_before import after_runs
 from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditions_of
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
-from omegadot.diagnosis.reported.requests import AGAIN, ONE_ALONE
+from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.stepping.after_run import AfterRun, taken_of_run_before
 from omegadot.diagnosis.wording.kinds import beside_others, is_named, kind_of
 from omegadot.gates.case import Case
@@ -72,8 +64,7 @@ class Causes:
         self._conditions: dict[tuple[str, tuple[object, ...]], Conditions] = {}
         self._asked: dict[str, Asked] = {}
         self._unsteady: dict[str, bool] = {}
-        self._batches: dict[tuple[str, str], InBatches] = {}
-        self._small: dict[tuple[str, str], Across] = {}
+        self._batches: dict[str, InBatches] = {}
         self._after: dict[tuple[str, str], list[AfterRun]] = {}
 
     def add(self, judged: JudgedCase, found: EngineCase, seed: int) -> CaseCauses:
@@ -89,7 +80,7 @@ class Causes:
         self._cases.setdefault(name, {})[judged.case.name] = causes
         # what was found before may not hold any more
         self._texts, self._conditions, self._followed = {}, {}, {}
-        self._batches, self._small = {}, {}
+        self._batches = {}
         return causes
 
     def text(self, engine: str, case: str, run: JudgedRun | None) -> str:
@@ -186,30 +177,21 @@ class Causes:
 
     def _in_batches(self, engine: str, own: CaseCauses, text: str) -> tuple[str, bool]:
         """The cause with the batches of states in which it acts, and whether these decide."""
-        alone, key = text == ONE_ALONE, (engine, kind_of(text))
-        scenes = self._engines[engine].across.scenes
-        if is_of_batches(text):
-            return text, False
+        if engine not in self._batches:
+            cases = {name: one.case for name, one in self._cases[engine].items()}
+            self._batches[engine] = InBatches(cases, self._engines[engine].across.scenes)
+        batches, about = self._batches[engine], (own.case.name, text, own.of_torques)
 
         def call(driver: Driver) -> Conditions:
             asked = self._asked.setdefault(engine, Asked(driver))
             with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-                how = (scenes[own.case.name], sources_of(own.of_torques), alone)
-                self._batches[key] = found = in_batches(asked, own.case, *how)
-                if alone and found.size and not own.of_torques:
-                    cases = {name: one.case for name, one in self._cases[engine].items()}
-                    self._small[key] = in_small_batches(asked, cases, scenes, found)
+                batches.ask(asked, *about)
             return Conditions("")
 
-        if key not in self._batches and self.ask is not None:
-            if sum(name == engine for name, _ in self._batches) >= MOST_EXPERIMENTS:
-                return text, False
+        if batches.wants(text, own.of_torques) and self.ask is not None:
             self.ask(engine, call)
-        found = self._batches.get(key, InBatches())
-        if alone:
-            with np.errstate(all="ignore"):
-                return alone_text(text, self._small.get(key), own.case.name, found), True
-        return found.of(text), bool(found.condition)
+        with np.errstate(all="ignore"):
+            return batches.of(*about)
 
     def _of_run_before(self, engine: str, own: CaseCauses, integrator: str) -> str:
         """What the first step of a run takes of the run before; "" where that is not known.

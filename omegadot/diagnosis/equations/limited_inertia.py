@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.diagnosis.equations.equation_form import form_of
-from omegadot.diagnosis.equations.evidence import INVERSE, Evidence
+from omegadot.diagnosis.equations.evidence import INVERSE, SLACK, Evidence
 from omegadot.diagnosis.equations.inertia_places import PLACES, Place
 from omegadot.diagnosis.equations.wrong_inverse import is_of_torque
 from omegadot.diagnosis.wording.digits import number
@@ -111,8 +111,13 @@ def _laws(
             return
         found.append(here)
     values, known_to = np.transpose(found)
+    shown = np.isfinite(known_to)
+    if np.count_nonzero(shown) < LEAST:
+        return
+    values, known_to = values[shown], known_to[shown]
+    show = [e for e, k in zip(wrong, shown, strict=True) if k]
     for scale in _scales(limit.above):
-        sizes = np.array([scale.size(e.system, place.requested(e.system)) for e in wrong])
+        sizes = np.array([scale.size(e.system, place.requested(e.system)) for e in show])
         factors, weights = values / sizes, (sizes / known_to) ** 2
         factor = float(np.sum(weights * factors) / np.sum(weights))
         if not np.isfinite(factor):
@@ -129,7 +134,8 @@ def _laws(
 
 
 def _limits_of(evidence: Evidence, place: Place, limit: _Limit) -> Iterator[tuple[float, float]]:
-    """What the numbers of one scenario are limited to, and how well that is known, kg m^2.
+    """What the numbers of one scenario are limited to, and how well that is known, kg m^2; where
+    nothing shows it, no number that is known to infinity.
 
     ``J = T + l P``, T without the numbers that are limited and P what these stand before, is put in
     the balance of torques, which is linear in l.
@@ -144,7 +150,11 @@ def _limits_of(evidence: Evidence, place: Place, limit: _Limit) -> Iterator[tupl
         )
         line, due = _balance(evidence, place.parts, before, gone)
         size = float(line @ line)
-        if not (size > 0.0 and np.isfinite(size) and np.all(np.isfinite(due))):
+        if not (np.isfinite(size) and np.all(np.isfinite(due))):
+            continue
+        if np.sqrt(size) * numbers[chosen[-1]] <= SLACK * np.sqrt(len(line)):
+            if count == len(numbers) and np.all(np.abs(due) <= SLACK):
+                yield np.nan, np.inf  # without a torque a sphere's moment shows nothing
             continue
         value = float(line @ due) / size
         changed = limit.held(numbers, value) != numbers

@@ -114,9 +114,9 @@ def _by_lanes(seen: Mapping[int, Flags]) -> Iterator[Pattern]:
 
 def _of_lanes(lanes: int) -> Iterator[Pattern]:
     """Of batches that are worked through a few states at a time: what is left, or all else."""
-    left = f"of those {TOGETHER} that are left of {lanes} at a time"
-    yield Pattern(f"a state is one {left}", lambda k, n: k >= n - n % lanes)
-    yield Pattern(f"a state is none {left}", lambda k, n: k < n - n % lanes)
+    left = f"left over of those {TOGETHER}, taken {lanes} at a time"
+    yield Pattern(f"a state is {left}", lambda k, n: k >= n - n % lanes)
+    yield Pattern(f"a state is not {left}", lambda k, n: k < n - n % lanes)
     for place in range(lanes if lanes <= MOST_PLACES else 0):
         yield from _of_lane(lanes, place)
 

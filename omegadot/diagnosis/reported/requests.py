@@ -59,6 +59,14 @@ def batch_cause(failed: set[tuple[str, str]]) -> str:
     return ""
 
 
+PLACE = "only the {} of several states that are requested together is answered wrongly"
+
+
+def is_of_place(text: str) -> bool:
+    """Whether a cause is `place_cause`, where nothing more is known of it."""
+    return text in {PLACE.format(which) for which in ("first", "last")}
+
+
 def place_cause(evidence: Evidence) -> str:
     """Where the answer depends on the place among the states that are requested together."""
     wrong, count = np.flatnonzero(~evidence.sound), len(evidence.sound)
@@ -67,6 +75,6 @@ def place_cause(evidence: Evidence) -> str:
     which, beside = ("last", -2) if wrong[0] else ("first", 1)
     found = evidence.found.angular
     same = bool(np.array_equal(found[wrong[0]], found[beside]))
-    text = f"only the {which} of several states that are requested together is answered wrongly"
+    text = PLACE.format(which)
     other = "before" if wrong[0] else "after"
     return f"{text}: its omega-dot is that of the one {other}" if same else text
