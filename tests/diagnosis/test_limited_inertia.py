@@ -31,6 +31,7 @@ from omegadot.reference_impl.motion import (
 from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
+ROUND = [0.4, 0.41, 0.6]
 Change = Callable[[System], Array]  # by what the moving inertia is more
 BOTH, SOLVE, SPIN = ("solve", "spin"), ("solve",), ("spin",)
 
@@ -137,6 +138,19 @@ def test_a_limit_is_named_with_what_it_goes_with(
 ) -> None:
     """Caught: six other numbers on each body."""
     assert limited_inertia(evidence(more, parts)) == text
+
+
+def test_a_sphere_without_a_torque_shows_no_number() -> None:
+    """It does not turn otherwise, whatever its moment is: the others show the law."""
+    more = by_diagonal(lambda s, t: 0.03 * float(s.body.mass), np.minimum)
+    bodies = [EVERY[3], *(case(f"sphere-{k}", {}, 0.5 * k, ROUND) for k in (1, 2))]
+    bodies.append(case("driven", {"torque": BODY_TORQUE}, 3.0, ROUND))
+    made = list[Evidence]()
+    for one in bodies:
+        x, found = random_states(one, 30, [1]), wrong(more, BOTH)
+        made.append(of_forward_dynamics(one.system, x, found(one.system, x)))
+    text = "in the dynamics, the diagonal of the inertia is limited to 0.03 m^2 times the mass"
+    assert text in limited_inertia(made)
 
 
 def test_other_moments_without_a_law_are_no_limit() -> None:

@@ -106,10 +106,10 @@ def _laws(
     """The limits that make all scenarios, as text."""
     found = list[tuple[float, float]]()
     for evidence in wrong:
-        here = next(_limits_of(evidence, place, limit), None)
-        if here is None:
+        here = [*_limits_of(evidence, place, limit)]
+        if not here:
             return
-        found.append(here)
+        found.append(max(here, key=lambda one: one[1]))
     values, known_to = np.transpose(found)
     shown = np.isfinite(known_to)
     if np.count_nonzero(shown) < LEAST:
