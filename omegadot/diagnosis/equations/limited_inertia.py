@@ -153,7 +153,8 @@ def _limits_of(evidence: Evidence, place: Place, limit: _Limit) -> Iterator[tupl
         if not (np.isfinite(size) and np.all(np.isfinite(due))):
             continue
         if np.sqrt(size) * numbers[chosen[-1]] <= SLACK * np.sqrt(len(line)):
-            if count == len(numbers) and np.all(np.abs(due) <= SLACK):
+            sphere = 2.0 * np.max(numbers) if limit.above else 0.5 * np.min(numbers)
+            if count == len(numbers) and _makes(evidence, place, limit, float(sphere)):
                 yield np.nan, np.inf  # without a torque a sphere's moment shows nothing
             continue
         value = float(line @ due) / size
