@@ -145,6 +145,16 @@ class CaseCauses:
         channels = {row.channel for row in self._shared_rows}
         return failed == {"equation"} and known and channels != {"torque"}
 
+    def of_answers(self, integrator: str | None) -> bool:
+        """Whether answers at states fail, which explain the runs, and body and states are right."""
+        failed = {row.gate for row in self._shared_rows} == {"equation"}
+        return failed and (integrator is None or self._explains_runs)
+
+    @property
+    def of_torques(self) -> bool:
+        """Whether those of inverse dynamics alone do."""
+        return {row.channel for row in self._shared_rows} == {"torque"}
+
     @property
     def case(self) -> Case:
         """The case."""

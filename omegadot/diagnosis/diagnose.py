@@ -20,6 +20,7 @@ from omegadot.diagnosis.case_causes import CaseCauses
 from omegadot.diagnosis.defect import kept_apart
 from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.experiments.asked import Asked
+from omegadot.diagnosis.experiments.in_batches import InBatches
 from omegadot.diagnosis.experiments.judges import changes_by_itself
 from omegadot.diagnosis.experiments.run_before import after_runs
 from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditions_of
@@ -63,6 +64,7 @@ class Causes:
         self._conditions: dict[tuple[str, tuple[object, ...]], Conditions] = {}
         self._asked: dict[str, Asked] = {}
         self._unsteady: dict[str, bool] = {}
+        self._batches: dict[str, InBatches] = {}
         self._after: dict[tuple[str, str], list[AfterRun]] = {}
 
     def add(self, judged: JudgedCase, found: EngineCase, seed: int) -> CaseCauses:
@@ -78,6 +80,7 @@ class Causes:
         self._cases.setdefault(name, {})[judged.case.name] = causes
         # what was found before may not hold any more
         self._texts, self._conditions, self._followed = {}, {}, {}
+        self._batches = {}
         return causes
 
     def text(self, engine: str, case: str, run: JudgedRun | None) -> str:
@@ -137,6 +140,10 @@ class Causes:
         own = self._cases[engine][case]
         if integrator is None and own.of_forward_dynamics and self._changes(engine, own):
             return CHANGES
+        if self.ask is not None and own.of_answers(integrator):
+            text, known = self._in_batches(engine, own, text)
+            if known:
+                return text
         if integrator is not None and text in AGAIN.values() and self.ask is not None:
             return self._of_run_before(engine, own, integrator) or text
         subject = own.subject(integrator, text) if self.ask is not None else None
@@ -167,6 +174,24 @@ class Causes:
 
             self._unsteady[engine] = bool(self.ask(engine, call).condition)
         return self._unsteady.get(engine, False)
+
+    def _in_batches(self, engine: str, own: CaseCauses, text: str) -> tuple[str, bool]:
+        """The cause with the batches of states in which it acts, and whether these decide."""
+        if engine not in self._batches:
+            cases = {name: one.case for name, one in self._cases[engine].items()}
+            self._batches[engine] = InBatches(cases, self._engines[engine].across.scenes)
+        batches, about = self._batches[engine], (own.case.name, text, own.of_torques)
+
+        def call(driver: Driver) -> Conditions:
+            asked = self._asked.setdefault(engine, Asked(driver))
+            with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+                batches.ask(asked, *about)
+            return Conditions("")
+
+        if batches.wants(text, own.of_torques) and self.ask is not None:
+            self.ask(engine, call)
+        with np.errstate(all="ignore"):
+            return batches.of(*about)
 
     def _of_run_before(self, engine: str, own: CaseCauses, integrator: str) -> str:
         """What the first step of a run takes of the run before; "" where that is not known.

@@ -11,10 +11,12 @@ from omegadot.diagnosis.equations.at_states import AtSomeStates, where_wrong
 from omegadot.diagnosis.equations.by_formula import Formulas
 from omegadot.diagnosis.equations.candidate import Candidate
 from omegadot.diagnosis.equations.carried import Carried
-from omegadot.diagnosis.equations.evidence import INVERSE, Evidence
+from omegadot.diagnosis.equations.evidence import FORWARD, INVERSE, Evidence
 from omegadot.diagnosis.equations.held import Scene, Scenes
+from omegadot.diagnosis.equations.inverse_series import inverse_series
 from omegadot.diagnosis.equations.known import kinds_off, known_over
 from omegadot.diagnosis.equations.left_over import LeftOver
+from omegadot.diagnosis.equations.limited_inertia import limited_inertia
 from omegadot.diagnosis.equations.mistyped import Mistyped
 from omegadot.diagnosis.equations.near_inertia import near_inertia
 from omegadot.diagnosis.equations.pivot_inertia import pivot_inertia
@@ -24,6 +26,7 @@ from omegadot.diagnosis.equations.worded import Named, named, on_some, on_these_
 from omegadot.diagnosis.equations.wrong_inverse import WrongInverse
 
 Rule = Callable[[Sequence[Evidence]], str]  # of all scenarios of one source
+OF_INERTIA: tuple[Rule, ...] = (near_inertia, inverse_series, limited_inertia)
 
 
 class Across:
@@ -102,7 +105,12 @@ class Across:
 
     def of_torque(self, name: str) -> list[str]:
         """What the torque of inverse dynamics leaves out, counts twice or is made of in error."""
-        return self._inverse.causes(name)
+        with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
+            limited = self._rule(limited_inertia, INVERSE)
+            if limited and limited == self._rule(limited_inertia, FORWARD):
+                return [limited]
+        own = f"in inverse dynamics, {limited.removeprefix('in the dynamics, ')}"
+        return [own] if limited else self._inverse.causes(name)
 
     def formula_of_torque(self, name: str) -> str:
         """The formula of a wrong torque; "" where none holds on the whole run."""
@@ -129,9 +137,9 @@ class Across:
         found = self._shared(scene, source, PLAIN)
         if found.text and self._wrong(source) <= found.names:
             return found
-        near = Named(self._rule(near_inertia, source))  # one rule of all that is wrong
-        if near.text or found.text:
-            return near if near.text else found
+        ruled = self._by_rule(source)
+        if ruled.text or found.text:
+            return ruled if ruled.text else found
         found = on_some(self._searched.quick(scene, source, PLAIN).partial)
         found = found if found.text else Named(self._at_states.cause(scene, source))
         if found.text:
@@ -160,8 +168,13 @@ class Across:
         every = ((s.name, s.evidence.get(source)) for s in self.scenes.values())
         return {name for name, evidence in every if evidence is not None and evidence.clear}
 
+    def _by_rule(self, source: str) -> Named:
+        """One rule of the inertia's numbers that makes all that is wrong."""
+        texts = (self._rule(rule, source) for rule in OF_INERTIA)
+        return Named(next(filter(None, texts), ""))
+
     def _rule(self, rule: Rule, source: str) -> str:
-        """A rule of the inertia's numbers that makes all that is wrong."""
+        """A rule that makes all that is wrong; "" where this does not."""
         if (rule, source) not in self._rules:
             self._rules[rule, source] = rule(self._all.evidence(source))
         return self._rules[rule, source]

@@ -2,42 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from omegadot.diagnosis.equations.equation_form import Form, form_of
+from omegadot.diagnosis.equations.equation_form import form_of
 from omegadot.diagnosis.equations.evidence import Evidence
+from omegadot.diagnosis.equations.inertia_places import PLACES, Place
 from omegadot.diagnosis.models.near_numbers import NEAR_RULES, SMALL_RULES, NearRule
 from omegadot.diagnosis.wording.digits import limits
-from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.system import Array, System
+from omegadot.reference_impl.system import Array
 from omegadot.written import written
 
 SEVERAL = 2  # readings between which nothing decides are said as what they share
-
-
-@dataclass(frozen=True)
-class _Place:
-    """text: where the tensor is used.  parts: of the equation.  moving: the whole inertia is
-    changed, of a pivoted body that about the pivot.
-    """
-
-    text: str
-    parts: tuple[str, ...]
-    moving: bool
-
-
-PLACES = tuple(
-    _Place(text, parts, moving)
-    for moving in (False, True)
-    for text, parts in (
-        ("in the dynamics", ("solve", "spin")),
-        ("where omega-dot is solved for", ("solve",)),
-        ("in the gyroscopic term", ("spin",)),
-    )
-)
 
 
 @dataclass(frozen=True)
@@ -45,7 +23,7 @@ class _Fit:
     """A rule at a place with the limits, in between which it is the engine's on every scenario."""
 
     rule: NearRule
-    place: _Place
+    place: Place
     low: float
     high: float
 
@@ -79,9 +57,9 @@ def _fits(every: Sequence[Evidence], first: Evidence) -> Iterator[_Fit]:
                 yield _Fit(rule, place, *_around(known, tried[first_], tried[last]))
 
 
-def _own(evidence: Evidence, place: _Place, rule: NearRule) -> Array:
+def _own(evidence: Evidence, place: Place, rule: NearRule) -> Array:
     """The ratios of one system, of which none is no limit."""
-    found = rule.ratios(_requested(evidence.system, place))
+    found = rule.ratios(place.requested(evidence.system))
     return found[found > 0.0]
 
 
@@ -100,31 +78,15 @@ def _around(known: Array, first: float, last: float) -> tuple[float, float]:
     return float(np.max(known[known < first])), float(np.min(above)) if len(above) else np.inf
 
 
-def _requested(system: System, place: _Place) -> Array:
-    return np.asarray(moving_inertia(system) if place.moving else system.body.inertia, dtype=float)
-
-
-def _fitting(evidence: Evidence, place: _Place, rule: NearRule, tried: Array) -> Array:
+def _fitting(evidence: Evidence, place: Place, rule: NearRule, tried: Array) -> Array:
     """(k,): at which of the limits tried the rule is the engine's."""
     system = evidence.system
-    requested, right = _requested(system, place), form_of(system)
+    requested, right = place.requested(system), form_of(system)
     tensors = [rule.tensor(requested, float(limit)) for limit in tried]
     distinct = list({t.tobytes(): t for t in tensors}.values())
-    forms = [_form(right, system, place, t) for t in distinct]
+    forms = [place.form(right, system, t) for t in distinct]
     fits = {distinct[k].tobytes() for k in evidence.fitting(forms)}
     return np.array([t.tobytes() in fits for t in tensors], dtype=bool)
-
-
-def _form(right: Form, system: System, place: _Place, tensor: Array) -> Form | None:
-    whole = np.asarray(moving_inertia(system), dtype=float)
-    made = tensor if place.moving else whole + tensor - np.asarray(system.body.inertia)
-    if not np.linalg.eigvalsh(made)[0] > 0.0:
-        return None
-    parts: dict[str, Callable[[], Array]] = {
-        "solve": lambda: np.linalg.inv(made),
-        "spin": lambda: made,
-    }
-    return replace(right, **{name: parts[name]() for name in place.parts})
 
 
 def _text(found: Sequence[_Fit]) -> str:

@@ -71,7 +71,7 @@ def _forms(every: Sequence[Evidence]) -> list[str]:
     left: list[str] | None = None
     for one in (*wrong, *(other for other in every if not other.clear)):
         known = _wrong_forms(one.system)
-        fits = [text for text, form in known.items() if np.all(_is_of(one, form))]
+        fits = [text for text, form in known.items() if np.all(is_of_torque(one, form))]
         # where a hypothesis has no meaning, or makes no difference, it is as right as the equation
         absent = [] if one.clear or left is None else [t for t in left if t not in known]
         left = [t for t in (fits if left is None else left) if t in {*fits, *absent}]
@@ -86,7 +86,7 @@ def _wrong_forms(system: System) -> Mapping[str, Form]:
     return {text: form for text, form in made.items() if form is not None}
 
 
-def _is_of(evidence: Evidence, form: Form) -> NDArray[np.bool_]:
+def is_of_torque(evidence: Evidence, form: Form) -> NDArray[np.bool_]:
     """(n,): whether ``solve^-1 a + omega x (spin omega) - arm x weight`` is what is answered."""
     states, requested = evidence.states, evidence.true.angular
     w = states.angular_velocity

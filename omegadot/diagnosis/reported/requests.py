@@ -22,6 +22,9 @@ AGAIN = {
 }
 
 
+ONE_ALONE = "one state requested by itself is answered wrongly; the same among others is right"
+
+
 def again_cause(rows: Sequence[Row]) -> str:
     """Of the failed rows of a run those in which two answers to one request differ; else ""."""
     failed = {row.metric for row in rows if row.verdict == "fail"}
@@ -52,8 +55,16 @@ def batch_cause(failed: set[tuple[str, str]]) -> str:
     """One state by itself and the same among others; failed: the gates and metrics of the rows."""
     together = {"residual", "residual_on_path"} & {metric for _, metric in failed}
     if ("equation", "residual_alone") in failed and not together:
-        return "one state requested by itself is answered wrongly; the same among others is right"
+        return ONE_ALONE
     return ""
+
+
+PLACE = "only the {} of several states that are requested together is answered wrongly"
+
+
+def is_of_place(text: str) -> bool:
+    """Whether a cause is `place_cause`, where nothing more is known of it."""
+    return text in {PLACE.format(which) for which in ("first", "last")}
 
 
 def place_cause(evidence: Evidence) -> str:
@@ -64,6 +75,6 @@ def place_cause(evidence: Evidence) -> str:
     which, beside = ("last", -2) if wrong[0] else ("first", 1)
     found = evidence.found.angular
     same = bool(np.array_equal(found[wrong[0]], found[beside]))
-    text = f"only the {which} of several states that are requested together is answered wrongly"
+    text = PLACE.format(which)
     other = "before" if wrong[0] else "after"
     return f"{text}: its omega-dot is that of the one {other}" if same else text
