@@ -7,6 +7,7 @@ pivoted one's are roll, pitch, yaw and omega in world axes. The rates are writte
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,11 @@ from mujoco_cases import EPS, at, norm, states, system
 
 from omegadot.adapters.drake.adapter import DrakeAdapter
 from omegadot.adapters.drake.integrators import FIXED, PLANS
+from omegadot.adapters.drake.model import Stepping
+from omegadot.adapters.drake.stepping import DrakeStepper
 from omegadot.adapters.protocol import UnsupportedError
 from omegadot.adapters.registry import OURS, build_adapter
+from omegadot.gates.steps.accuracy import PER_STEP
 from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.motion import forward_dynamics
 from omegadot.reference_impl.rotations import attitude_angle, quaternion_product, rotate
@@ -164,6 +168,47 @@ def test_a_run_that_overflows_ends_in_nan_and_not_in_the_end_of_the_process() ->
         accuracy = None if PLANS[name].fixed else 1e-3
         found = adapter.run(fast, name, 1.0, 2, 1, accuracy).state
         assert not np.all(np.isfinite(found.angular_velocity[-1])), name
+
+
+def symmetric_top(name: str, accuracy: float) -> tuple[Array, int]:
+    """Where an error-controlled run of 0.25 s ends, and the steps that it took."""
+    of = System((Body(np.array(1.0), np.zeros(3), np.diag([1.0, 1.0, 2.0])),), Load())
+    spin = np.array([1.0, 0.0, 3.0])
+    adapter = drake(of)
+    first = State(np.array([1.0, 0, 0, 0]), spin, np.zeros(3), np.zeros(3))
+    start = adapter._loaded().coordinates(first)
+    stepper = DrakeStepper(adapter._engine, adapter._model(Stepping()), start)
+    own = stepper.integrate(name, 0.25)
+    own.set_target_accuracy(accuracy)
+    rows, _ = stepper.run(np.array([0.25]))
+    return rows[-1], own.get_num_steps_taken()
+
+
+@pytest.mark.parametrize("name", ["implicit_euler", "velocity_implicit_euler", "radau1"])
+def test_errors_and_steps_of_order_one_follow_the_root_of_the_accuracy(name: str) -> None:
+    """So a finest accuracy is one of cost: a hundredth of it takes ten times the steps.
+
+    A tenth and ten hold as the step vanishes; from 1e-5 on they hold within a factor of 1.5.
+    """
+    exact, _ = symmetric_top("runge_kutta5", 1e-13)
+    runs = [symmetric_top(name, accuracy) for accuracy in (1e-5, 1e-7)]
+    errors = [np.max(np.abs(end - exact)) for end, _ in runs]
+    assert 10 / 1.5 <= errors[0] / errors[1] <= 15
+    assert 10 / 1.5 <= runs[1][1] / runs[0][1] <= 15
+
+
+def test_radau3_keeps_its_accuracy_and_follows_no_power_of_it() -> None:
+    """Its steps follow ``t^(1/3)``. An estimate that keeps t leaves ``2 sqrt(13) t`` a step."""
+    exact, _ = symmetric_top("runge_kutta5", 1e-13)
+    accuracies = (1e-5, 1e-7, 1e-9)
+    runs = [symmetric_top("radau3", accuracy) for accuracy in accuracies]
+    errors = [float(np.max(np.abs(end - exact))) for end, _ in runs]
+    steps = [taken for _, taken in runs]
+    for accuracy, error, taken in zip(accuracies, errors, steps, strict=True):
+        assert error <= PER_STEP * accuracy * taken
+    for coarse, fine in pairwise(steps):
+        assert 100 ** (1 / 3) / 1.5 <= fine / coarse <= 100 ** (1 / 3) * 1.5
+    assert errors[0] / errors[1] < 100**0.5  # so that no finer accuracy shows an order
 
 
 def test_it_describes_itself() -> None:

@@ -51,6 +51,7 @@ def test_lines_stand_out_from_the_page(theme):
     assert min(contrast(pair[theme], panel) for pair in (*COLOURS, INK)) >= 3.0
 
 
+JUST_NOTICEABLE = 2.3  # CIE76
 # Viénot, Brettel and Mollon (1999): linear RGB as a protanope and a deuteranope see it.
 SEEN = {
     "protan": ((0.11238, 0.88762, 0.0), (0.11238, 0.88762, 0.0), (0.00401, -0.00401, 1.0)),
@@ -86,6 +87,33 @@ def test_known_engines_keep_their_colours_and_no_two_share_one():
     assert some["mujoco"] == more["mujoco"]
     assert some["dart"] == more["dart"]
     assert len(set(more.values())) == 5
+
+
+@pytest.mark.parametrize("theme", [0, 1])
+def test_twenty_engines_can_be_told_apart_and_stand_out_from_the_page(theme):
+    """Caught: a palette that begins again, and colours that differ in one theme alone."""
+    known = ["reference", "mujoco", "pinocchio", "dart", "drake"]
+    found = colours([*known, *(f"engine-{k}" for k in range(15))])
+    shades = [pair[theme] for pair in found.values()]
+    panel = themes()[theme]["panel"]
+    assert min(contrast(shade, panel) for shade in shades) >= 3.0
+
+    for sight in (*SEEN.values(), ((1, 0, 0), (0, 1, 0), (0, 0, 1))):
+        places = [
+            lab([sum(a * b for a, b in zip(row, linear(shade), strict=True)) for row in sight])
+            for shade in shades
+        ]
+        gaps = [
+            sum((a - b) ** 2 for a, b in zip(one, other, strict=True)) ** 0.5
+            for one, other in combinations(places, 2)
+        ]
+        assert min(gaps) > 4 * JUST_NOTICEABLE
+
+
+def test_a_further_engine_has_its_colour_whichever_of_the_known_are_there():
+    few, many = colours(["x", "y"]), colours(["dart", "x", "drake", "mujoco", "y"])
+    assert (few["x"], few["y"]) == (many["x"], many["y"])
+    assert many["drake"] == COLOURS[3]
 
 
 def test_a_scheme_is_a_dash_and_an_engine_never_repeats_one():

@@ -12,7 +12,12 @@ import numpy as np
 from omegadot.adapters.drake.integrators import declared_integrators, plan_of
 from omegadot.adapters.drake.joint import DrakeJoint
 from omegadot.adapters.drake.model import SWITCHED_OFF, DrakeModel, Stepping
-from omegadot.adapters.drake.stepping import DrakeStepper, is_finite, refuse_unresolved
+from omegadot.adapters.drake.stepping import (
+    NO_OTHER_JOINT,
+    DrakeStepper,
+    is_finite,
+    refuse_unresolved,
+)
 from omegadot.adapters.one_joint import OneJointAdapter
 from omegadot.adapters.protocol import (
     ONE_BODY,
@@ -41,6 +46,7 @@ LINKS = (
     "https://drake.mit.edu/doxygen_cxx/classdrake_1_1multibody_1_1_multibody_plant.html",
     "https://drake.mit.edu/doxygen_cxx/group__integrators.html",
     "https://github.com/RobotLocomotion/drake",
+    NO_OTHER_JOINT,
 )
 # Those of pydrake that are used; pydrake.all takes three times as long to import.
 PARTS = (
@@ -64,11 +70,11 @@ class DrakeAdapter(OneJointAdapter):
 
     @property
     def description(self) -> Description:
-        """Drake as it is installed; once a system is loaded, its integrators as they act on it."""
+        """Drake as it is installed, the same whatever system is loaded."""
         return Description(
             name=self.name,
             version=version("drake"),
-            integrators=declared_integrators(pivoted=self._pivoted),
+            integrators=declared_integrators(),
             conventions=CONVENTIONS,
             switched_off=SWITCHED_OFF if self._setup == "physics" else (),
             features=ONE_BODY,

@@ -19,6 +19,8 @@ LOOKED_AT = 64  # samples between two looks at whether a run is still finite
 SINGULAR = (
     "has reached a singularity"  # of the message in which Drake refuses a pitch of 90 degrees
 )
+# A ball joint of quaternions is wanted there, and is not to be had.
+NO_OTHER_JOINT = "https://github.com/RobotLocomotion/drake/issues/12404"
 ROOT_OF_LARGEST = 2.0**512  # the least number whose square is not finite
 
 
@@ -70,7 +72,7 @@ def refuse(error: RuntimeError, last: Array) -> None:
     if SINGULAR in reason:
         raise UnsupportedError(
             "Drake's ball joint has roll, pitch and yaw, and this motion takes its pitch to 90 "
-            "degrees, where BallRpyJoint refuses to step"
+            f"degrees, where BallRpyJoint refuses to step ({NO_OTHER_JOINT})"
         ) from error
     if is_finite(last):
         raise error
@@ -90,5 +92,6 @@ def refuse_unresolved(rows: Array, timestep: float) -> None:
     if np.any(turns > away):
         raise UnsupportedError(
             "Drake's ball joint has roll, pitch and yaw, and a step turns further than the motion "
-            "is away from a pitch of 90 degrees, where these are singular; take smaller steps"
+            "is away from a pitch of 90 degrees, where these are singular; take smaller steps "
+            f"({NO_OTHER_JOINT})"
         )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from omegadot.reports.charts.deviations import Chart
+from omegadot.reports.charts.further_colours import further_colours
 
 # Apart in the common forms of colour blindness, 3:1 or more against the page (light, dark).
 INK = ("#1c1f23", "#e6e8eb")
@@ -20,7 +21,13 @@ COLOURS = (
     ("#5b4fc4", "#a99ff5"),
     ("#6b7077", "#9aa1a9"),
 )
-_OWN = {"reference": INK, "mujoco": COLOURS[0], "pinocchio": COLOURS[1], "dart": COLOURS[2]}
+_OWN = {
+    "reference": INK,
+    "mujoco": COLOURS[0],
+    "pinocchio": COLOURS[1],
+    "dart": COLOURS[2],
+    "drake": COLOURS[3],
+}
 # As in SVG's stroke-dasharray, in px.
 DASHES = (
     "",
@@ -39,12 +46,14 @@ DASHES = (
 
 
 def colours(engines: Iterable[str]) -> dict[str, tuple[str, str]]:
-    """(light, dark) by engine; the well-known keep theirs in every report."""
+    """(light, dark) by engine; the well-known keep theirs in every report.
+
+    Each further one has the next colour that is far from all before it, and from the well-known
+    whether they are in the report or not.
+    """
     names = list(dict.fromkeys(engines))
-    taken = {_OWN[name] for name in names if name in _OWN}
-    free = [pair for pair in COLOURS if pair not in taken] or list(COLOURS)
     unknown = [name for name in names if name not in _OWN]
-    given = {name: free[k % len(free)] for k, name in enumerate(unknown)}
+    given = dict(zip(unknown, further_colours(tuple(_OWN.values()), len(unknown)), strict=True))
     return {name: _OWN.get(name) or given[name] for name in names}
 
 
