@@ -18,7 +18,12 @@ from omegadot.harness.drive import INTERRUPTED, CaseResult
 from omegadot.harness.engines import Engines, outcome_of
 from omegadot.harness.judging.engine import shared_rows
 from omegadot.harness.judging.judged_run import JudgedRun
-from omegadot.harness.judging.refine import MOST_HALVINGS, Refinements, refine
+from omegadot.harness.judging.refine import (
+    MOST_HALVINGS,
+    Refinements,
+    left_undecided,
+    refine,
+)
 from omegadot.harness.judging.runs import judge_case
 from omegadot.harness.outcome import (
     EngineCase,
@@ -226,7 +231,7 @@ class Runner:
     def execute(self) -> Outcome:
         """Run everything; Ctrl-C ends the workers and keeps what has come in."""
         judged: list[JudgedCase] = []
-        interrupted = False
+        interrupted, decided = False, 0
         pending: list[PendingCase] = []
         try:
             self.engines.start()
@@ -236,9 +241,11 @@ class Runner:
                 judged.append(self.judge(case, {}))
             for index, case in enumerate(pending):
                 judged[index] = self._resolve(case, judged[index])
+                decided = index + 1
         except KeyboardInterrupt:
             interrupted = True
             self.engines.stop()
+            judged[decided:] = [_with_undecided(case) for case in judged[decided:]]
             judged += [self._leftover(case) for case in pending[len(judged) :]]
         except BaseException:
             self.engines.stop()
@@ -252,3 +259,9 @@ class Runner:
         """A case that the interruption caught: none of it is judged, and it states so."""
         engines = [EngineCase(engine, CaseResult(), [], []) for engine in self.engines.started]
         return JudgedCase(pending.case, None, INTERRUPTED.reason, engines)
+
+
+def _with_undecided(case: JudgedCase) -> JudgedCase:
+    """A case whose finer steps the interruption caught."""
+    engines = [replace(one, runs=left_undecided(one.runs)) for one in case.engines]
+    return replace(case, engines=engines)

@@ -8,6 +8,7 @@ from omegadot.harness.judging.judged_run import JudgedRun
 from omegadot.workers.harness_end.process import Answer
 
 MOST_HALVINGS = 4
+UNDECIDED = "the run was interrupted before the finer steps that decide this task"
 Refinements = dict[str, dict[Sweep, tuple[Sweep, Answer]]]
 
 
@@ -35,3 +36,22 @@ def refine(driver: Driver, case: Case, runs: list[JudgedRun], finer: Refinements
         known[sweep] = (sweep, driver.run(case, name, sweep))
         done.append(name)
     return done
+
+
+def left_undecided(runs: list[JudgedRun]) -> list[JudgedRun]:
+    """The runs of an interrupted case: what finer steps could still decide has no verdict.
+
+    Nor has what fails by the order over all steps of such an integrator alone.
+    """
+    still_open = {run.integrator.name for run in runs if run.unresolved}
+    return [
+        JudgedRun(run.integrator, run.sweep, "interrupted", UNDECIDED)
+        if run.unresolved or (run.integrator.name in still_open and _fails_by_order(run))
+        else run
+        for run in runs
+    ]
+
+
+def _fails_by_order(run: JudgedRun) -> bool:
+    failing = {row.metric for row in run.rows if row.verdict == "fail"}
+    return failing == {"observed_order"}
