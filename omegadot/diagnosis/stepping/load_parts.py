@@ -12,9 +12,11 @@ from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, Schem
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.schemes import Motion
-from omegadot.reference_impl.system import Array
+from omegadot.reference_impl.system import Array, State
 
 LOADS = tuple(n for n, (parts, _) in TERMS.items() if not {"turn", "move"} & {*parts})
+MOST_FAILING, MOST_SOUND = 12, 12  # runs in which the loads are looked at
+SCENARIOS = 2  # at least, that show it
 DELTA, MOST_TRIES = 1e-3, 8
 FAINT = 10.0 * SLACK  # of bounds, below which a load does not show in a run
 TINY = 1e-300
@@ -56,6 +58,18 @@ def leads(run: KeptRun, own: SchemeOf, motion: Motion, lanes: int) -> Array:
     return np.asarray(np.all([norm(apart[c]) <= SLACK * run.bounds[c] for c in CHANNELS], axis=0))
 
 
+def looked_at(runs: Sequence[KeptRun]) -> tuple[list[KeptRun], list[KeptRun]]:
+    """Of the failing runs and of the sound ones some of few steps a sample; none of one scenario.
+
+    The sound ones are of the same scenarios first, whose loads they have.
+    """
+    names = {run.name for run in runs if run.fails}
+    order = sorted(runs, key=lambda run: (run.name not in names, run.sweep.every))
+    failing, sound = ([run for run in order if run.fails is fails] for fails in (True, False))
+    every = failing[:: max(1, len(failing) // MOST_FAILING)]
+    return (every, sound[:MOST_SOUND]) if len(names) >= SCENARIOS else ([], [])
+
+
 def least_stated(made: Mapping[str, str]) -> list[str]:
     """What is said of the load that is a part of all others of which it could be said as well."""
     for name, text in made.items():
@@ -72,22 +86,27 @@ def load_parts(run: KeptRun, by: SchemeOf, names: Sequence[str] = LOADS) -> dict
     shows = np.array([[c in TERMS[name][1] for c in CHANNELS] for name in names], dtype=float)
 
     def off(part: Array) -> tuple[Array, Array]:
-        """(lanes, m, ..): what is missed, in bounds, where the loads show; (lanes,): and at most.
-
-        At most of all that is missed, in any channel.
-        """
         motion = with_factors(run.system, own, load_factors(names, part))
-        apart = run.apart(run.ends(own, motion, len(names)))
-        lines = [apart[c] / np.maximum(run.bounds[c], TINY)[:, None] for c in CHANNELS]
-        most = np.max([norm(line) for line in lines], axis=(0, 2))
-        shown = [shows[:, k, None, None] * line for k, line in enumerate(lines)]
-        return np.concatenate(shown, axis=-1), np.asarray(most)
+        return missed(run, run.ends(own, motion, len(names)), shows)
 
     with np.errstate(all="ignore"):
-        return dict(zip(names, _fitted(len(names), off), strict=True))
+        return dict(zip(names, fitted_parts(len(names), off), strict=True))
 
 
-def _fitted(lanes: int, off: Callable[[Array], tuple[Array, Array]]) -> list[LoadPart]:
+def missed(run: KeptRun, ends: State, shows: Array) -> tuple[Array, Array]:
+    """By how much ends (lanes, m, ...) miss the samples, in bounds; (lanes,): by how much at most.
+
+    shows: (lanes, channels), one where a channel counts to the first; to the second each does.
+    """
+    apart = run.apart(ends)
+    lines = [apart[c] / np.maximum(run.bounds[c], TINY)[:, None] for c in CHANNELS]
+    most = np.max([norm(line) for line in lines], axis=(0, 2))
+    shown = [shows[:, k, None, None] * line for k, line in enumerate(lines)]
+    return np.concatenate(shown, axis=-1), np.asarray(most)
+
+
+def fitted_parts(lanes: int, off: Callable[[Array], tuple[Array, Array]]) -> list[LoadPart]:
+    """In each lane the number, from one on, with which nothing is missed. off: as `missed`."""
     part = np.ones(lanes)
     here, most = off(part)
     for _ in range(MOST_TRIES):

@@ -67,7 +67,7 @@ def _by_steps(spell: Spell, turns: Sequence[Turn]) -> str:
     low, high = max(one.low for one in turns), min(one.high for one in turns)
     if not 0 < low <= high or any(one.within for one in turns):
         return ""
-    count = number(low) if low == high else f"some {number(low)} to {number(high)}"
+    count = number(low) if low == high else f"{number(low)} to {number(high)}"
     steps = "step" if high == 1 else f"{count} steps"
     if spell.part == 0.0 and spell.stops:
         return f"{spell.name} acts in the first {steps} of a run alone"
@@ -77,16 +77,17 @@ def _by_steps(spell: Spell, turns: Sequence[Turn]) -> str:
 def _by_times(spell: Spell, turns: Sequence[Turn]) -> Iterator[str]:
     """By the time, and by the share of a run."""
     for scale, unit, where in (
-        (lambda one: 1.0, "s", ("from {} on", "until {}")),
+        (lambda one: 1.0, "s", ("from t = {} on", "until t = {}")),
         (
             lambda one: 0.01 * one.run.sweep.times[-1],
             "%",
             ("after the first {} of a run", "in the first {} of a run"),
         ),
     ):
-        between = next(filter(None, (_between(turns, place, scale) for place in PLACES)), None)
-        if between is not None:
-            value = _shown(*between, unit)
+        found = [_between(turns, place, scale) for place in PLACES]
+        known = [ends for ends in found if ends is not None]
+        if known:
+            value = _shown(min(low for low, _ in known), max(high for _, high in known), unit)
             yield _worded(spell, *(text.format(value) for text in where))
 
 
@@ -111,11 +112,9 @@ def _between(turns: Sequence[Turn], place: float, scale: Units) -> tuple[float, 
 def _shown(low: float, high: float, unit: str) -> str:
     """A number, or between which two."""
     one, other = written(low, ALIKE), written(high, ALIKE)
-    return (
-        f"{one} {unit}"
-        if one == other
-        else f"some {number(low, high)} to {number(high, low)} {unit}"
-    )
+    if one == other:
+        return f"{one} {unit}"
+    return f"{written(low, ALIKE + 1)} to {written(high, ALIKE + 1)} {unit}"
 
 
 def _worded(spell: Spell, later: str, at_first: str) -> str:

@@ -16,15 +16,14 @@ from omegadot.diagnosis.stepping.load_parts import (
     least_stated,
     load_factors,
     load_parts,
+    looked_at,
     own_scheme,
 )
 from omegadot.diagnosis.wording.digits import factor, number
 
-SCENARIOS = 2  # at least, that show it
 LEAST = 2  # different lengths of step on each side of a length beyond which another part acts
 SAME = 1e-6  # relative, of numbers that are one
 KNOWN = 1e-2  # to which a part must be known to count as one
-MOST_FAILING, MOST_SOUND = 12, 12  # runs in which the loads are looked at
 RATES = range(2, 10001)  # 1/s, of which a limit may be one over
 Found = Mapping[str, LoadPart]
 
@@ -58,18 +57,6 @@ def load_time_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
                 if (text := _law(name, found, by, runs))
             }
         )
-
-
-def looked_at(runs: Sequence[KeptRun]) -> tuple[list[KeptRun], list[KeptRun]]:
-    """Of the failing runs and of the sound ones some of few steps a sample; none of one scenario.
-
-    The sound ones are of the same scenarios first, whose loads they have.
-    """
-    names = {run.name for run in runs if run.fails}
-    order = sorted(runs, key=lambda run: (run.name not in names, run.sweep.every))
-    failing, sound = ([run for run in order if run.fails is fails] for fails in (True, False))
-    every = failing[:: max(1, len(failing) // MOST_FAILING)]
-    return (every, sound[:MOST_SOUND]) if len(names) >= SCENARIOS else ([], [])
 
 
 def _law(
