@@ -104,7 +104,7 @@ def _seconds(time: float) -> str:
     rate = round(1.0 / time)
     whole = rate in RATES and abs(rate * time - 1.0) <= SAME
     shown = number(float(f"{time:.7g}"))
-    return f"{shown} s (1/{rate} s)" if whole and f"{1 / rate:.12g}" != shown else f"{shown} s"
+    return f"{shown} s (1/{rate} s)" if whole and float(shown) != 1.0 / rate else f"{shown} s"
 
 
 def _makes(name: str, law: _Law, by: SchemeOf, runs: Sequence[KeptRun]) -> bool:
