@@ -17,6 +17,7 @@ from omegadot.written import written
 SCENARIOS = 2  # at least, in which a load is seen to change
 MOST_TRIED = 12  # runs, in which a load is looked for that changes
 PLACES = (0.0, 0.5, 1.0)  # of a step, whose time decides whether the load acts in it
+OF_SHARE = "% of a run"  # in the text of what depends on how many steps are requested
 ALIKE = 3  # digits in which two times are one
 Units = Callable[[Turn], float]
 
