@@ -21,6 +21,7 @@ from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
 from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kept_run import scheme_of
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
+from omegadot.diagnosis.stepping.load_spell_laws import OF_SHARE
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.stepping.where_stepped import makes_runs, where_stepped
@@ -110,7 +111,10 @@ class IntegratorCauses:
             other = self._over.moved_at(self._integrator, self._case.name)
         if other:
             return [other]
-        together = self._over.together(self._integrator) if failing else []
+        repeated = fails and self._kept.again == AGAIN["repeated"]
+        together = self._over.together(self._integrator) if failing or repeated else []
+        if repeated:  # a run of other steps is another share of a run
+            together = [text for text in together if OF_SHARE in text]
         if any(map(is_named, together)):
             return together
         own = [self._where(text) for text in self._of_case()]

@@ -12,6 +12,9 @@ from omegadot.diagnosis.stepping.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
 from omegadot.diagnosis.stepping.limits_over_runs import limit_causes
+from omegadot.diagnosis.stepping.load_impulses import impulse_causes
+from omegadot.diagnosis.stepping.load_spell_laws import spell_causes
+from omegadot.diagnosis.stepping.load_times import load_time_causes
 from omegadot.diagnosis.stepping.old_operands import old_operands
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.share_laws import laws_of
@@ -65,6 +68,8 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
             return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
         found = substeps_of_runs(integrator, by, chosen) or either(limit_causes(by, runs))
         found = found or skipped_steps(by, runs) or length_causes(by, runs)
+        found = found or load_time_causes(by, runs) or spell_causes(by, runs)
+        found = found or impulse_causes(by, runs)
         found = found or law_causes(by, chosen) or either(old_operands(by, chosen))
         found = found or tared_causes(by, chosen) or stage_slips(integrator, by, chosen)
         found = found or exponential_causes(by, runs)
