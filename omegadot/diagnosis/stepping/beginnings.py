@@ -45,10 +45,7 @@ class Beginning:
         run, every = self.run, self.run.sweep.every
         plan = (run.sweep.timestep, self.count * every, every)
         _, found = step_body(scheme, run.system, run.state[0], *plan)
-        apart = run.apart(found[1:], self.count)
-        return all(
-            bool(np.all(norm(apart[c]) <= SLACK * run.bounds[c][: self.count])) for c in CHANNELS
-        )
+        return bool(np.all(run.reached(found[1:], self.count)))
 
 
 def beginning(run: KeptRun, name: str) -> Beginning:
@@ -58,9 +55,7 @@ def beginning(run: KeptRun, name: str) -> Beginning:
     most = FAR * float(np.max(norm(ends.angular_velocity)))
     near = norm(run.state.angular_velocity[1 : count + 1]) <= most
     count = count if near.all() else int(np.argmin(near))
-    apart = run.apart(ends, len(near))
-    every = [norm(apart[c])[0] <= SLACK * run.bounds[c][: len(near)] for c in CHANNELS]
-    good = np.all(every, axis=0)[:count]
+    good = run.reached(ends, len(near))[0, :count]
     if good.all():
         return Beginning(run, name, count, count)
     first = int(np.argmin(good))

@@ -103,6 +103,15 @@ class KeptRun:
                 "position": came.position - ends.position,
             }
 
+    def reached(
+        self, ends: State, count: int | None = None, slack: float = SLACK
+    ) -> NDArray[np.bool_]:
+        """(..., n - 1): whether these ends are the samples to rounding, or the first of them."""
+        apart = self.apart(ends, count)
+        with np.errstate(all="ignore"):
+            good = [norm(apart[c]) <= slack * self.bounds[c][:count] for c in CHANNELS]
+        return np.asarray(np.all(good, axis=0))
+
     def made(self, by: SchemeOf, count: int) -> NDArray[np.bool_]:
         """(n - 1,): whether so many steps lead from each sample to the next.
 
@@ -111,9 +120,7 @@ class KeptRun:
         if count < 0:
             return np.zeros(len(self.times) - 1, dtype=bool)
         own = replace(self, sweep=replace(self.sweep, every=count))
-        apart = self.apart(own.ends(by) if count else self.state[:-1])
-        good = [norm(apart[c]) <= SLACK * self.bounds[c] for c in CHANNELS]
-        return np.asarray(np.all(good, axis=0))
+        return self.reached(own.ends(by) if count else self.state[:-1])
 
     def goes_on(self, by: SchemeOf) -> bool:
         """Whether a scheme's steps, and not none, lead on from the first sample after the start."""
@@ -121,9 +128,7 @@ class KeptRun:
 
     def sound(self, by: SchemeOf, slack: float = SLACK) -> NDArray[np.bool_]:
         """(n - 1,): whether the scheme leads from each sample to the next."""
-        apart = self.apart(self.ends(by))
-        good = [norm(apart[c]) <= slack * self.bounds[c] for c in CHANNELS]
-        return np.asarray(np.all(good, axis=0))
+        return self.reached(self.ends(by), slack=slack)
 
 
 def kept_run(

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from omegadot.diagnosis.stepping.acting import PARTS, TERMS, with_factors
 from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
@@ -52,10 +53,9 @@ def own_scheme(run: KeptRun, by: SchemeOf) -> SchemeOf | None:
     return own if own.coordinates in own.scheme.coordinates else None
 
 
-def leads(run: KeptRun, own: SchemeOf, motion: Motion, lanes: int) -> Array:
+def leads(run: KeptRun, own: SchemeOf, motion: Motion, lanes: int) -> NDArray[np.bool_]:
     """(lanes, m): whether each lane of the motion leads from each sample to the next."""
-    apart = run.apart(run.ends(own, motion, lanes))
-    return np.asarray(np.all([norm(apart[c]) <= SLACK * run.bounds[c] for c in CHANNELS], axis=0))
+    return run.reached(run.ends(own, motion, lanes))
 
 
 def looked_at(runs: Sequence[KeptRun]) -> tuple[list[KeptRun], list[KeptRun]]:

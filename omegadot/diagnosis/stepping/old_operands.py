@@ -13,11 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT
-from omegadot.diagnosis.stepping.kept_run import CHANNELS, KeptRun, SchemeOf
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 from omegadot.diagnosis.stepping.memory import EARLIER, PLACES, Memory
 from omegadot.diagnosis.stepping.slips import OF_SCHEME
 from omegadot.diagnosis.stepping.staged_steps import STAGED
-from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.coordinates import from_coordinates, to_coordinates
 from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.schemes import Motion
@@ -98,9 +97,8 @@ def _made(run: KeptRun, by: SchemeOf, lanes: Sequence[tuple[str, str]]) -> set[t
     first = len(sound) if sound.all() else int(np.argmin(sound))
     count = min(first + MORE, MOST_SAMPLES, len(sound))
     with np.errstate(all="ignore"):
-        apart = run.apart(_in_lanes(run, by, lanes, count), count)
-        good = [norm(apart[c]) <= SLACK * run.bounds[c][:count] for c in CHANNELS]
-    return {lane for lane, fits in zip(lanes, np.all(good, axis=(0, 2)), strict=True) if fits}
+        good = np.all(run.reached(_in_lanes(run, by, lanes, count), count), axis=-1)
+    return {lane for lane, fits in zip(lanes, good, strict=True) if fits}
 
 
 def _acting(system: System) -> list[str]:

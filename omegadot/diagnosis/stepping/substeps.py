@@ -14,8 +14,7 @@ import numpy as np
 
 from omegadot.diagnosis.stepping.acting import TERMS, with_factors
 from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT
-from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
-from omegadot.gates.bounds.scales import norm
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.schemes import SCHEMES, Motion, Scheme
 from omegadot.reference_impl.system import Array
@@ -97,8 +96,7 @@ def _made(run: KeptRun, scheme: Scheme, n: int, lanes: Sequence[Lane], part: flo
         return q, v
 
     by = SchemeOf(replace(scheme, step=step), "com-world")
-    apart = run.apart(run.ends(by, body_motion(run.system), len(lanes)))
-    good = np.all([norm(apart[c]) <= SLACK * run.bounds[c] for c in CHANNELS], axis=(0, 2))
+    good = np.all(run.reached(run.ends(by, body_motion(run.system), len(lanes))), axis=-1)
     return [lane for lane, fits in zip(lanes, good, strict=True) if fits]
 
 

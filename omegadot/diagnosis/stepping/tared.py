@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.equations.operators.operands import gyroscopic, loads
-from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
-from omegadot.gates.bounds.scales import norm
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
 from omegadot.reference_impl.coordinates import canonical
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import applied_torque, damping_torque, gravity_torque
@@ -78,9 +77,8 @@ def _fits(run: KeptRun, by: SchemeOf) -> NDArray[np.bool_]:
     if own.coordinates not in own.scheme.coordinates:
         return np.zeros(len(LANES), bool)
     with np.errstate(all="ignore"):
-        apart = run.apart(run.ends(own, _motion(run, own), len(LANES)))
-        good = [norm(apart[c]) <= SLACK * run.bounds[c] for c in CHANNELS]
-    return np.asarray(np.all(good, axis=(0, 2)))
+        good = run.reached(run.ends(own, _motion(run, own), len(LANES)))
+    return np.asarray(np.all(good, axis=-1))
 
 
 def _motion(run: KeptRun, by: SchemeOf) -> Motion:
