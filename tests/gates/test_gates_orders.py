@@ -185,6 +185,19 @@ def test_a_higher_power_is_no_first_of_two_terms() -> None:
     assert not seen.resolved or seen.value == 2.0
 
 
+def test_errors_that_begin_to_fall_close_to_rounding_are_on_their_way_to_an_order() -> None:
+    """Caught: the slope of errors at steps that an engine divides into steps of its own."""
+    sizes = {0.04 / 2**n: s * BOUND for n, s in enumerate((24, 21.6, 19, 14, 14, 3.6, 1.1))}
+    seen = order_of(over_time({h: size * SAMPLES for h, size in sizes.items()}))
+    assert seen is not None
+    assert seen.value < 0.5
+    assert seen.value + seen.rise > 2.0 - ORDER_TOLERANCE
+    stays = {h: max(size, 14 * BOUND) * SAMPLES for h, size in sizes.items()}
+    stuck = order_of(over_time(stays))
+    assert stuck is not None
+    assert stuck.value + stuck.rise < 0.5
+
+
 @pytest.mark.parametrize("stays", [2e-4, -2e-4])
 def test_an_error_that_stays_is_no_first_of_two_terms(stays: float) -> None:
     """Caught: a fault that is there from one time on, under an error that vanishes."""

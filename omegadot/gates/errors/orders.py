@@ -16,6 +16,7 @@ from omegadot.gates.errors.observed_order import (
     ORDER_TOLERANCE,
     VANISHED,
     ObservedOrder,
+    is_whole,
     observed_order,
 )
 from omegadot.gates.errors.sweep_errors import (
@@ -108,7 +109,7 @@ def _over(sweep: Iterable[Errors], horizon: float) -> tuple[ObservedOrder | None
     found = observed_order([h for h, _ in used], [error for _, error in used])
     if found is not None and not enough:
         found = replace(found, resolved=False)
-    elif found is not None and not found.resolved:
+    elif found is not None and not (found.resolved and is_whole(found.value)):
         found = replace(found, rise=max(found.rise, rise_of(sorted(points), found.value)))
     return found, enough, any(saturated for *_, saturated in points)
 

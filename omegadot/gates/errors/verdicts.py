@@ -179,7 +179,8 @@ def _by_order(evidence: Evidence, declared: int) -> Finding:
         return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
     if lowest.value < least:
         if lowest.value + lowest.rise >= least or not is_whole(lowest.value):
-            falls = lowest.value < declared - 0.5 and lowest.rise <= ORDER_TOLERANCE
+            rises = lowest.rise > ORDER_TOLERANCE and evidence.excess <= 1.0
+            falls = lowest.value < declared - 0.5 and not rises
             return Finding("unsettled" if falls else "unresolved", f"{UNSETTLED}: {text}")
         # Two slopes may agree by chance where terms nearly cancel; at finer steps they do not.
         # A step that is longer than an engine's own changes nothing.
