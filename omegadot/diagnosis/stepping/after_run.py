@@ -148,7 +148,7 @@ def _starts_from(one: AfterRun, name: str, index: int) -> bool:
     ends = [(getattr(path, name)[index], getattr(end, name)) for path, end in one.each]
     left = [float(norm(end - kept)) for kept, end in ends]
     moved = float(norm(ends[-1][1] - getattr(one.steps.states, name)[0]))
-    return left[-1] <= NEARER * left[0] and left[-1] <= NEARER * moved
+    return moved > 0.0 and left[-1] <= NEARER * min(left[0], moved)
 
 
 def _of_rate(
