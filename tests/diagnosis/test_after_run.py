@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from omegadot.adapters.protocol import Trajectory
 from omegadot.adapters.reference import ReferenceAdapter
 from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.run_before import after_runs
-from omegadot.diagnosis.stepping.after_run import taken_of_run_before
+from omegadot.diagnosis.stepping.after_run import OWN, AfterRun, _of_start, taken_of_run_before
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.states.equation import random_states
 from omegadot.harness.in_process import driver_of
@@ -181,3 +183,16 @@ def test_nothing_is_named_of_a_sound_engine() -> None:
 
     assert cause(Keeping(own), TOP) == ""
     assert cause(Keeping(own), DAMPED) == ""
+
+
+def test_a_velocity_that_is_none_throughout_is_that_of_no_run_before() -> None:
+    """Caught: a body held in its centre of mass, whose velocities are the same in every run."""
+    system = FREE.system
+    own = np.asarray(system.body.center_of_mass)
+    held = replace(system, load=replace(system.load, pivot=own))
+    state = State(np.array([0.6, 0.8, 0.0, 0.0]), np.ones(3), np.zeros(3), np.zeros(3))
+    path = State(*(np.repeat(f[None], 4, axis=0) for f in vars(state).values()))
+    steps = SimpleNamespace(system=held, states=path[:1])
+    turned = replace(state, orientation=np.array([0.6, -0.8, 0.0, 0.0]))
+    one: Any = AfterRun(OWN, held, path, ((path, turned),) * 8, steps, turned)  # type: ignore[arg-type]
+    assert not _of_start([one, one], "linear_velocity", "linear velocity")
