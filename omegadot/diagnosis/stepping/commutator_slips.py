@@ -37,11 +37,18 @@ def commutator_slips(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
     runs = [run.short for run in runs if canonical(run.system, way) == "com-world"]
     if not names or not any(run.fails for run in runs):
         return []
-    found = [text for name in names for text in _of_scheme(name, runs)]
+    good = [(name, one) for name in names for one in _of_scheme(name, runs)]
+    # without its second commutator the closed form is the series without it
+    same = [(CLOSED, one) for name, one in good if name == SERIES and not one.factors[1]]
+    found = [
+        f"it is stepped by {name}, but {one.text(name)}"
+        for name, one in good
+        if (name, one) not in same
+    ]
     return either(found) if len(found) <= MOST_NAMED else []
 
 
-def _of_scheme(name: str, runs: Sequence[KeptRun]) -> list[str]:
+def _of_scheme(name: str, runs: Sequence[KeptRun]) -> list[Turning]:
     by = SchemeOf(SCHEMES[name], "com-world")
     failing = sorted((run for run in runs if run.fails), key=_turn, reverse=True)
     shown = [run for run in failing if np.count_nonzero(~run.sound(by)) >= LEAST]
@@ -54,7 +61,7 @@ def _of_scheme(name: str, runs: Sequence[KeptRun]) -> list[str]:
             if (one.is_plain or several) and all(one.makes(name, run) for run in every)
         ]
         if good:
-            return [f"it is stepped by {name}, but {one.text(name)}" for one in good]
+            return good
     return []
 
 

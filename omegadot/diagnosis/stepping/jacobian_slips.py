@@ -55,7 +55,9 @@ def _tried(own: tuple[float, ...], single: Sequence[KeptRun]) -> Iterator[list[J
     whole = [fitted for fitted in [_fitted(own, single, [there])] if fitted]
     one = [Jacobian(own, place=place) for place in PLACES if place]
     if len(there) > 1:
-        one += [Jacobian(own, (p, q)) for p, q in product(FORMS, repeat=2) if p or q]
+        # on the other side of the inertia its inverse leaves as little as that on the other side
+        formed = [(p, q) for p, q in product(FORMS, repeat=2) if (p or q) and p != "O" and q != "S"]
+        one += [Jacobian(own, pair) for pair in formed]
     one += whole + [f for k in there if (f := _fitted(own, single, [[k]])) is not None]
     yield one
     for count in range(2, len(there) + 1):

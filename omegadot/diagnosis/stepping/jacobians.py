@@ -25,7 +25,13 @@ from omegadot.reference_impl.system import Array, System
 
 TERMS = ("I^-1 [I omega]x", "-I^-1 [omega]x I", "-I^-1 d")
 OWN = {"linearly-implicit-euler": (1.0, 1.0, 1.0), "implicit-damping-euler": (0.0, 0.0, 1.0)}
-FORMS = {"": "", "T": "is transposed", "I": "lacks I^-1"}
+FORMS = {
+    "": "",
+    "T": "is transposed",
+    "I": "lacks I^-1",
+    "S": "has I^-1 on the other side",
+    "O": "has I on the other side",
+}
 PLACES = {
     0.0: "",
     0.5: "the omega of half an explicit step on",
@@ -47,15 +53,10 @@ class Jacobian:
         inertia = moving_inertia(system)
         back = inverse(inertia)
         spun = skew((inertia @ w[..., None])[..., 0])
-        gyroscopic = (spun, -skew(w) @ inertia)
-        made = [self._form(one, back, how) for one, how in zip(gyroscopic, self.forms, strict=True)]
+        gyroscopic = (spun, inertia @ -skew(w) if self.forms[1] == "O" else -skew(w) @ inertia)
+        made = [_formed(one, back, how) for one, how in zip(gyroscopic, self.forms, strict=True)]
         damped = -float(system.load.damping) * back
         return np.stack([*made, np.broadcast_to(damped, made[0].shape)], axis=-1)
-
-    @staticmethod
-    def _form(term: Array, back: Array, how: str) -> Array:
-        whole = term if how == "I" else back @ term
-        return np.swapaxes(whole, -1, -2) if how == "T" else whole
 
     def step(
         self, system: System, motion: Motion, q: Array, v: Array, h: float | Array
@@ -118,3 +119,9 @@ class Jacobian:
 def _factor(k: float) -> str:
     known = {0.0: "is missing", -1.0: "has the wrong sign", 2.0: "is doubled"}
     return known.get(k, f"has the factor {fraction(k)}")
+
+
+def _formed(term: Array, back: Array, how: str) -> Array:
+    """A term of the torque's Jacobian by I^-1, in one of FORMS."""
+    whole = term if how == "I" else term @ back if how == "S" else back @ term
+    return np.swapaxes(whole, -1, -2) if how == "T" else whole

@@ -30,6 +30,7 @@ MOST_BACK = 4  # steps
 SURE = 0.01  # of a coefficient, that is not settled by the runs if it may be off by more
 FREEDOM = 3  # intervals a term, at least
 ON_QUATERNION, IN_EXPONENTIAL = "on the quaternion", "in the exponential"
+ALIGNED = "on the quaternion, reported with either sign"
 BY_END, PLACE_BY_END = "by the omega of the step's end", "by the velocity of the step's end"
 Coefficients = tuple[float, ...]  # of f_n, f_(n-1), ...
 
@@ -70,7 +71,8 @@ def steps_of(run: KeptRun) -> dict[str, Steps]:
         "omega": _steps(run, "omega", w, found.angular),
         IN_EXPONENTIAL: _in_exponential(run),
         BY_END: _in_exponential(run, end=1),
-        ON_QUATERNION: _on_quaternion(run),
+        ON_QUATERNION: _on_quaternion(run, aligned=False),
+        ALIGNED: _on_quaternion(run, aligned=True),
     }
     if run.system.load.pivot is None:
         every["velocity"] = _steps(run, "velocity", v, found.linear)
@@ -101,11 +103,12 @@ def _in_exponential(run: KeptRun, end: int = 0) -> Steps:
     return Steps(turned, run.sweep.timestep * _before(w, end), _bound(run, "attitude"))
 
 
-def _on_quaternion(run: KeptRun) -> Steps:
+def _on_quaternion(run: KeptRun, aligned: bool) -> Steps:
     """``q_n + h sum b_k q'_(n-k)`` along q_(n+1): of whatever length, it has no part across."""
     q, w = normalize(run.state.orientation), run.state.angular_velocity
-    signs = np.sign(np.sum(q[1:] * q[:-1], axis=-1))  # a turn has two quaternions
-    q = q * np.concatenate(([1.0], np.cumprod(signs)))[:, None]
+    if aligned:
+        signs = np.sign(np.sum(q[1:] * q[:-1], axis=-1))
+        q = q * np.concatenate(([1.0], np.cumprod(signs)))[:, None]
     rate = quaternion_product(q, np.concatenate((0.0 * w[:, :1], w), axis=-1))
     back = conjugate(q[MOST_BACK + 1 :])
     changes = -2.0 * quaternion_product(back, q[MOST_BACK:-1])[..., 1:]

@@ -9,6 +9,7 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.multistep import (
+    ALIGNED,
     BY_END,
     IN_EXPONENTIAL,
     MOST_BACK,
@@ -60,7 +61,7 @@ def multistep_slips(integrator: Integrator, runs: Sequence[KeptRun]) -> list[str
 
 def _attitude(every: Sequence[Mapping[str, Steps]], b: Coefficients) -> Coefficients | None:
     """The formula of the attitude, that of omega first; that of the new omega is empty."""
-    ways = (ON_QUATERNION, IN_EXPONENTIAL)
+    ways = (ON_QUATERNION, ALIGNED, IN_EXPONENTIAL)
     if any(all(one[way].made(b) for one in every) for way in ways):
         return b
     if all(one[BY_END].made(OF_ONE) for one in every):
