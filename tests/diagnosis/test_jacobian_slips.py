@@ -26,8 +26,11 @@ def slope(a: float = 1.0, b: float = 1.0, c: float = 1.0) -> Slope:
     return lambda i, w, d: a * skew(i @ w) - b * skew(w) @ i - c * d * np.eye(3)
 
 
-def causes(wrong: Slope, ahead: float = 0.0) -> list[str]:
-    """ahead: of an explicit step, at the end of which the Jacobian is taken."""
+def causes(wrong: Slope, ahead: float = 0.0, fewest: int = 1) -> list[str]:
+    """ahead: of an explicit step, at the end of which the Jacobian is taken.
+
+    fewest: steps between samples.
+    """
 
     def step(
         system: System, motion: Motion, q: Array, v: Array, h: float, n: int
@@ -39,7 +42,7 @@ def causes(wrong: Slope, ahead: float = 0.0) -> list[str]:
         v = v + np.concatenate((h * a[:-3], angular))
         return motion.retract(q, h * v), v
 
-    plans = ((0.05, 1), (0.02, 3))
+    plans = ((0.05, fewest), (0.02, 3))
     runs = [kept(one, step, h, every) for one in CASES for h, every in plans]
     by = SchemeOf(SCHEMES[NAME], "com-world")
     runs = [replace(run, fails=not bool(np.all(run.sound(by)))) for run in runs]
@@ -73,6 +76,12 @@ def causes(wrong: Slope, ahead: float = 0.0) -> list[str]:
 def test_what_is_wrong_in_the_jacobian_is_named(wrong: Slope, text: str) -> None:
     """Caught: a wrong Jacobian, that is of order 1 as the right one, taken for a limit."""
     assert causes(wrong) == [f"it is stepped by {NAME}, but {text}"]
+
+
+def test_a_wrong_sign_is_named_where_no_run_keeps_every_step() -> None:
+    """Caught: silence where no factor can be fitted to single steps."""
+    (text,) = causes(slope(a=-1.0), fewest=2)
+    assert text.endswith("in its Jacobian I^-1 [I omega]x has the wrong sign")
 
 
 def test_a_jacobian_at_another_place_is_named() -> None:

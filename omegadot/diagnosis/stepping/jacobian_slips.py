@@ -22,6 +22,7 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State
 
 KNOWN = ((1.0, 1.0, 1.0), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))  # each is a scheme of its own
+MISTYPED = (-1.0, 0.0, 0.5, 2.0)  # factors of one term
 SCENARIOS = 2  # on which a number that is no fraction must be the same
 KNOWN_TO = 1e-5  # what least squares leave of a factor, at most, in the few steps that are kept
 
@@ -59,7 +60,10 @@ def _tried(own: tuple[float, ...], single: Sequence[KeptRun]) -> Iterator[list[J
         formed = [(p, q) for p, q in product(FORMS, repeat=2) if (p or q) and p != "O" and q != "S"]
         one += [Jacobian(own, pair) for pair in formed]
     one += whole + [f for k in there if (f := _fitted(own, single, [[k]])) is not None]
-    yield one
+    # where no run keeps every step, nothing is fitted
+    plain_ones = [(*own[:k], other, *own[k + 1 :]) for k in there for other in MISTYPED]
+    one += [Jacobian(factors) for factors in plain_ones if factors not in KNOWN]
+    yield [*dict.fromkeys(one)]
     for count in range(2, len(there) + 1):
         sets = combinations(there, count)
         fits = (_fitted(own, single, [[k] for k in chosen]) for chosen in sets)
