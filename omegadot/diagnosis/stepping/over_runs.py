@@ -8,13 +8,16 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.commutator_slips import commutator_slips
 from omegadot.diagnosis.stepping.exponentials import exponential_causes
+from omegadot.diagnosis.stepping.jacobian_slips import jacobian_slips
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
 from omegadot.diagnosis.stepping.limits_over_runs import limit_causes
 from omegadot.diagnosis.stepping.load_impulses import impulse_causes
 from omegadot.diagnosis.stepping.load_spell_laws import spell_causes
 from omegadot.diagnosis.stepping.load_times import load_time_causes
+from omegadot.diagnosis.stepping.multistep_slips import multistep_slips
 from omegadot.diagnosis.stepping.old_operands import old_operands
 from omegadot.diagnosis.stepping.places import place_causes
 from omegadot.diagnosis.stepping.share_laws import laws_of
@@ -60,8 +63,11 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
     """What makes all runs of an integrator together; none where none does."""
     failing = {run.name for run in runs if run.fails}
     with np.errstate(all="ignore"):
-        if len(failing) < SCENARIOS:
-            return []
+        # of these every interval of every run must be made, which one motion may decide
+        found = multistep_slips(integrator, runs) or commutator_slips(integrator, runs)
+        found = found or jacobian_slips(integrator, runs)
+        if found or len(failing) < SCENARIOS:
+            return found
         by, chosen = scheme_of(integrator, runs), [run.short for run in _chosen(runs)]
         declared = integrator.scheme is not None
         if by is None:
