@@ -72,6 +72,15 @@ def test_rounding_of_places_is_allowed_in_velocities_that_are_taken_from_them(
     assert {"omega", "linear_momentum"} <= failing(probe, ends, PLAIN)
 
 
+def test_a_single_state_shows_a_velocity_that_is_the_change_of_a_place(probe: Probe) -> None:
+    """Caught: a thin body accused, of whose states only the one at rest shows the rounding."""
+    one = Probe(probe.states[:1], probe.timesteps[:1])
+    assert roundings_of(SYSTEM, one, stepped(one, from_places=True), EPS, 16.0) == BOTH
+    assert roundings_of(SYSTEM, one, stepped(one, from_places=False), EPS, 16.0) == PLAIN
+    wrong = stepped(one, from_places=False, equation=1.001)
+    assert roundings_of(SYSTEM, one, wrong, EPS, 16.0) == PLAIN
+
+
 @pytest.mark.parametrize("equation", [1.0, 1.0 + 1e-8])
 def test_a_scheme_that_turns_by_the_new_omega_has_no_such_rounding(
     probe: Probe, equation: float

@@ -201,8 +201,9 @@ def roundings_of(
 
     The rounding of a velocity that is stepped is ``eps / h`` in its rate; that of places, over h,
     is ``eps / h^2``. By steps 16 times shorter the one is off 16 times as far, the other 256 times;
-    and a wrong equation as far as before. Single precision has no such steps: there a velocity that
-    is the change of place over h shows it, of omega as well where that is the turn over h.
+    and a wrong equation as far as before. A few states show it where the velocity is the change of
+    place, or of attitude, over h. Single precision has no such steps: there that alone shows it, of
+    omega as well where that is the turn over h.
     """
     if len(ladder_of(eps).ranges) < 2:
         given = State(*(f.astype(np.float32).astype(float) for f in vars(probe.states).values()))
@@ -210,13 +211,16 @@ def roundings_of(
         own = is_change_of_place(*steps)
         return Roundings(own, own and is_change_of_attitude(*steps), per_step)
     found = limits(system, probe, stepped, eps)
+    steps = (probe.states[:, None], stepped, probe.timesteps, eps)
+    changes = {"linear_momentum": is_change_of_place, "omega": is_change_of_attitude}
     taken = dict[str, bool]()
-    for channel in ("linear_momentum", "omega"):
+    for channel, is_change in changes.items():
         one = found[channel]
         long, short = norm(one.found - one.expected)[:2]
         seen = (long > 0.0) & (short > one.rounding[1])  # of what is stepped nothing is this far
         ratios = np.log(short[seen] / long[seen])
-        taken[channel] = len(ratios) >= FEWEST and bool(np.mean(ratios) > np.log(FARTHER))
+        grows = len(ratios) > 0 and bool(np.mean(ratios) > np.log(FARTHER))
+        taken[channel] = grows and (len(ratios) >= FEWEST or is_change(*steps))
     return Roundings(taken["linear_momentum"], taken["omega"], per_step)
 
 
