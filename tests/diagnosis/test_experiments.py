@@ -298,6 +298,8 @@ def test_a_cause_has_one_condition() -> None:
         assert conditioned(cause + some, "it rains") == f"{cause}, but only where it rains"
     assert not_always(cause) == f"{cause}, but not always"
     assert not_always(cause + some_of_all) == cause + some_of_all
+    for law in ("is limited to 10 N m s/rad", "is rounded to 3 decimals"):  # no more is claimed
+        assert not_always(f"the damping {law}") == f"the damping {law}"
     old = f"{cause}, but only where a torque acts (random-0-1; other numbers on 3 more)"
     assert condition_in(old) == "a torque acts"
     assert without_condition(old).startswith(f"{cause}, but not always (random-0-1")

@@ -13,6 +13,8 @@ OF_SOME = re.compile(
 )
 ALONE = re.compile(rf"; it is so in scenarios alone where .*?{END}")
 WHERE = re.compile(rf", but only where (.*?){END}")
+# What acts on some numbers alone by what it is.
+BY_ITSELF = re.compile(r"is limited to|held above|is rounded to|is taken for zero")
 
 
 def conditioned(text: str, condition: str) -> str:
@@ -43,5 +45,6 @@ def without_condition(text: str) -> str:
 
 def not_always(text: str) -> str:
     """A cause that experiments have seen not to act, on no condition that is known."""
-    said = text.startswith(UNKNOWN) or OF_SOME.search(text) or "either " in text or "; " in text
+    said = text.startswith(UNKNOWN) or OF_SOME.search(text) or BY_ITSELF.search(text)
+    said = said or "either " in text or "; " in text
     return text if said else f"{text}, but not always"

@@ -21,6 +21,7 @@ from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.system import State
 
 ON_A_LINE, ROUNDS, HALVINGS, LINES = 9, 4, 9, 3
+MOST_HALVINGS = 20  # to a limit that is far below the larger of two sizes
 
 
 class Experiment:
@@ -191,7 +192,9 @@ class Experiment:
         states = wrong.states[:: max(1, len(wrong.wrong) // self._judge.at_once)][
             : self._judge.at_once
         ]
-        for _ in range(HALVINGS):
+        for halved in range(MOST_HALVINGS):
+            if halved >= HALVINGS and all(one.narrow for one in limits_that_sort(self.seen)):
+                return
             part = 0.5 * (low + high)
             tried = self._judge.trial(system_between(wrong.system, right.system, part), states)
             if not self._add(tried):

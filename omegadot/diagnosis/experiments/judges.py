@@ -30,7 +30,7 @@ from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.system import Acceleration, State, System
 
 Shown = tuple[Flags, Flags]  # where a fault shows, and where that is known
-MOST = 48  # requests for one fault
+MOST = 64  # requests for one fault
 
 
 def shown_in(evidence: Evidence, one: Candidate | None) -> Shown:
