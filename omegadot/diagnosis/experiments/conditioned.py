@@ -45,6 +45,6 @@ def without_condition(text: str) -> str:
 
 def not_always(text: str) -> str:
     """A cause that experiments have seen not to act, on no condition that is known."""
-    said = text.startswith(UNKNOWN) or OF_SOME.search(text) or BY_ITSELF.search(text)
-    said = said or "either " in text or "; " in text
-    return text if said else f"{text}, but not always"
+    said = text.startswith(UNKNOWN) or "either " in text or "; " in text
+    by_itself = OF_SOME.search(text) or BY_ITSELF.search(text)
+    return text if said or by_itself else f"{text}, but not always"
