@@ -36,14 +36,15 @@ class OverScenarios:
 
     causes: each alone explains the runs, and whether these are decisive.  fails: whether a run
     does.  again: what shows where two answers to one request differ.  lost: orders.  seen: what is
-    off.  beginnings: of the failed runs.  kept: the first samples of every run.  turned: by what
-    angle in rad first steps turn the body, and whether later ones are seen not to.  stays_below: s,
-    up to which length steps change nothing, and from which on they do.  keeps_pace: whether runs go
-    on as much too fast, or too slowly, as first steps do.  rests: at what
-    states the body is put to rest.  places: causes in every step, with where they act.  substeps:
-    in which of these a load acts, of causes that scale it.  onsets: where failed runs begin to be
-    wrong that are sound until then.  steps and given: first steps from many states, as they vanish,
-    and the state that runs are given.  ends: the last two samples of every run.
+    off.  beginnings: of the failed runs.  kept: the first samples of every run.  negated: of those
+    that are requested again from -q.  turned: by what angle in rad first steps turn the body, and
+    whether later ones are seen not to.  stays_below: s, up to which length steps change nothing,
+    and from which on they do.  keeps_pace: whether runs go on as much too fast, or too slowly, as
+    first steps do.  rests: at what states the body is put to rest.  places: causes in every step,
+    with where they act.  substeps: in which of these a load acts, of causes that scale it.  onsets:
+    where failed runs begin to be wrong that are sound until then.  steps and given: first steps
+    from many states, as they vanish, and the state that runs are given.  ends: the last two samples
+    of every run.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -53,6 +54,7 @@ class OverScenarios:
     seen: dict[str, Known] = field(default_factory=dict)
     beginnings: dict[str, Beginning] = field(default_factory=dict)
     kept: list[KeptRun] = field(default_factory=list)
+    negated: list[KeptRun] = field(default_factory=list)
     turned: dict[str, tuple[float, bool]] = field(default_factory=dict)
     keeps_pace: dict[str, bool] = field(default_factory=dict)
     stays_below: dict[str, tuple[float, float]] = field(default_factory=dict)
