@@ -110,6 +110,8 @@ class IntegratorCauses:
         other = begins or (self._over.ends_at(self._integrator, self._case.name) if fails else "")
         if fails and not other:
             other = self._over.moved_at(self._integrator, self._case.name)
+        if failing and not other:
+            other = self._over.lengths_at(self._integrator, self._case.name)
         if other:
             return [other]
         repeated = fails and self._kept.again == AGAIN["repeated"]

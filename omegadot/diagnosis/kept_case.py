@@ -81,6 +81,9 @@ def kept_case(
         how = (case.name, truth, run.sweep, state, growth, run.fails)
         over.kept += filter(None, (kept_run(*how),))
         over.ends += filter(None, (run_end(*how),))
+    over.requested[case.name] = [
+        knob for name, knob in result.runs if name in _stepping(result.integrators)
+    ]
     over.negated += _negated(case.name, truth, result, runs)
     failed = (row for run in runs for row in run.rows if row.verdict == "fail")
     turned_wrong = any(row.channel == "attitude" for row in failed)
@@ -163,6 +166,11 @@ def _whole_runs(
             yield State(**answer.result["state"]), truth.growth[truth.rows(run.sweep)], run
 
 
+def _stepping(integrators: Sequence[Integrator]) -> set[str]:
+    """Those of which the length of a step is requested."""
+    return {one.name for one in integrators if one.knob == "timestep"}
+
+
 def _negated(
     name: str, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
 ) -> Iterator[KeptRun]:
@@ -172,7 +180,8 @@ def _negated(
         sweep = short_sweep(run.sweep)
         if answer is not None and answer.ok and len(answer.result["time"]) == len(sweep.times):
             state, first = State(**answer.result["state"]), growth[: len(sweep.times)]
-            yield from filter(None, (kept_run(name, truth, sweep, state, first, fails=True),))
+            how = (name, truth, sweep, state, first)
+            yield from filter(None, (kept_run(*how, fails=True, least=2),))
 
 
 def _with_rests(
