@@ -17,15 +17,17 @@ from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array
 
-Map = Callable[[Array], Array]
+Map = Callable[[Array, float], Array]
 NAMES = "wxyz"
 ORDERS = sorted(
     ("".join(one) for one in product("ZYX", repeat=3) if one[0] != one[1] != one[2]),
     key=lambda one: (len(set(one)) < 3, one != "ZYX"),
 )
 FOLDS: dict[str, Map] = {
-    "atan, without its quadrant": lambda angle: np.arctan(np.tan(angle)),
-    "asin, which is a quarter turn at most": lambda angle: np.arcsin(np.sin(angle)),
+    "atan, without its quadrant": lambda angle, _: np.arctan(np.tan(angle)),
+    "asin, which is a quarter turn at most": lambda angle, more: np.arcsin(
+        np.clip((1.0 + more) * np.sin(angle), -1.0, 1.0)
+    ),
 }
 ROUNDED = 4.0 * EPS
 UNEVENLY = np.array([0.7, -1.0, 0.5, 1.0])
@@ -38,17 +40,22 @@ INVERSE = (
 
 @dataclass(frozen=True)
 class Passed:
-    """What is rebuilt wrongly, and a unit quaternion (..., 4) after it; what states more is later.
+    """What is rebuilt wrongly, and a unit quaternion (..., 4) after it.
 
-    Each but those of a sign is an attitude after any number of times as after the first.
+    change: of the quaternion and of how much more of it the numbers in between are.
     """
 
     text: str
-    made: Map
+    change: Map
+
+    def made(self, q: Array) -> Array:
+        """What comes of attitudes."""
+        return self.change(q, 0.0)
 
     def rounded(self, q: Array, sign: float) -> Array:
-        """The same of quaternions that are others within rounding, longer than one or shorter."""
-        return self.made((1.0 + sign * ROUNDED) * (q + sign * ROUNDED * UNEVENLY))
+        """The same where each number is another within rounding, all larger or smaller."""
+        more = sign * ROUNDED
+        return self.change((1.0 + more) * (q + more * UNEVENLY), more)
 
 
 def passed_attitudes() -> Iterator[list[Passed]]:
@@ -71,14 +78,19 @@ def _of_root(k: int, first: str = "") -> str:
 
 
 def _by_root(k: int, positive: int | None = None) -> Map:
-    def made(q: Array) -> Array:
+    def made(q: Array, more: float) -> Array:
         signed = q if positive is None else np.where(q[..., positive : positive + 1] < 0, -q, q)
-        return _with_root(signed, np.eye(4, dtype=bool)[k])
+        found = _with_root(signed, np.eye(4, dtype=bool)[k])
+        if k or not more:
+            return found
+        # the same by an angle is known to as little as the acos of the scalar
+        half = np.arccos(np.clip((1.0 + more) * found[..., 0], -1.0, 1.0))
+        return _turned(found, half)
 
     return made
 
 
-def _by_largest_root(q: Array) -> Array:
+def _by_largest_root(q: Array, _: float) -> Array:
     return _with_root(q, np.argmax(np.abs(q), axis=-1)[..., None] == np.arange(4))
 
 
@@ -97,19 +109,22 @@ def _of_angle() -> Iterator[Passed]:
     over = "where the angle is above a half turn,"
     yield Passed(
         f"{over} a half turn is taken from it, not a whole one",
-        _about_axis(lambda angle: np.where(angle > np.pi, angle - np.pi, angle)),
+        _about_axis(lambda angle, _: np.where(angle > np.pi, angle - np.pi, angle)),
     )
-    yield Passed(f"{over} it is cut off there", _about_axis(lambda a: np.minimum(a, np.pi)))
+    yield Passed(f"{over} it is cut off there", _about_axis(lambda a, _: np.minimum(a, np.pi)))
 
 
 def _about_axis(change: Map) -> Map:
-    def made(q: Array) -> Array:
-        size = norm(q[..., 1:])
-        half = 0.5 * change(2.0 * np.arctan2(size, q[..., 0]))[..., None]
-        axis = q[..., 1:] / np.maximum(size, TINY)[..., None]
-        return np.concatenate((np.cos(half), np.sin(half) * axis), axis=-1)
+    def made(q: Array, more: float) -> Array:
+        return _turned(q, 0.5 * change(2.0 * np.arctan2(norm(q[..., 1:]), q[..., 0]), more))
 
     return made
+
+
+def _turned(q: Array, half: Array) -> Array:
+    """By these halves of an angle (...) about the axes of q."""
+    axis = q[..., 1:] / np.maximum(norm(q[..., 1:]), TINY)[..., None]
+    return np.concatenate((np.cos(half)[..., None], np.sin(half)[..., None] * axis), axis=-1)
 
 
 def _of_angles() -> Iterator[Passed]:
@@ -125,7 +140,7 @@ def _of_angles() -> Iterator[Passed]:
 
 
 def _through_angles(order: str, places: tuple[int, ...], fold: Map) -> Map:
-    def made(q: Array) -> Array:
+    def made(q: Array, more: float) -> Array:
         from scipy.spatial.transform import Rotation  # its import takes long
 
         known = np.all(np.isfinite(q), axis=-1, keepdims=True)
@@ -133,7 +148,7 @@ def _through_angles(order: str, places: tuple[int, ...], fold: Map) -> Map:
         flat = np.roll(unit.reshape(-1, 4), -1, axis=-1)
         angles = Rotation.from_quat(flat).as_euler(order, suppress_warnings=True)
         for k in places:
-            angles[:, k] = fold(angles[:, k])
+            angles[:, k] = fold(angles[:, k], more)
         rebuilt = np.roll(Rotation.from_euler(order, angles).as_quat(), 1, axis=-1)
         return np.where(known, rebuilt.reshape(q.shape), np.nan)
 
