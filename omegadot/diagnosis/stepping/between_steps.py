@@ -132,7 +132,8 @@ def _made(
         ends = run.ends(stepped, lanes=3 * count)
         here, *beside = (ends[k * count : (k + 1) * count] for k in range(3))
         off, one, other = run.apart(here), *(_between(here, end) for end in beside)
-        rounding = {c: np.maximum(one[c], other[c]) for c in CHANNELS}
+        # what rounding makes in one step may be undone in the next, and add up in another run
+        rounding = {c: run.sweep.every * np.maximum(one[c], other[c]) for c in CHANNELS}
         good = [norm(off[c]) <= SLACK * (run.bounds[c] + rounding[c]) for c in CHANNELS]
         return np.asarray(np.all(good, axis=0)), rounding
 
