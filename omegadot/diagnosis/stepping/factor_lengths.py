@@ -8,29 +8,17 @@ their equation looks like one with more inertia: an armature of g times the damp
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf, scheme_of
+from omegadot.diagnosis.stepping.implicit_factors import TERMS, follow, linear, rates, reached
+from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.digits import number
 from omegadot.diagnosis.wording.kinds import either
-from omegadot.gates.bounds.scales import EPS, norm
-from omegadot.reference_impl.coordinates import canonical
-from omegadot.reference_impl.inertia import moving_inertia
-from omegadot.reference_impl.motion import forward_dynamics
-from omegadot.reference_impl.one_body.body_motion import attitude_motion, body_motion
-from omegadot.reference_impl.schemes.jacobian import acceleration_and_jacobian, solve_one_minus
-from omegadot.reference_impl.system import Array, State, System
 
-# What has the length, and whether its Jacobian is that of a body at rest.
-TERMS = {
-    "implicit-damping-euler": ("the implicit damping", True),
-    "linearly-implicit-euler": ("the linearly implicit term", False),
-}
 MOST_STEPS = 16  # between two samples
 
 
@@ -106,67 +94,23 @@ def _made(one: _Seen, by: SchemeOf, g: float | None) -> bool:
 
     And whether steps as they vanish follow the equation with it.
     """
-    if one.steps is not None and not np.all(_follow(one.steps, by, 0.0 if g is None else g)):
+    if one.steps is not None and not np.all(follow(one.steps, by, 0.0 if g is None else g)):
         return False
-    return all(bool(np.all(_reached(run, by, g))) for run in one.runs)
-
-
-def _follow(steps: VanishingSteps, by: SchemeOf, g: float) -> NDArray[np.bool_]:
-    """(m,): whether omega changes at the rate ``(1 - g J)^-1 omega-dot``."""
-    evidence = steps.evidence
-    a, jacobian = _linear(evidence.system, evidence.states, by)
-    off = norm(evidence.found.angular - solve_one_minus(g * jacobian, a))
-    return np.asarray(off <= SLACK * evidence.angular_bound)
-
-
-def _linear(system: System, states: State, by: SchemeOf) -> tuple[Array, Array]:
-    """omega-dot (m, 3), and its derivative by omega where the scheme has it, (m, 3, 3)."""
-    w = states.angular_velocity
-    place = 0.0 * w if TERMS[by.scheme.name][1] else w
-    size = np.maximum(norm(w), EPS)[:, None]
-    turning = attitude_motion(system)
-    _, jacobian = acceleration_and_jacobian(turning, states.orientation, place, size)
-    return forward_dynamics(system, states).angular, jacobian
-
-
-def _reached(run: KeptRun, by: SchemeOf, g: float | None) -> NDArray[np.bool_]:
-    """(n - 1,): the change of omega is known to what the matrix is, by its condition as well."""
-    own = SchemeOf(by.scheme, canonical(run.system, by.coordinates))
-    h, w = run.sweep.timestep, run.state.angular_velocity
-    exact = body_motion(run.system, own.coordinates)
-    part = 1.0 if g is None else g / h
-
-    def jacobian(q: Array, v: Array, size: Array | None) -> tuple[Array, Array]:
-        a, slopes = acceleration_and_jacobian(exact, q, v, size)
-        return a, part * slopes
-
-    off = run.apart(run.ends(own, replace(exact, jacobian=jacobian)))
-    more = EPS * np.linalg.cond(moving_inertia(run.system)) * norm(w[1:] - w[:-1])
-    bounds = run.bounds | {
-        "omega": run.bounds["omega"] + more,
-        "attitude": run.bounds["attitude"] + h * more,
-    }
-    return np.asarray(np.all([norm(off[c]) <= SLACK * bounds[c] for c in CHANNELS], axis=0))
+    return all(bool(np.all(reached(run, by, g))) for run in one.runs)
 
 
 def _fitted(one: _Seen, by: SchemeOf) -> float | None:
     """s, by least squares of all that is linear in it: ``a' - a = g J a'`` of rates a'."""
-    parts = [(r.system, r.state[:-1], *_rates(r)) for r in one.runs if r.sweep.every == 1]
+    parts = [(r.system, r.state[:-1], *rates(r)) for r in one.runs if r.sweep.every == 1]
     if one.steps is not None:
         seen = one.steps.evidence
         parts.append((seen.system, seen.states, seen.found.angular, seen.angular_bound))
     above, below = 0.0, 0.0
     for system, states, found, bound in parts:
-        a, jacobian = _linear(system, states, by)
+        a, jacobian = linear(system, states, by)
         line, off = (jacobian @ found[..., None])[..., 0], found - a
         weight = np.where(np.isfinite(bound) & (bound > 0.0), bound, np.inf)[:, None] ** -2.0
         above += float(np.sum(weight * line * off))
         below += float(np.sum(weight * line * line))
     found_at = above / below if below > 0.0 else np.nan
     return found_at if np.isfinite(found_at) and found_at > 0.0 else None
-
-
-def _rates(run: KeptRun) -> tuple[Array, Array]:
-    """(n - 1, 3) rad/s^2, the mean change of omega in each step, and to how much it is known."""
-    h, w = run.sweep.timestep, run.state.angular_velocity
-    return (w[1:] - w[:-1]) / h, run.bounds["omega"] / h
