@@ -18,6 +18,7 @@ from omegadot.diagnosis.reported.onsets import SOUND_UNTIL, onset_law
 from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.reported.singles import IN_SINGLE
 from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
+from omegadot.diagnosis.stepping.between_steps import passes_between
 from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kept_run import scheme_of
 from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
@@ -109,12 +110,18 @@ class IntegratorCauses:
         other = begins or (self._over.ends_at(self._integrator, self._case.name) if fails else "")
         if fails and not other:
             other = self._over.moved_at(self._integrator, self._case.name)
+        if failing and not other:
+            other = self._over.lengths_at(self._integrator, self._case.name)
         if other:
             return [other]
         repeated = fails and self._kept.again == AGAIN["repeated"]
-        together = self._over.together(self._integrator) if failing or repeated else []
+        negated = fails and self._kept.again == AGAIN["negated"]
+        asked = failing or repeated or negated
+        together = self._over.together(self._integrator) if asked else []
         if repeated:  # a run of other steps is another share of a run
             together = [text for text in together if OF_SHARE in text]
+        if negated:
+            together = [text for text in together if self._makes_negated(text)]
         if any(map(is_named, together)):
             return together
         own = [self._where(text) for text in self._of_case()]
@@ -122,6 +129,12 @@ class IntegratorCauses:
             law = onset_law([one for runs in self._over.onsets.values() for one in runs])
             own = [law] if law else own
         return own if any(map(is_named, own)) else together or own
+
+    def _makes_negated(self, text: str) -> bool:
+        """Whether what the attitude goes through between steps makes the run from -q as well."""
+        by, own = scheme_of(self._integrator, self._over.kept), self._over.negated
+        runs = [run for run in own if run.name == self._case.name]
+        return by is not None and bool(runs) and all(passes_between(text, by, r) for r in runs)
 
     def follows(self, text: str) -> bool:
         """Whether a cause that is named on another scenario makes the runs of this one."""

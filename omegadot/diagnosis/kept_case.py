@@ -12,7 +12,7 @@ from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.reported.run import reported_run
 from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, begins_turned, keeps_pace
 from omegadot.diagnosis.stepping.jumps import first_turn
-from omegadot.diagnosis.stepping.kept_run import kept_run
+from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
 from omegadot.diagnosis.stepping.rests import RunWithRests, rests_of
 from omegadot.diagnosis.stepping.run_ends import run_end
 from omegadot.diagnosis.stepping.step_orders import order_lost
@@ -27,6 +27,7 @@ from omegadot.gates.steps.accuracy import tolerated_by
 from omegadot.gates.truth import Truth
 from omegadot.harness.drive import CaseResult
 from omegadot.harness.judging.judged_run import JudgedRun
+from omegadot.harness.requests.repeats import short_sweep
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
 
@@ -80,6 +81,10 @@ def kept_case(
         how = (case.name, truth, run.sweep, state, growth, run.fails)
         over.kept += filter(None, (kept_run(*how),))
         over.ends += filter(None, (run_end(*how),))
+    over.requested[case.name] = [
+        knob for name, knob in result.runs if name in _stepping(result.integrators)
+    ]
+    over.negated += _negated(case.name, truth, result, runs)
     failed = (row for run in runs for row in run.rows if row.verdict == "fail")
     turned_wrong = any(row.channel == "attitude" for row in failed)
     brief = all(len(run.sweep.times) < LEAST_SAMPLES for run in runs)
@@ -159,6 +164,24 @@ def _whole_runs(
         answer = result.runs.get((run.integrator.name, run.sweep.knob))
         if answer is not None and answer.ok and len(answer.result["time"]) == len(run.sweep.times):
             yield State(**answer.result["state"]), truth.growth[truth.rows(run.sweep)], run
+
+
+def _stepping(integrators: Sequence[Integrator]) -> set[str]:
+    """Those of which the length of a step is requested."""
+    return {one.name for one in integrators if one.knob == "timestep"}
+
+
+def _negated(
+    name: str, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
+) -> Iterator[KeptRun]:
+    """The first samples of runs that were requested again from -q."""
+    for _, growth, run in _whole_runs(truth, result, runs):
+        answer = result.again.get((run.integrator.name, run.sweep.knob, "negated"))
+        sweep = short_sweep(run.sweep)
+        if answer is not None and answer.ok and len(answer.result["time"]) == len(sweep.times):
+            state, first = State(**answer.result["state"]), growth[: len(sweep.times)]
+            how = (name, truth, sweep, state, first)
+            yield from filter(None, (kept_run(*how, fails=True, least=2),))
 
 
 def _with_rests(

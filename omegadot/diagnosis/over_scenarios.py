@@ -16,6 +16,7 @@ from omegadot.diagnosis.equations.left_over import LeftOver
 from omegadot.diagnosis.equations.siblings import Siblings
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.reported.onsets import Onset
+from omegadot.diagnosis.stepping.factor_lengths import OtherLengths, other_lengths
 from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.moved_samples import Moved, moved_samples
@@ -36,14 +37,15 @@ class OverScenarios:
 
     causes: each alone explains the runs, and whether these are decisive.  fails: whether a run
     does.  again: what shows where two answers to one request differ.  lost: orders.  seen: what is
-    off.  beginnings: of the failed runs.  kept: the first samples of every run.  turned: by what
-    angle in rad first steps turn the body, and whether later ones are seen not to.  stays_below: s,
-    up to which length steps change nothing, and from which on they do.  keeps_pace: whether runs go
-    on as much too fast, or too slowly, as first steps do.  rests: at what
-    states the body is put to rest.  places: causes in every step, with where they act.  substeps:
-    in which of these a load acts, of causes that scale it.  onsets: where failed runs begin to be
-    wrong that are sound until then.  steps and given: first steps from many states, as they vanish,
-    and the state that runs are given.  ends: the last two samples of every run.
+    off.  beginnings: of the failed runs.  kept: the first samples of every run.  negated: of those
+    that are requested again from -q.  turned: by what angle in rad first steps turn the body, and
+    whether later ones are seen not to.  stays_below: s, up to which length steps change nothing,
+    and from which on they do.  keeps_pace: whether runs go on as much too fast, or too slowly, as
+    first steps do.  rests: at what states the body is put to rest.  places: causes in every step,
+    with where they act.  substeps: in which of these a load acts, of causes that scale it.  onsets:
+    where failed runs begin to be wrong that are sound until then.  steps and given: first steps
+    from many states, as they vanish, and the state that runs are given.  ends: the last two samples
+    of every run.  requested: s, the lengths of steps of all runs, as they were requested.
     """
 
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
@@ -53,6 +55,7 @@ class OverScenarios:
     seen: dict[str, Known] = field(default_factory=dict)
     beginnings: dict[str, Beginning] = field(default_factory=dict)
     kept: list[KeptRun] = field(default_factory=list)
+    negated: list[KeptRun] = field(default_factory=list)
     turned: dict[str, tuple[float, bool]] = field(default_factory=dict)
     keeps_pace: dict[str, bool] = field(default_factory=dict)
     stays_below: dict[str, tuple[float, float]] = field(default_factory=dict)
@@ -63,6 +66,8 @@ class OverScenarios:
     steps: dict[str, VanishingSteps] = field(default_factory=dict)
     given: dict[str, State] = field(default_factory=dict)
     ends: list[RunEnd] = field(default_factory=list)
+    requested: dict[str, list[float]] = field(default_factory=dict)
+    _lengths: tuple[tuple[int, int], OtherLengths | None] = ((0, 0), None)
     _ends: tuple[int, Ends | None] = (0, None)
     _moved: tuple[int, Moved | None] = (0, None)
     _starts: tuple[tuple[int, int], Starts | None] = ((0, 0), None)
@@ -101,6 +106,18 @@ class OverScenarios:
             self._moved = len(self.kept), moved_samples(integrator, self.kept)
         return self._moved[1]
 
+    def lengths_at(self, integrator: Integrator, name: str) -> str:
+        """Of which other run an implicit term has the length, where that explains a scenario."""
+        found = self._other_lengths(integrator)
+        return found.statement if found is not None and name in found.names else ""
+
+    def _other_lengths(self, integrator: Integrator) -> OtherLengths | None:
+        count = (len(self.steps), len(self.kept))
+        if self._lengths[0] != count:
+            how = (integrator, self.steps, self.kept, self.requested)
+            self._lengths = count, other_lengths(*how)
+        return self._lengths[1]
+
     def together(self, integrator: Integrator) -> list[str]:
         """What makes all runs of the integrator that have been kept; none where none does."""
         if self._together[0] != len(self.kept):
@@ -120,6 +137,7 @@ class OverScenarios:
                 ended = self._other_ends(integrator) is not None
                 known = ended or self._other_start(integrator) is not None
                 known = known or self._moved_samples(integrator) is not None
+                known = known or self._other_lengths(integrator) is not None
                 known = known or any(map(is_named, causes_over_runs(integrator, self.kept)))
                 self._likely = failing, known, ended
         _, found, ended = self._likely

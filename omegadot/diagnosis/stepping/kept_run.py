@@ -132,16 +132,25 @@ class KeptRun:
 
 
 def kept_run(
-    name: str, truth: Truth, sweep: Sweep, state: State, growth: Array, fails: bool
+    name: str,
+    truth: Truth,
+    sweep: Sweep,
+    state: State,
+    growth: Array,
+    fails: bool,
+    least: int = 3,
 ) -> KeptRun | None:
-    """The first samples, up to the first that is not finite or is no whole interval later."""
+    """The first samples, up to the first that is not finite or is no whole interval later.
+
+    least: samples, of which fewer are none.
+    """
     numbers = sweep.sample_steps
     count = min(len(numbers), len(state.position), MOST_SAMPLES + 1)
     whole = np.diff(numbers[:count]) == sweep.every
     finite = np.all([np.isfinite(f[:count]).all(-1) for f in vars(state).values()], axis=0)
     good = finite & np.concatenate(([True], whole))
     count = count if good.all() else int(np.argmin(good))
-    if count < 3 or sweep.every > MOST_STEPS or sweep.accuracy is not None:
+    if count < least or sweep.every > MOST_STEPS or sweep.accuracy is not None:
         return None
     bounds = bounds_of_samples(truth, sweep, growth, slice(1, count))
     kept = State(*(np.array(f[:count]) for f in vars(state).values()))

@@ -8,6 +8,7 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.between_steps import between_steps
 from omegadot.diagnosis.stepping.commutator_slips import commutator_slips
 from omegadot.diagnosis.stepping.exponentials import exponential_causes
 from omegadot.diagnosis.stepping.jacobian_slips import jacobian_slips
@@ -72,7 +73,8 @@ def causes_over_runs(integrator: Integrator, runs: Sequence[KeptRun]) -> list[st
         declared = integrator.scheme is not None
         if by is None:
             return stage_slips(integrator, by, chosen) or solved_causes(by, runs, declared)
-        found = substeps_of_runs(integrator, by, chosen) or either(limit_causes(by, runs))
+        found = between_steps(by, runs) or substeps_of_runs(integrator, by, chosen)
+        found = found or either(limit_causes(by, runs))
         found = found or skipped_steps(by, runs) or length_causes(by, runs)
         found = found or load_time_causes(by, runs) or spell_causes(by, runs)
         found = found or impulse_causes(by, runs)
