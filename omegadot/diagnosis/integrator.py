@@ -104,31 +104,44 @@ class IntegratorCauses:
         asleep = self._engine.sleep(self._integrator.name, self._case.name)
         if asleep and not self._kept.again:
             return [asleep]
-        failing = self._over.fails[self._case.name] and not self._kept.again
-        begins = self._over.begins_at(self._integrator, self._case.name) if failing else ""
-        fails = self._over.fails[self._case.name]
-        other = begins or (self._over.ends_at(self._integrator, self._case.name) if fails else "")
-        if fails and not other:
-            other = self._over.moved_at(self._integrator, self._case.name)
-        if failing and not other:
-            other = self._over.lengths_at(self._integrator, self._case.name)
-        if other:
-            return [other]
-        repeated = fails and self._kept.again == AGAIN["repeated"]
-        negated = fails and self._kept.again == AGAIN["negated"]
-        asked = failing or repeated or negated
-        together = self._over.together(self._integrator) if asked else []
-        if repeated:  # a run of other steps is another share of a run
-            together = [text for text in together if OF_SHARE in text]
-        if negated:
-            together = [text for text in together if self._makes_negated(text)]
-        if any(map(is_named, together)):
-            return together
+        fails, together = self._over.fails[self._case.name], list[str]()
+        rules = self._of_rules() if fails else []
+        if rules:
+            return rules
+        if fails:
+            together = self._together()
+            if any(map(is_named, together)):
+                return together
         own = [self._where(text) for text in self._of_case()]
         if any(SOUND_UNTIL in text for text in own):
             law = onset_law([one for runs in self._over.onsets.values() for one in runs])
             own = [law] if law else own
         return own if any(map(is_named, own)) else together or own
+
+    def _of_rules(self) -> list[str]:
+        """Where all runs begin or end, which samples are of another step, or a term of another."""
+        name, again, how = self._case.name, self._kept.again, self._integrator
+        begins = ""
+        if again == AGAIN["negated"]:
+            begins = self._over.begins_from_negated(how, name)
+        elif not again:
+            begins = self._over.begins_at(how, name)
+        found = begins or self._over.ends_at(how, name) or self._over.moved_at(how, name)
+        found = found or (self._over.lengths_at(how, name) if not again else "")
+        return [found] if found else []
+
+    def _together(self) -> list[str]:
+        """What makes the runs of all scenarios, and two answers to one request where these differ.
+
+        A run of other steps is another share of a run.
+        """
+        again = self._kept.again
+        if again and again not in (AGAIN["repeated"], AGAIN["negated"]):
+            return []
+        together = self._over.together(self._integrator)
+        if again == AGAIN["repeated"]:
+            return [text for text in together if OF_SHARE in text]
+        return [text for text in together if self._makes_negated(text)] if again else together
 
     def _makes_negated(self, text: str) -> bool:
         """Whether what the attitude goes through between steps makes the run from -q as well."""

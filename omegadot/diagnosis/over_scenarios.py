@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -79,6 +79,16 @@ class OverScenarios:
         """At which other state all runs begin, where that makes those of this scenario; else ""."""
         found = self._other_start(integrator)
         return found.statement if found is not None and name in found.names else ""
+
+    def begins_from_negated(self, integrator: Integrator, name: str) -> str:
+        """At which other state all runs begin, where that makes those from -q; else ""."""
+        found = self._other_start(integrator)
+        runs = [run for run in self.negated if run.name == name]
+        if found is None or not runs or name not in self.given:
+            return ""
+        given = self.given[name]
+        other = replace(given, orientation=-given.orientation)
+        return found.statement * all(found.makes(run, other) for run in runs)
 
     def _other_start(self, integrator: Integrator) -> Starts | None:
         count = (len(self.steps), len(self.kept))

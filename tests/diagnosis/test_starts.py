@@ -167,3 +167,18 @@ def test_a_start_by_no_known_rule_is_not_named() -> None:
         return replace(state, angular_velocity=w + 0.3 * np.sin(v))
 
     assert statement(mixed) == ""
+
+
+def test_what_begins_elsewhere_from_minus_q_alone_is_of_the_same_rule() -> None:
+    """Caught: "the sign of the first quaternion changes the run", where its rule is known."""
+    integrator = Integrator("own", SCHEME, dict.fromkeys(CHANNELS, 1))
+    steps = {one.name: steps_of(one, unsigned) for one in CASES}
+    given = {one.name: one.initial for one in CASES}
+    kept = [run_of(one, unsigned, same, log_given=False) for one in CASES]
+    found = other_start(integrator, steps, given, kept)
+    assert found is not None
+    one = next(one for one in CASES if one.initial.orientation[0] > 0.0)
+    negated = replace(one.initial, orientation=-one.initial.orientation)
+    other = replace(one, initial=negated)
+    assert found.makes(run_of(other, unsigned, same, log_given=True), negated)
+    assert not found.makes(run_of(other, same, same, log_given=True), negated)

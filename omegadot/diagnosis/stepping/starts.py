@@ -28,10 +28,19 @@ RUNS = 2  # of a scenario, that are stepped again
 
 @dataclass(frozen=True)
 class Starts:
-    """statement: where all runs begin.  names: of the scenarios whose failed runs this explains."""
+    """statement: where all runs begin.  names: of the scenarios whose failed runs this explains.
+
+    rules and by: what is made of the state that is given, and the scheme that goes on from there.
+    """
 
     statement: str
     names: frozenset[str]
+    rules: Mapping[str, Rule]
+    by: SchemeOf
+
+    def makes(self, run: KeptRun, given: State) -> bool:
+        """Whether a run that is given this state begins so, and is sound from there."""
+        return any(one.sound(self.by).all() for one in _from(self.rules, run.short, given))
 
 
 def other_start(
@@ -80,7 +89,7 @@ def _held(
         return None
     text = listed([rule.text for rule in rules.values()])
     statement = f"a run begins {text}, and is sound from there"
-    return Starts(statement, frozenset(jumping - wrong))
+    return Starts(statement, frozenset(jumping - wrong), rules, by)
 
 
 def _made(rules: Mapping[str, Rule], state: State) -> State | None:
