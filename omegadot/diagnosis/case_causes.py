@@ -26,8 +26,8 @@ from omegadot.diagnosis.models.wrong_lever import lever_causes
 from omegadot.diagnosis.models.wrong_model import model_causes
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import batch_cause, kept_causes
-from omegadot.diagnosis.stepping.kinematics import kinematic_causes, moves_by_cause
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
+from omegadot.diagnosis.stepping.vanishing.kinematics import kinematic_causes, moves_by_cause
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import is_named
 from omegadot.gates.bounds.scales import eps_of
 from omegadot.gates.case import Case

@@ -26,7 +26,7 @@ from omegadot.diagnosis.experiments.run_before import after_runs
 from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditions_of
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import AGAIN
-from omegadot.diagnosis.stepping.after_run import AfterRun, taken_of_run_before
+from omegadot.diagnosis.stepping.ends.after_run import AfterRun, taken_of_run_before
 from omegadot.diagnosis.wording.kinds import beside_others, is_named, kind_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import (

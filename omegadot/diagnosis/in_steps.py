@@ -12,18 +12,18 @@ from omegadot.diagnosis.equations.evidence import FORWARD
 from omegadot.diagnosis.equations.wrong_equation import known_difference
 from omegadot.diagnosis.kept_case import KeptCase, source_of
 from omegadot.diagnosis.over_scenarios import OverScenarios
-from omegadot.diagnosis.stepping.follows import Followed
-from omegadot.diagnosis.stepping.jumps import STOPPED, jump_cause, jumps
-from omegadot.diagnosis.stepping.kinematics import (
+from omegadot.diagnosis.stepping.loads.substeps import part_named, part_of, substep_cause
+from omegadot.diagnosis.stepping.vanishing.follows import Followed
+from omegadot.diagnosis.stepping.vanishing.jumps import STOPPED, jump_cause, jumps
+from omegadot.diagnosis.stepping.vanishing.kinematics import (
     kinematic_causes,
     moves_by_cause,
     omega_share_cause,
     omega_still_cause,
     velocity_share_cause,
 )
-from omegadot.diagnosis.stepping.outrun import outruns
-from omegadot.diagnosis.stepping.substeps import part_named, part_of, substep_cause
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
+from omegadot.diagnosis.stepping.vanishing.outrun import outruns
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import either
 
 OF_LOAD = re.compile(

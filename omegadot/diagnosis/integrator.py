@@ -18,13 +18,17 @@ from omegadot.diagnosis.reported.onsets import SOUND_UNTIL, onset_law
 from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.reported.singles import IN_SINGLE
 from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
-from omegadot.diagnosis.stepping.between_steps import passes_between
-from omegadot.diagnosis.stepping.jumps import jumps, slight_jump_cause
 from omegadot.diagnosis.stepping.kept_run import scheme_of
-from omegadot.diagnosis.stepping.kinematics import kinematic_causes, least_step, still_cause
-from omegadot.diagnosis.stepping.load_spell_laws import OF_SHARE
+from omegadot.diagnosis.stepping.loads.load_spell_laws import OF_SHARE
 from omegadot.diagnosis.stepping.order_lost import OrderLost
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
+from omegadot.diagnosis.stepping.turns.between_steps import passes_between
+from omegadot.diagnosis.stepping.vanishing.jumps import jumps, slight_jump_cause
+from omegadot.diagnosis.stepping.vanishing.kinematics import (
+    kinematic_causes,
+    least_step,
+    still_cause,
+)
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.stepping.where_stepped import makes_runs, where_stepped
 from omegadot.diagnosis.wording.kinds import (
     agreed,

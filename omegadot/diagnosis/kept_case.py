@@ -10,13 +10,18 @@ from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.reported.run import reported_run
-from omegadot.diagnosis.stepping.follows import SAMPLES, Beginning, begins_turned, keeps_pace
-from omegadot.diagnosis.stepping.jumps import first_turn
+from omegadot.diagnosis.stepping.ends.run_ends import run_end
 from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
-from omegadot.diagnosis.stepping.rests import RunWithRests, rests_of
-from omegadot.diagnosis.stepping.run_ends import run_end
 from omegadot.diagnosis.stepping.step_orders import order_lost
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
+from omegadot.diagnosis.stepping.vanishing.follows import (
+    SAMPLES,
+    Beginning,
+    begins_turned,
+    keeps_pace,
+)
+from omegadot.diagnosis.stepping.vanishing.jumps import first_turn
+from omegadot.diagnosis.stepping.vanishing.rests import RunWithRests, rests_of
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.stepping.wrong_steps import LEAST_SAMPLES
 from omegadot.diagnosis.wording.features import Features, features_of
 from omegadot.gates.bounds.scales import eps_of

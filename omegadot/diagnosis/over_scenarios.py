@@ -16,16 +16,16 @@ from omegadot.diagnosis.equations.left_over import LeftOver
 from omegadot.diagnosis.equations.siblings import Siblings
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.reported.onsets import Onset
-from omegadot.diagnosis.stepping.factor_lengths import OtherLengths, other_lengths
-from omegadot.diagnosis.stepping.follows import Beginning, Followed, follows
+from omegadot.diagnosis.stepping.ends.moved_samples import Moved, moved_samples
+from omegadot.diagnosis.stepping.ends.run_ends import Ends, RunEnd, other_ends
+from omegadot.diagnosis.stepping.ends.starts import Starts, other_start
 from omegadot.diagnosis.stepping.kept_run import KeptRun
-from omegadot.diagnosis.stepping.moved_samples import Moved, moved_samples
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
-from omegadot.diagnosis.stepping.rests import Rests, sleep_law
-from omegadot.diagnosis.stepping.run_ends import Ends, RunEnd, other_ends
-from omegadot.diagnosis.stepping.starts import Starts, other_start
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
+from omegadot.diagnosis.stepping.turns.factor_lengths import OtherLengths, other_lengths
+from omegadot.diagnosis.stepping.vanishing.follows import Beginning, Followed, follows
+from omegadot.diagnosis.stepping.vanishing.rests import Rests, sleep_law
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import is_named
 from omegadot.reference_impl.system import State
 from omegadot.written import written

@@ -30,10 +30,10 @@ from omegadot.diagnosis.reported.sample_causes import (
     omega_dot_late,
     one_field,
 )
+from omegadot.diagnosis.stepping.ends.restarts import restart_cause
 from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
-from omegadot.diagnosis.stepping.other_schemes import slips_of
-from omegadot.diagnosis.stepping.restarts import restart_cause
-from omegadot.diagnosis.stepping.slips import OF_SCHEME
+from omegadot.diagnosis.stepping.slips.other_schemes import slips_of
+from omegadot.diagnosis.stepping.slips.slips import OF_SCHEME
 from omegadot.diagnosis.stepping.wrong_steps import is_decisive, is_steppable, stepping_causes
 from omegadot.diagnosis.wording.kinds import is_fact, kind_of
 from omegadot.gates.bounds.scales import EPS

@@ -15,7 +15,7 @@ from omegadot.adapters.protocol import Trajectory
 from omegadot.adapters.reference import ReferenceAdapter
 from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.run_before import after_runs
-from omegadot.diagnosis.stepping.after_run import OWN, AfterRun, _of_start, taken_of_run_before
+from omegadot.diagnosis.stepping.ends.after_run import OWN, AfterRun, _of_start, taken_of_run_before
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.states.equation import random_states
 from omegadot.harness.in_process import driver_of

@@ -10,8 +10,8 @@ import pytest
 from test_over_runs import CASES, STEPS, Step, euler, kept
 
 from omegadot.diagnosis.models.passed_attitudes import passed_attitudes
-from omegadot.diagnosis.stepping.between_steps import between_steps, passes_between
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
+from omegadot.diagnosis.stepping.turns.between_steps import between_steps, passes_between
 from omegadot.reference_impl.coordinates import from_coordinates
 from omegadot.reference_impl.rotations import exp_quaternion
 from omegadot.reference_impl.schemes import SCHEMES, Motion

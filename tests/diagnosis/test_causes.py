@@ -13,9 +13,9 @@ from omegadot.diagnosis.equations.across import Across, Scene
 from omegadot.diagnosis.equations.evidence import FORWARD, of_forward_dynamics
 from omegadot.diagnosis.equations.wrong_equation import equation_causes
 from omegadot.diagnosis.equations.wrong_torque import torque_causes
-from omegadot.diagnosis.stepping.jumps import jump_cause
 from omegadot.diagnosis.stepping.trace import Trace, trace_causes
-from omegadot.diagnosis.stepping.vanishing_steps import vanishing_steps
+from omegadot.diagnosis.stepping.vanishing.jumps import jump_cause
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import vanishing_steps
 from omegadot.diagnosis.wording.digits import factor, number
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.diagnosis.wording.laws import law_of

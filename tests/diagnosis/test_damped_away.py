@@ -14,7 +14,7 @@ from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.in_steps import StepCauses
 from omegadot.diagnosis.kept_case import KeptCase
 from omegadot.diagnosis.over_scenarios import OverScenarios
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states

@@ -11,9 +11,9 @@ from test_over_runs import kept
 from wrong_equations import GRAVITY, PIVOT, case
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.stepping.factor_lengths import other_lengths
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
+from omegadot.diagnosis.stepping.turns.factor_lengths import other_lengths
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states
 from omegadot.gates.steps.probe import probe_at

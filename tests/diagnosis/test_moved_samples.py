@@ -10,8 +10,8 @@ import pytest
 from test_over_runs import CASES, STEPS, euler, kept
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.ends.moved_samples import moved_samples
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf
-from omegadot.diagnosis.stepping.moved_samples import moved_samples
 from omegadot.reference_impl.schemes import SCHEMES, Motion
 from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reference_impl.system import Array, System

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from test_over_runs import CASES, Step, kept
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.stepping.multistep_slips import order_of
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
+from omegadot.diagnosis.stepping.slips.multistep_slips import order_of
 from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.schemes.scheme import CHANNELS
 from omegadot.reference_impl.system import Array, System

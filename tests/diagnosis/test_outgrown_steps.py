@@ -13,7 +13,7 @@ from omegadot.diagnosis.equations.held import Scene
 from omegadot.diagnosis.in_steps import StepCauses
 from omegadot.diagnosis.kept_case import KeptCase, source_of
 from omegadot.diagnosis.over_scenarios import OverScenarios
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case

@@ -16,7 +16,7 @@ from omegadot.diagnosis.reported.clock import clock_cause, clock_of_runs
 from omegadot.diagnosis.reported.of_steps import ways_of_steps
 from omegadot.diagnosis.reported.requests import again_cause, place_cause
 from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
-from omegadot.diagnosis.stepping.slips import OF_SCHEME, slipped
+from omegadot.diagnosis.stepping.slips.slips import OF_SCHEME, slipped
 from omegadot.diagnosis.wording.conditions import only_where
 from omegadot.diagnosis.wording.kinds import agreed, beside_others, is_fact, kind_of
 from omegadot.gates.bounds.scales import EPS

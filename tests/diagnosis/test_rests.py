@@ -14,9 +14,9 @@ from wrong_equations import PIVOT, TENSOR, case
 
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.run import ReportedRun
-from omegadot.diagnosis.stepping.jumps import jump_cause
-from omegadot.diagnosis.stepping.rests import Rests, RunWithRests, rests_of, sleep_law
-from omegadot.diagnosis.stepping.vanishing_steps import vanishing_steps
+from omegadot.diagnosis.stepping.vanishing.jumps import jump_cause
+from omegadot.diagnosis.stepping.vanishing.rests import Rests, RunWithRests, rests_of, sleep_law
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import vanishing_steps
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states
 from omegadot.gates.steps.probe import Probe

@@ -9,8 +9,8 @@ import pytest
 from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, case
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.ends.run_ends import RunEnd, other_ends
 from omegadot.diagnosis.stepping.kept_run import KeptRun
-from omegadot.diagnosis.stepping.run_ends import RunEnd, other_ends
 from omegadot.gates.case import Case, Sweep
 from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.schemes.scheme import CHANNELS

@@ -10,8 +10,8 @@ from in_process import builtin, declared, truth_of
 from omegadot.diagnosis.reported.late import late
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.reported.run_causes import last_repeated
-from omegadot.diagnosis.stepping.kinematics import least_step
-from omegadot.diagnosis.stepping.vanishing_steps import vanishing_steps
+from omegadot.diagnosis.stepping.vanishing.kinematics import least_step
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import vanishing_steps
 from omegadot.diagnosis.wording.laws import law_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import random_states

@@ -10,9 +10,9 @@ import pytest
 from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, WORLD_TORQUE, case
 
 from omegadot.adapters.protocol import Integrator
+from omegadot.diagnosis.stepping.ends.starts import other_start
 from omegadot.diagnosis.stepping.kept_run import KeptRun
-from omegadot.diagnosis.stepping.starts import other_start
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.states.equation import random_states
 from omegadot.gates.steps.probe import probe_at

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from test_over_runs import CASES, euler, kept
 
-from omegadot.diagnosis.stepping.substeps import part_named, part_of, substep_cause
+from omegadot.diagnosis.stepping.loads.substeps import part_named, part_of, substep_cause
 from omegadot.reference_impl.coordinates import from_coordinates
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import applied_torque

@@ -12,8 +12,8 @@ from test_short_steps import own_run
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.explicit_schemes import TABLEAUS, scheme_named
 from omegadot.diagnosis.stepping.on_quaternion import Rows, on_quaternion
-from omegadot.diagnosis.stepping.other_schemes import slips_of
-from omegadot.diagnosis.stepping.slips import OF_SCHEME
+from omegadot.diagnosis.stepping.slips.other_schemes import slips_of
+from omegadot.diagnosis.stepping.slips.slips import OF_SCHEME
 from omegadot.reference_impl.schemes import Motion
 from omegadot.reference_impl.system import Array
 

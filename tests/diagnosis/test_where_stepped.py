@@ -10,10 +10,10 @@ from wrong_equations import BODY_TORQUE, GRAVITY, PIVOT, case
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.kept_run import KeptRun
-from omegadot.diagnosis.stepping.other_schemes import ENDS
+from omegadot.diagnosis.stepping.loads.whole_substeps import substepped
+from omegadot.diagnosis.stepping.slips.other_schemes import ENDS
 from omegadot.diagnosis.stepping.step_ends import kept_ends, with_end
 from omegadot.diagnosis.stepping.where_stepped import makes_runs, where_stepped
-from omegadot.diagnosis.stepping.whole_substeps import substepped
 from omegadot.diagnosis.wording.features import features_of
 from omegadot.gates.case import Case, Sweep
 from omegadot.reference_impl.schemes import SCHEMES

@@ -9,7 +9,7 @@ import pytest
 from test_over_runs import causes
 from test_short_steps import own_run
 
-from omegadot.diagnosis.stepping.whole_substeps import substepped, substeps_of_run
+from omegadot.diagnosis.stepping.loads.whole_substeps import substepped, substeps_of_run
 from omegadot.reference_impl.schemes import SCHEMES, Motion
 from omegadot.reference_impl.system import Array, System
 

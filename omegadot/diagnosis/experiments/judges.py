@@ -19,8 +19,8 @@ from omegadot.diagnosis.equations.evidence import (
 from omegadot.diagnosis.experiments.asked import Asked
 from omegadot.diagnosis.experiments.observed import Flags, Trial
 from omegadot.diagnosis.models.misread_state import would_show
-from omegadot.diagnosis.stepping.kinematics import shows_in_motion
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps, vanishing_steps
+from omegadot.diagnosis.stepping.vanishing.kinematics import shows_in_motion
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
 from omegadot.gates.bounds.scales import norm
 from omegadot.gates.case import Case
 from omegadot.gates.states.model import state_rows

@@ -9,8 +9,8 @@ import numpy as np
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.experiments.asked import Asked
-from omegadot.diagnosis.stepping.after_run import OWN, AfterRun
-from omegadot.diagnosis.stepping.vanishing_steps import RANGE, vanishing_steps
+from omegadot.diagnosis.stepping.ends.after_run import OWN, AfterRun
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import RANGE, vanishing_steps
 from omegadot.gates.case import Case
 from omegadot.gates.steps.limits import extrapolated
 from omegadot.gates.steps.probe import Probe, probe_at

@@ -32,7 +32,7 @@ from omegadot.diagnosis.experiments.judges import (
 from omegadot.diagnosis.experiments.observed import Trial
 from omegadot.diagnosis.experiments.sorting import contradicted
 from omegadot.diagnosis.experiments.step_lengths import limit_of_length
-from omegadot.diagnosis.stepping.vanishing_steps import VanishingSteps
+from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.gates.case import Case
 from omegadot.reference_impl.system import State
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.fitted import search
-from omegadot.diagnosis.stepping.rests import SLEEPS
 from omegadot.diagnosis.stepping.step_ends import (
     End,
     clipped_at,
@@ -17,6 +16,7 @@ from omegadot.diagnosis.stepping.step_ends import (
     turn_within,
     with_end,
 )
+from omegadot.diagnosis.stepping.vanishing.rests import SLEEPS
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import rotation_between
 from omegadot.reference_impl.system import Array, State

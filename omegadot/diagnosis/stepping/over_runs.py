@@ -7,27 +7,27 @@ from collections.abc import Sequence
 import numpy as np
 
 from omegadot.adapters.protocol import Integrator
-from omegadot.diagnosis.stepping.acting import KNOWN, TERMS, Shares, shares_of
-from omegadot.diagnosis.stepping.between_steps import between_steps
-from omegadot.diagnosis.stepping.commutator_slips import commutator_slips
-from omegadot.diagnosis.stepping.exponentials import exponential_causes
-from omegadot.diagnosis.stepping.jacobian_slips import jacobian_slips
+from omegadot.diagnosis.stepping.ends.skipped_steps import skipped_steps
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.lengths import length_causes
 from omegadot.diagnosis.stepping.limits_over_runs import limit_causes
-from omegadot.diagnosis.stepping.load_impulses import impulse_causes
-from omegadot.diagnosis.stepping.load_spell_laws import spell_causes
-from omegadot.diagnosis.stepping.load_times import load_time_causes
-from omegadot.diagnosis.stepping.multistep_slips import multistep_slips
-from omegadot.diagnosis.stepping.old_operands import old_operands
+from omegadot.diagnosis.stepping.loads.acting import KNOWN, TERMS, Shares, shares_of
+from omegadot.diagnosis.stepping.loads.load_impulses import impulse_causes
+from omegadot.diagnosis.stepping.loads.load_spell_laws import spell_causes
+from omegadot.diagnosis.stepping.loads.load_times import load_time_causes
+from omegadot.diagnosis.stepping.loads.share_laws import laws_of
+from omegadot.diagnosis.stepping.loads.share_points import points_of
+from omegadot.diagnosis.stepping.loads.tared import tared_causes
+from omegadot.diagnosis.stepping.loads.whole_substeps import substeps_of_runs
 from omegadot.diagnosis.stepping.places import place_causes
-from omegadot.diagnosis.stepping.share_laws import laws_of
-from omegadot.diagnosis.stepping.share_points import points_of
-from omegadot.diagnosis.stepping.skipped_steps import skipped_steps
-from omegadot.diagnosis.stepping.solved import solved_causes
-from omegadot.diagnosis.stepping.stage_slips import slips_in_stages, stage_slips
-from omegadot.diagnosis.stepping.tared import tared_causes
-from omegadot.diagnosis.stepping.whole_substeps import substeps_of_runs
+from omegadot.diagnosis.stepping.slips.commutator_slips import commutator_slips
+from omegadot.diagnosis.stepping.slips.jacobian_slips import jacobian_slips
+from omegadot.diagnosis.stepping.slips.multistep_slips import multistep_slips
+from omegadot.diagnosis.stepping.slips.old_operands import old_operands
+from omegadot.diagnosis.stepping.slips.stage_slips import slips_in_stages, stage_slips
+from omegadot.diagnosis.stepping.turns.between_steps import between_steps
+from omegadot.diagnosis.stepping.turns.exponentials import exponential_causes
+from omegadot.diagnosis.stepping.turns.solved import solved_causes
 from omegadot.diagnosis.wording.kinds import either
 from omegadot.reference_impl.system import Array
 

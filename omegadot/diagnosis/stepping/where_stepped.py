@@ -14,10 +14,10 @@ import numpy as np
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT, scheme_named
 from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
-from omegadot.diagnosis.stepping.other_schemes import ENDS
-from omegadot.diagnosis.stepping.slips import slipped
+from omegadot.diagnosis.stepping.loads.whole_substeps import scheme_of_substeps
+from omegadot.diagnosis.stepping.slips.other_schemes import ENDS
+from omegadot.diagnosis.stepping.slips.slips import slipped
 from omegadot.diagnosis.stepping.step_ends import kept_ends, with_end
-from omegadot.diagnosis.stepping.whole_substeps import scheme_of_substeps
 from omegadot.diagnosis.wording.features import Features, in_common
 from omegadot.diagnosis.wording.kinds import AT_STEPS, EITHER, OR
 from omegadot.reference_impl.coordinates import canonical

@@ -9,14 +9,14 @@ import numpy as np
 from omegadot.diagnosis.reported.run import ReportedRun
 from omegadot.diagnosis.stepping.fitted import damped, longer
 from omegadot.diagnosis.stepping.limits import asleep, clipped, held, speed, still, turn_held
+from omegadot.diagnosis.stepping.loads.whole_substeps import substeps_of_run
 from omegadot.diagnosis.stepping.other_equations import other_equations
-from omegadot.diagnosis.stepping.other_schemes import (
+from omegadot.diagnosis.stepping.slips.other_schemes import (
     explicit_schemes,
     other_ends,
     other_schemes,
     slips,
 )
-from omegadot.diagnosis.stepping.whole_substeps import substeps_of_run
 from omegadot.gates.bounds.scales import norm
 from omegadot.harness.judging.judged_run import is_finite
 

@@ -1,0 +1,1 @@
+"""How runs and samples begin and end."""

@@ -1,0 +1,1 @@
+"""Loads and terms that act otherwise, or at other times, within steps."""

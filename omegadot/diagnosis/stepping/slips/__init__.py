@@ -1,0 +1,1 @@
+"""Schemes with something mistyped or taken from elsewhere in them."""

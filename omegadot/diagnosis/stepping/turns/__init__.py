@@ -1,0 +1,1 @@
+"""How a step turns the body, and how its equation is solved."""

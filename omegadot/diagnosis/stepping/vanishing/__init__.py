@@ -1,0 +1,1 @@
+"""What single steps show as they become ever shorter."""
