@@ -70,6 +70,13 @@ def test_some_samples_of_another_step_are_named(sound: ReportedRun, shift: int, 
     assert late(sound) == []
 
 
+def test_a_body_that_does_not_move_has_no_shorter_intervals(sound: ReportedRun) -> None:
+    """Caught: "each interval is one step shorter", of intervals of one step, in a body at rest."""
+    every = replace(sound.sweep, every=1, steps=len(sound.time) - 1)
+    stays = sound.state[np.zeros(len(sound.time), dtype=int)]
+    assert late(replace(sound, sweep=every, state=stays)) == []
+
+
 def test_a_place_that_each_step_moves_further_is_named() -> None:
     """Caught: "the position alone is wrong in the run", of ``x + h v + h^2 g`` for half of it."""
     falling = own_run("gazebo-complex-box")

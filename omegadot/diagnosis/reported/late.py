@@ -66,6 +66,8 @@ def _other_intervals(reported: ReportedRun, every: State) -> list[str]:
     steps = reported.sweep.sample_steps
     places = np.arange(len(steps))
     for what, numbers in (("longer", steps + places), ("shorter", steps - places)):
+        if not numbers.any():
+            continue  # no step at all is a body that does not move
         states = _stepped_past(reported, every, int(numbers[-1]))
         if reported.agrees(reported.state, states[numbers]):
             return [f"each interval between samples is one step {what} than requested"]
