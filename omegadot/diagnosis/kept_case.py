@@ -19,6 +19,7 @@ from omegadot.diagnosis.stepping.vanishing.follows import (
     begins_turned,
     keeps_pace,
 )
+from omegadot.diagnosis.stepping.vanishing.freezes import freezes_of
 from omegadot.diagnosis.stepping.vanishing.jumps import first_turn
 from omegadot.diagnosis.stepping.vanishing.rests import RunWithRests, rests_of
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps, vanishing_steps
@@ -96,6 +97,8 @@ def kept_case(
     steps = _steps(over, case, result, runs, beginning)
     probe, answer = result.first_steps.get(runs[0].integrator.name, (None, None))
     stepped = State(**answer.result) if answer is not None and answer.ok else None
+    whole = [state for state, _, _ in _whole_runs(truth, result, runs)]
+    over.frozen[case.name] = freezes_of(case.system, probe, stepped, whole)
     over.rests[case.name] = rests_of(
         case.system, probe, stepped, [*_with_rests(case, truth, result, runs)]
     )

@@ -24,7 +24,8 @@ from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 from omegadot.diagnosis.stepping.turns.factor_lengths import OtherLengths, other_lengths
 from omegadot.diagnosis.stepping.vanishing.follows import Beginning, Followed, follows
-from omegadot.diagnosis.stepping.vanishing.rests import Rests, sleep_law
+from omegadot.diagnosis.stepping.vanishing.freezes import FREEZES
+from omegadot.diagnosis.stepping.vanishing.rests import SLEEPS, Rests, sleep_law
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import is_named
 from omegadot.reference_impl.system import State
@@ -41,7 +42,8 @@ class OverScenarios:
     that are requested again from -q.  turned: by what angle in rad first steps turn the body, and
     whether later ones are seen not to.  stays_below: s, up to which length steps change nothing,
     and from which on they do.  keeps_pace: whether runs go on as much too fast, or too slowly, as
-    first steps do.  rests: at what states the body is put to rest.  places: causes in every step,
+    first steps do.  rests: at what states the body is put to rest, and frozen: at what states steps
+    leave it as it is.  places: causes in every step,
     with where they act.  substeps: in which of these a load acts, of causes that scale it.  onsets:
     where failed runs begin to be wrong that are sound until then.  steps and given: first steps
     from many states, as they vanish, and the state that runs are given.  ends: the last two samples
@@ -60,6 +62,7 @@ class OverScenarios:
     keeps_pace: dict[str, bool] = field(default_factory=dict)
     stays_below: dict[str, tuple[float, float]] = field(default_factory=dict)
     rests: dict[str, Rests] = field(default_factory=dict)
+    frozen: dict[str, Rests] = field(default_factory=dict)
     places: dict[tuple[str, int], str] = field(default_factory=dict)
     substeps: dict[tuple[str, int], str] = field(default_factory=dict)
     onsets: dict[str, list[Onset]] = field(default_factory=dict)
@@ -202,9 +205,22 @@ class EngineOverScenarios:
 
         One rule of all integrators that put it to sleep; where there is none, of this one.
         """
-        own = self.integrators[integrator].rests
+        return self._below_a_limit(integrator, name, "rests", SLEEPS) or self._below_a_limit(
+            integrator, name, "frozen", FREEZES
+        )
+
+    def _below_a_limit(self, integrator: str, name: str, which: str, what: str) -> str:
+        """One rule of all bodies, or of those that are free, or pivoted, as this one is."""
+        own: dict[str, Rests] = getattr(self.integrators[integrator], which)
         if name not in own or not own[name].seen:
             return ""
-        every = [[*over.rests.values()] for over in self.integrators.values()]
-        asleep = [rests for rests in every if any(one.seen for one in rests)]
-        return sleep_law([one for rests in asleep for one in rests]) or sleep_law([*own.values()])
+        every = [[*getattr(over, which).values()] for over in self.integrators.values()]
+        asleep = [one for rests in every if any(one.seen for one in rests) for one in rests]
+        pivoted, mine = own[name].pivoted, [*own.values()]
+        found = sleep_law(asleep, what) or sleep_law(mine, what)
+        if found or which == "rests":
+            return found
+        support = f"{what} where the body is {'pivoted' if pivoted else 'free'} and"
+        alike = [[one for one in each if one.pivoted is pivoted] for each in (asleep, mine)]
+        found = sleep_law(alike[0], what) or sleep_law(alike[1], what)
+        return found.replace(f"{what} where", support)

@@ -11,13 +11,14 @@ import pytest
 from command_line import omegadot
 
 from omegadot.adapters.reference.adapter import ReferenceAdapter
+from omegadot.commands.faults import matrix
 from omegadot.commands.faults.catalogue import FAULTS
 from omegadot.commands.faults.detection import detection
 from omegadot.commands.faults.fault import Spoiled
-from omegadot.commands.faults.faults import FaultsResult
+from omegadot.commands.faults.faults import FaultsResult, faults
 from omegadot.commands.faults.matrix import SOUND, EngineMatrix
 from omegadot.commands.faults.prepared import Pool
-from omegadot.commands.faults.print_faults import HEADS, markdown, share
+from omegadot.commands.faults.print_faults import HEADS, markdown, print_faults, share
 from omegadot.commands.faults.published import Published
 from omegadot.commands.faults.published_checks import PUBLISHED
 from omegadot.scenarios import builtin_names
@@ -127,17 +128,20 @@ def test_the_command_refuses_other_engines(tmp_path: Path) -> None:
     assert "--engine exact: no such engine; choose dart" in result.err
 
 
+@pytest.fixture(scope="module")
+def few_faults() -> FaultsResult:
+    """Three faults over one engine."""
+    few = [FAULTS[name] for name in ("MassSlightlyOff", "GyroscopicDropped", "AttitudeOfOrderTwo")]
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(matrix, "ORDERED", few)
+        return faults("dart", random=2)
+
+
 @pytest.mark.parametrize("form", ["json", "text"])
 def test_the_command_prints_the_matrix(
-    form: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    form: str, few_faults: FaultsResult, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    from omegadot.commands.faults import matrix
-    from omegadot.commands.faults.faults import faults
-    from omegadot.commands.faults.print_faults import print_faults
-
-    few = [FAULTS[name] for name in ("MassSlightlyOff", "GyroscopicDropped", "AttitudeOfOrderTwo")]
-    monkeypatch.setattr(matrix, "ORDERED", few)
-    found = faults("dart", random=2)
+    found = few_faults
     assert found.passed
     print_faults(found, form)
     out = capfd.readouterr().out

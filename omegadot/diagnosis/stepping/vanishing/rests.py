@@ -75,6 +75,7 @@ class Rests:
     at_rest: dict[str, float]
     moving: dict[str, float]
     least: Array
+    pivoted: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,11 +112,11 @@ def rests_of(
         moving.append(probe.states[~after])
     known = sum(len(one.position) for one in resting)
     seen = known > 0 or any(run.rests for run in runs)
-    ends = _over(system, resting, np.max), _over(system, moving, np.min)
-    return Rests(seen, known, *ends, _least(moving))
+    ends = extremes_of(system, resting, np.max), extremes_of(system, moving, np.min)
+    return Rests(seen, known, *ends, least_of(moving), system.load.pivot is not None)
 
 
-def _least(parts: Sequence[State]) -> Array:
+def least_of(parts: Sequence[State]) -> Array:
     """The (|omega|, speed) of which no other is as small in both."""
     sizes = [(norm(one.angular_velocity), norm(one.linear_velocity)) for one in parts]
     points = np.concatenate([np.empty((0, 2)), *(np.stack(one, axis=-1) for one in sizes)])
@@ -124,7 +125,9 @@ def _least(parts: Sequence[State]) -> Array:
     return np.asarray(points[points[:, 1] < before])
 
 
-def _over(system: System, parts: Sequence[State], end: Callable[..., Array]) -> dict[str, float]:
+def extremes_of(
+    system: System, parts: Sequence[State], end: Callable[..., Array]
+) -> dict[str, float]:
     """The end of each quantity over all states, of which there may be none."""
     every = [quantities(system, one) for one in parts if len(one.position)]
     return {name: float(end([end(one[name]) for one in every])) for name in UNITS if every}
@@ -164,8 +167,11 @@ def _outward(value: float, way: Callable[[float], float]) -> float:
     return float(way(value / last) * last)
 
 
-def sleep_law(every: Sequence[Rests]) -> str:
-    """The cause, with what a limit of holds on all scenarios; "" where none does, or many do."""
+def sleep_law(every: Sequence[Rests], what: str = SLEEPS) -> str:
+    """The cause, with what a limit of holds on all scenarios; "" where none does, or many do.
+
+    what: happens to the body.
+    """
     if sum(one.known for one in every) < LEAST:
         return ""
     found = list[str]()
@@ -177,4 +183,4 @@ def sleep_law(every: Sequence[Rests]) -> str:
     found = found or [text for text in (_of_two(every),) if text]
     if not found or len(found) > MOST_NAMED:
         return ""
-    return f"{SLEEPS} where {'either ' * (len(found) > 1)}{', or '.join(found)}"
+    return f"{what} where {'either ' * (len(found) > 1)}{', or '.join(found)}"
