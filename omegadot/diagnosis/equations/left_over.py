@@ -89,7 +89,8 @@ def _found(seen: Sequence[_Seen]) -> tuple[str, frozenset[tuple[str, str]]]:
     nothing = "", frozenset[tuple[str, str]]()
     if not wrong or len(after) < len(wrong):
         return nothing
-    likely = [k for k in KEPT if all(one.explained(k, few=True) for one in wrong)]
+    # a few states may show nothing of what is wrong at others
+    likely = [k for k in KEPT if all(one.explained(k, few=True) is not False for one in wrong)]
     kept = [k for k in likely if _holds(k, seen, wrong)]
     text = worded_kept(kept)
     if not text:
