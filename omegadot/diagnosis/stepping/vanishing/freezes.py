@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from omegadot.diagnosis.stepping.vanishing.rests import Rests, extremes_of, least_of
+from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.steps.probe import Probe
 from omegadot.reference_impl.system import State, System
 
 FREEZES = "a step leaves the state as it is"
+ROUNDINGS = 8  # of a state that is given in other coordinates than it is stepped in
 
 
 def freezes_of(
@@ -24,19 +26,28 @@ def freezes_of(
     """
     frozen, moving = list[State](), list[State]()
     if probe is not None and stepped is not None:
-        pairs = zip(vars(probe.states).values(), vars(stepped).values(), strict=True)
-        stays = np.logical_and.reduce([np.all(a[:, None] == b, axis=(1, 2)) for a, b in pairs])
+        stays = np.all(_same(system, probe.states[:, None], stepped), axis=-1)
         frozen.append(probe.states[stays & _goes(probe.states)])
         moving.append(probe.states[~stays])
     for run in runs:
-        same = [np.all(values[1:] == values[:-1], axis=-1) for values in vars(run).values()]
-        stays, begins = np.logical_and.reduce(same), run[:-1]
+        begins, stays = run[:-1], _same(system, run[:-1], run[1:])
         frozen.append(begins[stays & _goes(begins)])
         moving.append(begins[~stays])
     known = sum(len(one.position) for one in frozen)
     ends = extremes_of(system, frozen, np.max), extremes_of(system, moving, np.min)
     pivoted = system.load.pivot is not None
     return Rests(known > 0, known, *ends, least_of(moving), pivoted)
+
+
+def _same(system: System, before: State, after: State) -> NDArray[np.bool_]:
+    """(...,): whether a state is the same to rounding; of a pivoted body its place follows."""
+    turned = after.orientation - before.orientation
+    same = np.max(np.abs(turned), axis=-1) <= ROUNDINGS * EPS
+    names = ["angular_velocity", "linear_velocity", "position"]
+    for name in names if system.load.pivot is None else names[:1]:
+        old, new = getattr(before, name), getattr(after, name)
+        same &= norm(new - old) <= ROUNDINGS * EPS * norm(old)
+    return np.asarray(same)
 
 
 def _goes(states: State) -> NDArray[np.bool_]:
