@@ -27,7 +27,8 @@ from omegadot.diagnosis.experiments.subject import Conditions, Subject, conditio
 from omegadot.diagnosis.over_scenarios import EngineOverScenarios
 from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.stepping.ends.after_run import AfterRun, taken_of_run_before
-from omegadot.diagnosis.wording.kinds import beside_others, is_named, kind_of
+from omegadot.diagnosis.wording.among_others import beside_others, of_few
+from omegadot.diagnosis.wording.kinds import is_named, kind_of
 from omegadot.gates.case import Case
 from omegadot.gates.states.equation import (
     EvaluationStates,
@@ -86,8 +87,9 @@ class Causes:
     def text(self, engine: str, case: str, run: JudgedRun | None) -> str:
         """The cause of a run on one case, or of what all runs share there.
 
-        Where none is named, it is one of another case that makes what is seen here as well; or else
-        that of most other cases that fail stands before this.
+        Where none is named, or one that less than half of the failing cases show, it is one of
+        another case that makes what is seen here as well; or else that of most other cases that
+        fail stands before this.
         """
         defects, found = list[str](), ""
         with kept_apart(defects):
@@ -96,15 +98,15 @@ class Causes:
 
     def _text_or_others(self, engine: str, case: str, integrator: str | None) -> str:
         text = self._text(engine, case, integrator)
-        if is_named(text):
-            return text
-        others = {
-            name: other
+        every = {
+            name: self._text(engine, name, integrator)
             for name, one in self._cases[engine].items()
             if name != case and one.fails(integrator)
-            for other in (self._text(engine, name, integrator),)
-            if other
         }
+        text = of_few(text, list(every.values()))
+        if is_named(text):
+            return text
+        others = {name: other for name, other in every.items() if other}
         same = self._same_as_others(engine, case, integrator, text, others)
         return same or beside_others(text, list(others.values()))
 

@@ -18,7 +18,7 @@ from omegadot.diagnosis.reported.requests import again_cause, place_cause
 from omegadot.diagnosis.stepping.explicit_schemes import scheme_named
 from omegadot.diagnosis.stepping.slips.slips import OF_SCHEME, slipped
 from omegadot.diagnosis.wording.conditions import only_where
-from omegadot.diagnosis.wording.kinds import agreed, beside_others, is_fact, kind_of
+from omegadot.diagnosis.wording.kinds import agreed, is_fact, kind_of
 from omegadot.gates.bounds.scales import EPS
 from omegadot.gates.case import Case, Sweep
 from omegadot.gates.rows import Row
@@ -274,14 +274,3 @@ def test_the_time_constant_of_a_filter_is_found_in_its_samples(tau: float) -> No
 def test_the_constant_of_a_filter_is_one_over_all_runs() -> None:
     text = "omega is reported through a low-pass of the first order with a time constant of {} s"
     assert kind_of(text.format(0.002)) != kind_of(text.format(0.003))
-
-
-def test_the_cause_of_most_other_scenarios_stands_before_what_is_only_seen() -> None:
-    named, seen = "gravity is scaled by 2", "none is known; omega-dot is off"
-    assert (
-        beside_others(seen, [named, named, seen]) == f"on 2 other scenarios: {named}; here: {seen}"
-    )
-    assert beside_others("", [named]) == f"on 1 other scenario: {named}"
-    assert beside_others(seen, [named, seen]) == seen  # as many name nothing
-    assert beside_others(seen, [named, "damping is ignored", seen]) == seen
-    assert beside_others("", []) == ""

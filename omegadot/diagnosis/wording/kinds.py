@@ -136,20 +136,6 @@ def over_run(text: str, by_scenario: Mapping[str, Sequence[str]]) -> str:
     return f"{shown} ({first}; other numbers on {others} more)"
 
 
-def beside_others(text: str, others: Sequence[str]) -> str:
-    """What is seen on a scenario on which no cause is named, after the cause of most others.
-
-    others: the texts of the other scenarios that fail.
-    """
-    kinds = Counter(kind_of(other) for other in others if is_named(other))
-    kind, count = kinds.most_common(1)[0] if kinds else ("", 0)
-    if 2 * count <= len(others):
-        return text
-    shown = next(other for other in others if is_named(other) and kind_of(other) == kind)
-    where = f"on {count} other scenario{'s' * (count > 1)}: {shown}"
-    return f"{where}; here: {text}" if text else where
-
-
 def either(texts: Sequence[str]) -> list[str]:
     """One sentence of causes that explain the same; none without any."""
     known = [text for text in dict.fromkeys(texts) if text]

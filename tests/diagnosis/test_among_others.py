@@ -1,0 +1,38 @@
+"""What is named on one scenario, beside what is named on the others that fail."""
+
+from omegadot.diagnosis.wording.among_others import beside_others, of_few
+
+LATE = "each interval between samples is one step shorter than requested"
+STILL = "none is known; omega is off"
+
+
+def test_a_cause_that_few_of_the_failing_scenarios_show_is_what_is_seen_there() -> None:
+    # An engine whose slow bodies sleep looks on some scenarios as if a step were missing.
+    seen = f"none is known; on 2 of the 5 scenarios that fail it is as if {LATE}"
+    assert of_few(LATE, [LATE, STILL, STILL, ""]) == seen
+    assert of_few(LATE, [LATE, STILL, ""]) == LATE  # half of them
+    assert of_few(LATE, []) == LATE
+    assert of_few(STILL, [LATE, LATE]) == STILL
+
+
+def test_one_cause_with_other_numbers_and_conditions_is_the_same() -> None:
+    limited = "the damping is limited to 10 N m s/rad"
+    others = (
+        "in the steps, the damping is limited to 9.9 N m s/rad, but not always",
+        "the damping is limited to 9 N m s/rad (heavy-top; other numbers on 3 more)",
+        f"either {limited}, or the torque is",
+        f"{limited}, but only where the body is pivoted",
+    )
+    assert of_few(limited, ["", *others, "", "", ""]) == limited
+    assert of_few(limited, ["", *others, "", "", "", "", ""]) != limited
+
+
+def test_the_cause_of_most_other_scenarios_stands_before_what_is_only_seen() -> None:
+    named, seen = "gravity is scaled by 2", "none is known; omega-dot is off"
+    assert (
+        beside_others(seen, [named, named, seen]) == f"on 2 other scenarios: {named}; here: {seen}"
+    )
+    assert beside_others("", [named]) == f"on 1 other scenario: {named}"
+    assert beside_others(seen, [named, seen]) == seen  # as many name nothing
+    assert beside_others(seen, [named, "damping is ignored", seen]) == seen
+    assert beside_others("", []) == ""
