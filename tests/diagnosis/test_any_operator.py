@@ -18,11 +18,14 @@ from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.states.equation import random_states
 from omegadot.gates.steps.probe import DOUBLE, Probe
 from omegadot.harness.requests.scaled import STATES, doubled
+from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import damping_torque
 from omegadot.reference_impl.rotations import rotate, rotation_matrix
 from omegadot.reference_impl.schemes import SCHEMES, Scheme
 from omegadot.reference_impl.schemes.scheme import every_channel
 from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.symmetric import apply
 from omegadot.reference_impl.system import Acceleration, Array, State, System
 
 DAMPED, DRIVEN = CASES[2:5], CASES[5:7]
@@ -66,6 +69,28 @@ def test_what_is_done_to_a_term_is_named(name: str) -> None:
     causes = causes_over(spoiled(of, change), DAMPED)
     assert causes
     assert all(phrase in text for text in causes.values()), causes
+
+
+@pytest.mark.parametrize(
+    ("which", "of"),
+    [
+        ("the first state", lambda v: v[:1] + 0.0 * v),
+        ("the last state", lambda v: v[-1:] + 0.0 * v),
+        ("the state after", lambda v: np.roll(v, -1, axis=0)),
+    ],
+)
+def test_one_buffer_for_the_momentum_of_every_state_is_named(
+    which: str, of: Callable[[Array], Array]
+) -> None:
+    def found(system: System, states: State) -> Acceleration:
+        w = states.angular_velocity
+        momentum = apply(moving_inertia(system), w)
+        return with_torque(system, states, cross(w, momentum) - cross(w, of(momentum)))
+
+    due = f"I omega in the gyroscopic term is that of {which} among those that are requested"
+    causes = causes_over(found, DAMPED)
+    assert causes
+    assert all(text.startswith(due) for text in causes.values()), causes
 
 
 def heading(turn: Array) -> Array:

@@ -97,7 +97,7 @@ def changed_vectors(evidence: Evidence, steps: bool) -> list[tuple[Changed, Arra
             one
             for one in (*(QUATERNIONS if operand.unit == "" else VECTORS), *inputs)
             if not (steps and one.among) and (one.turns or not operand.constant)
-            if one.rounds or not operand.rounded
+            if one.rounds or not operand.rounded or (one.among and operand.among)
         ]
         due = operand.of(evidence)
         lanes = np.stack([one.change(due, evidence.states, NONE)[places] for one in plain])

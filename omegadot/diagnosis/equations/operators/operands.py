@@ -31,7 +31,8 @@ class Operand:
 
     of: its values at states.  put: the accelerations with others in its place.  came: the values in
     the engine, where they follow from what was found.  constant: the same at every state of a
-    scenario.  reported: it does not move the body.  rounded: tried with rounding alone.
+    scenario.  reported: it does not move the body.  rounded: tried with rounding alone.  among: and
+    with those of other states.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Operand:
     constant: bool = False
     reported: bool = False
     rounded: bool = False
+    among: bool = False
 
 
 def pushed(e: Evidence, torque: Array) -> Acceleration:
@@ -113,6 +115,7 @@ def _in_term(
     of: Callable[[System, State], Array],
     term: Callable[[System, State, Array], Array],
     unit: str = "",
+    among: bool = False,
 ) -> Operand:
     """What goes into one torque, (n, ...), of which it may be rounded there alone."""
 
@@ -123,7 +126,7 @@ def _in_term(
     def put(e: Evidence, v: Array) -> Acceleration:
         return pushed(e, term(e.system, e.states, v) - term(e.system, e.states, values(e)))
 
-    return Operand(name, unit, values, put, rounded=True)
+    return Operand(name, unit, values, put, rounded=True, among=among)
 
 
 def _by_matrix(vector: Array, matrix: Array) -> Array:
@@ -177,6 +180,7 @@ IN_TERMS = (
         lambda s, x: apply(moving_inertia(s), x.angular_velocity),
         lambda s, x, v: -cross(x.angular_velocity, v),
         "kg m^2/s",
+        among=True,
     ),
 )
 

@@ -17,6 +17,12 @@ from omegadot.reference_impl.rotations import (
 from omegadot.reference_impl.system import Array, State
 
 DECIMALS = range(9)
+OF_OTHERS: dict[str, Callable[[Array], Array]] = {
+    "the first state": lambda v: v[:1] + 0 * v,
+    "the last state": lambda v: v[-1:] + 0 * v,
+    "the state before": lambda v: np.roll(v, 1, axis=0),
+    "the state after": lambda v: np.roll(v, -1, axis=0),
+}
 
 
 def _plain(
@@ -89,10 +95,8 @@ def of_any() -> Iterator[Operator]:
     single = "is rounded to single precision"
     yield _plain(lambda v, x: v.astype(np.float32).astype(float), single, rounds=True)
     together = "among those that are requested together"
-    yield _plain(lambda v, x: v[:1] + 0 * v, f"is that of the first state {together}", among=True)
-    yield _plain(
-        lambda v, x: np.roll(v, 1, axis=0), f"is that of the state before {together}", among=True
-    )
+    for which, of in OF_OTHERS.items():
+        yield _plain(lambda v, x, of=of: of(v), f"is that of {which} {together}", among=True)
     for digits in DECIMALS:
         yield _decimal(digits, np.round, "rounded")
         yield _decimal(digits, np.trunc, "cut")
