@@ -142,7 +142,7 @@ class StepCauses:
 
         The limit of vanishing steps does not distinguish the two; whole runs may, by the substeps.
         """
-        scaled, kept = OF_LOAD.fullmatch(text), self._over.kept
+        scaled, kept = OF_LOAD.fullmatch(text), self._over.runs.kept
         part = part_of(float(scaled[2])) if scaled is not None else None
         if scaled is None or part is None:
             return text

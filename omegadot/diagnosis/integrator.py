@@ -17,6 +17,7 @@ from omegadot.diagnosis.reported.known_run import known_of_runs
 from omegadot.diagnosis.reported.onsets import SOUND_UNTIL, onset_law
 from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.reported.singles import IN_SINGLE
+from omegadot.diagnosis.run_rules import ENDS, LENGTHS, MOVED, STARTS
 from omegadot.diagnosis.runs import NOTHING, RunCauses, onsets_of, run_causes
 from omegadot.diagnosis.stepping.kept_run import scheme_of
 from omegadot.diagnosis.stepping.loads.load_spell_laws import OF_SHARE
@@ -125,13 +126,11 @@ class IntegratorCauses:
     def _of_rules(self) -> list[str]:
         """Where all runs begin or end, which samples are of another step, or a term of another."""
         name, again, how = self._case.name, self._kept.again, self._integrator
-        begins = ""
+        runs, begins = self._over.runs, ""
         if again == AGAIN["negated"]:
-            begins = self._over.begins_from_negated(how, name)
-        elif not again:
-            begins = self._over.begins_at(how, name)
-        found = begins or self._over.ends_at(how, name) or self._over.moved_at(how, name)
-        found = found or (self._over.lengths_at(how, name) if not again else "")
+            begins = runs.explains_negated(how, name)
+        kinds = (ENDS, MOVED) if again else (STARTS, ENDS, MOVED, LENGTHS)
+        found = begins or next(filter(None, (runs.explains(k, how, name) for k in kinds)), "")
         return [found] if found else []
 
     def _together(self) -> list[str]:
@@ -149,14 +148,14 @@ class IntegratorCauses:
 
     def _makes_negated(self, text: str) -> bool:
         """Whether what the attitude goes through between steps makes the run from -q as well."""
-        by, own = scheme_of(self._integrator, self._over.kept), self._over.negated
+        by, own = scheme_of(self._integrator, self._over.runs.kept), self._over.runs.negated
         runs = [run for run in own if run.name == self._case.name]
         return by is not None and bool(runs) and all(passes_between(text, by, r) for r in runs)
 
     def follows(self, text: str) -> bool:
         """Whether a cause that is named on another scenario makes the runs of this one."""
         with np.errstate(all="ignore"):  # a wrong engine may answer with any numbers
-            return makes_runs(text, self._integrator, self._over.kept, self._case.name)
+            return makes_runs(text, self._integrator, self._over.runs.kept, self._case.name)
 
     def outgrown(self, name: str) -> bool:
         """Whether what makes the steps of another scenario makes the runs here, too fast to see."""
@@ -168,11 +167,11 @@ class IntegratorCauses:
 
     def _where(self, text: str) -> str:
         """A cause in every step, with the scenarios on which alone it acts."""
-        places, key = self._over.places, (text, len(self._over.kept))
+        places, key = self._over.places, (text, len(self._over.runs.kept))
         if key not in places:
             features = {name: one.features for name, one in self._across.scenes.items()}
             with np.errstate(all="ignore"):
-                kept = self._over.kept
+                kept = self._over.runs.kept
                 places[key] = where_stepped(text, self._integrator, kept, features)
         return places[key]
 
@@ -244,8 +243,8 @@ class IntegratorCauses:
         """
         every = self._over.stays_below.values()
         longest = max(still for still, _ in every)
-        brief = [run for run in self._over.kept if run.timestep <= longest]
-        by = scheme_of(self._integrator, self._over.kept) if brief else None
+        brief = [run for run in self._over.runs.kept if run.timestep <= longest]
+        by = scheme_of(self._integrator, self._over.runs.kept) if brief else None
         if any(run.moves or (by is not None and run.goes_on(by)) for run in brief):
             return []  # it is the first step alone
         limit = least_step(every)

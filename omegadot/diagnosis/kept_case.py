@@ -10,6 +10,7 @@ from omegadot.diagnosis.equations.evidence import Evidence
 from omegadot.diagnosis.over_scenarios import OverScenarios
 from omegadot.diagnosis.reported.requests import again_cause
 from omegadot.diagnosis.reported.run import reported_run
+from omegadot.diagnosis.run_rules import KeptRuns
 from omegadot.diagnosis.stepping.ends.run_ends import run_end
 from omegadot.diagnosis.stepping.kept_run import KeptRun, kept_run
 from omegadot.diagnosis.stepping.step_orders import order_lost
@@ -38,6 +39,7 @@ from omegadot.reference_impl.schemes import SCHEMES
 from omegadot.reference_impl.system import Array, State, System
 
 OBSERVED = "observed_order"
+WholeRun = tuple[State, Array, JudgedRun]  # with how far rounding may grow
 
 
 def source_of(integrator: str) -> str:
@@ -83,26 +85,32 @@ def kept_case(
     if beginning is not None:
         over.beginnings[case.name] = beginning
     over.fails[case.name] = any(run.fails for run in runs)
-    for state, growth, run in _whole_runs(truth, result, runs):
-        how = (case.name, truth, run.sweep, state, growth, run.fails)
-        over.kept += filter(None, (kept_run(*how),))
-        over.ends += filter(None, (run_end(*how),))
-    over.requested[case.name] = [
-        knob for name, knob in result.runs if name in _stepping(result.integrators)
-    ]
-    over.negated += _negated(case.name, truth, result, runs)
+    whole = [*_whole_runs(truth, result, runs)]
+    _keep(over.runs, case, truth, result, whole)
     failed = (row for run in runs for row in run.rows if row.verdict == "fail")
     turned_wrong = any(row.channel == "attitude" for row in failed)
     brief = all(len(run.sweep.times) < LEAST_SAMPLES for run in runs)
     steps = _steps(over, case, result, runs, beginning)
     probe, answer = result.first_steps.get(runs[0].integrator.name, (None, None))
     stepped = State(**answer.result) if answer is not None and answer.ok else None
-    whole = [state for state, _, _ in _whole_runs(truth, result, runs)]
-    over.frozen[case.name] = freezes_of(case.system, probe, stepped, whole)
+    over.frozen[case.name] = freezes_of(case.system, probe, stepped, [one for one, _, _ in whole])
     over.rests[case.name] = rests_of(
         case.system, probe, stepped, [*_with_rests(case, truth, result, runs)]
     )
     return KeptCase(case.name, runs[0].integrator, again, beginning, turned_wrong, brief, steps)
+
+
+def _keep(
+    kept: KeptRuns, case: Case, truth: Truth, result: CaseResult, whole: Sequence[WholeRun]
+) -> None:
+    """Keep of the case's runs their first samples, from q and from -q, and their last two."""
+    for state, growth, run in whole:
+        how = (case.name, truth, run.sweep, state, growth, run.fails)
+        kept.kept += filter(None, (kept_run(*how),))
+        kept.ends += filter(None, (run_end(*how),))
+        kept.negated += filter(None, (_negated(case.name, truth, result, growth, run),))
+    stepping = {one.name for one in result.integrators if one.knob == "timestep"}
+    kept.requested[case.name] = [knob for name, knob in result.runs if name in stepping]
 
 
 def _steps(
@@ -120,7 +128,7 @@ def _steps(
     tolerated, eps = tolerated_by(integrator), eps_of(result.precision)
     stepped = State(**answer.result)
     steps = vanishing_steps(case.system, probe, stepped, eps, tolerated)
-    over.steps[case.name], over.given[case.name] = steps, case.initial
+    over.runs.steps[case.name], over.runs.given[case.name] = steps, case.initial
     over.stays_below[case.name] = steps.stays_below
     if beginning is not None and not steps.sound:
         over.keeps_pace[case.name] = keeps_pace(beginning, steps)
@@ -164,9 +172,7 @@ def _has_past(runs: Sequence[JudgedRun]) -> bool:
     return any(not row.value <= 1.0 for row in rows)
 
 
-def _whole_runs(
-    truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
-) -> Iterator[tuple[State, Array, JudgedRun]]:
+def _whole_runs(truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]) -> Iterator[WholeRun]:
     """The runs that were answered in full, in double precision, with how far rounding may grow."""
     for run in runs if truth.in_precision(result.precision) is truth else ():
         answer = result.runs.get((run.integrator.name, run.sweep.knob))
@@ -174,22 +180,16 @@ def _whole_runs(
             yield State(**answer.result["state"]), truth.growth[truth.rows(run.sweep)], run
 
 
-def _stepping(integrators: Sequence[Integrator]) -> set[str]:
-    """Those of which the length of a step is requested."""
-    return {one.name for one in integrators if one.knob == "timestep"}
-
-
 def _negated(
-    name: str, truth: Truth, result: CaseResult, runs: Sequence[JudgedRun]
-) -> Iterator[KeptRun]:
-    """The first samples of runs that were requested again from -q."""
-    for _, growth, run in _whole_runs(truth, result, runs):
-        answer = result.again.get((run.integrator.name, run.sweep.knob, "negated"))
-        sweep = short_sweep(run.sweep)
-        if answer is not None and answer.ok and len(answer.result["time"]) == len(sweep.times):
-            state, first = State(**answer.result["state"]), growth[: len(sweep.times)]
-            how = (name, truth, sweep, state, first)
-            yield from filter(None, (kept_run(*how, fails=True, least=2),))
+    name: str, truth: Truth, result: CaseResult, growth: Array, run: JudgedRun
+) -> KeptRun | None:
+    """The first samples of a run that was requested again from -q."""
+    answer = result.again.get((run.integrator.name, run.sweep.knob, "negated"))
+    sweep = short_sweep(run.sweep)
+    if answer is None or not answer.ok or len(answer.result["time"]) != len(sweep.times):
+        return None
+    state, first = State(**answer.result["state"]), growth[: len(sweep.times)]
+    return kept_run(name, truth, sweep, state, first, fails=True, least=2)
 
 
 def _with_rests(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,48 +16,38 @@ from omegadot.diagnosis.equations.left_over import LeftOver
 from omegadot.diagnosis.equations.siblings import Siblings
 from omegadot.diagnosis.reported.known_run import Known
 from omegadot.diagnosis.reported.onsets import Onset
-from omegadot.diagnosis.stepping.ends.moved_samples import Moved, moved_samples
-from omegadot.diagnosis.stepping.ends.run_ends import Ends, RunEnd, other_ends
-from omegadot.diagnosis.stepping.ends.starts import Starts, other_start
-from omegadot.diagnosis.stepping.kept_run import KeptRun
+from omegadot.diagnosis.run_rules import ENDS, KeptRuns
 from omegadot.diagnosis.stepping.order_lost import OrderLost
 from omegadot.diagnosis.stepping.over_runs import causes_over_runs
-from omegadot.diagnosis.stepping.turns.factor_lengths import OtherLengths, other_lengths
 from omegadot.diagnosis.stepping.vanishing.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.vanishing.freezes import FREEZES
 from omegadot.diagnosis.stepping.vanishing.rests import SLEEPS, Rests, sleep_law
-from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.diagnosis.wording.kinds import is_named
-from omegadot.reference_impl.system import State
 from omegadot.written import written
 
 
 @dataclass
 class OverScenarios:
-    """Of the runs of one integrator, by scenario.
+    """Of one integrator, by scenario.
 
-    causes: each alone explains the runs, and whether these are decisive.  fails: whether a run
-    does.  again: what shows where two answers to one request differ.  lost: orders.  seen: what is
-    off.  beginnings: of the failed runs.  kept: the first samples of every run.  negated: of those
-    that are requested again from -q.  turned: by what angle in rad first steps turn the body, and
-    whether later ones are seen not to.  stays_below: s, up to which length steps change nothing,
-    and from which on they do.  keeps_pace: whether runs go on as much too fast, or too slowly, as
-    first steps do.  rests: at what states the body is put to rest, and frozen: at what states steps
-    leave it as it is.  places: causes in every step,
-    with where they act.  substeps: in which of these a load acts, of causes that scale it.  onsets:
-    where failed runs begin to be wrong that are sound until then.  steps and given: first steps
-    from many states, as they vanish, and the state that runs are given.  ends: the last two samples
-    of every run.  requested: s, the lengths of steps of all runs, as they were requested.
+    runs: what is kept of them.  causes: each alone explains the runs, and whether these are
+    decisive.  fails: whether a run does.  again: what shows where two answers to one request
+    differ.  lost: orders.  seen: what is off.  beginnings: of the failed runs.  turned: by what
+    angle in rad first steps turn the body, and whether later ones are seen not to.  stays_below: s,
+    up to which length steps change nothing, and from which on they do.  keeps_pace: whether runs go
+    on as much too fast, or too slowly, as first steps do.  rests: at what states the body is put to
+    rest, and frozen: at what states steps leave it as it is.  places: causes in every step, with
+    where they act.  substeps: in which of these a load acts, of causes that scale it.  onsets:
+    where failed runs begin to be wrong that are sound until then.
     """
 
+    runs: KeptRuns = field(default_factory=KeptRuns)
     causes: dict[str, tuple[tuple[str, ...], bool]] = field(default_factory=dict)
     fails: dict[str, bool] = field(default_factory=dict)
     again: str = ""
     lost: dict[str, OrderLost] = field(default_factory=dict)
     seen: dict[str, Known] = field(default_factory=dict)
     beginnings: dict[str, Beginning] = field(default_factory=dict)
-    kept: list[KeptRun] = field(default_factory=list)
-    negated: list[KeptRun] = field(default_factory=list)
     turned: dict[str, tuple[float, bool]] = field(default_factory=dict)
     keeps_pace: dict[str, bool] = field(default_factory=dict)
     stays_below: dict[str, tuple[float, float]] = field(default_factory=dict)
@@ -66,75 +56,15 @@ class OverScenarios:
     places: dict[tuple[str, int], str] = field(default_factory=dict)
     substeps: dict[tuple[str, int], str] = field(default_factory=dict)
     onsets: dict[str, list[Onset]] = field(default_factory=dict)
-    steps: dict[str, VanishingSteps] = field(default_factory=dict)
-    given: dict[str, State] = field(default_factory=dict)
-    ends: list[RunEnd] = field(default_factory=list)
-    requested: dict[str, list[float]] = field(default_factory=dict)
-    _lengths: tuple[tuple[int, int], OtherLengths | None] = ((0, 0), None)
-    _ends: tuple[int, Ends | None] = (0, None)
-    _moved: tuple[int, Moved | None] = (0, None)
-    _starts: tuple[tuple[int, int], Starts | None] = ((0, 0), None)
     _together: tuple[int, list[str]] = (0, [])
     _likely: tuple[int, bool, bool] = (0, False, False)
     _followed: dict[tuple[tuple[str, ...], str], Followed | None] = field(default_factory=dict)
 
-    def begins_at(self, integrator: Integrator, name: str) -> str:
-        """At which other state all runs begin, where that makes those of this scenario; else ""."""
-        found = self._other_start(integrator)
-        return found.statement if found is not None and name in found.names else ""
-
-    def begins_from_negated(self, integrator: Integrator, name: str) -> str:
-        """At which other state all runs begin, where that makes those from -q; else ""."""
-        found = self._other_start(integrator)
-        runs = [run for run in self.negated if run.name == name]
-        if found is None or not runs or name not in self.given:
-            return ""
-        given = self.given[name]
-        other = replace(given, orientation=-given.orientation)
-        return found.statement * all(found.makes(run, other) for run in runs)
-
-    def _other_start(self, integrator: Integrator) -> Starts | None:
-        count = (len(self.steps), len(self.kept))
-        if self._starts[0] != count:
-            self._starts = count, other_start(integrator, self.steps, self.given, self.kept)
-        return self._starts[1]
-
-    def ends_at(self, integrator: Integrator, name: str) -> str:
-        """Which other step the last sample of all runs is of, where that explains a scenario."""
-        found = self._other_ends(integrator)
-        return found.statement if found is not None and name in found.names else ""
-
-    def _other_ends(self, integrator: Integrator) -> Ends | None:
-        if self._ends[0] != len(self.ends):
-            self._ends = len(self.ends), other_ends(integrator, self.ends, self.kept)
-        return self._ends[1]
-
-    def moved_at(self, integrator: Integrator, name: str) -> str:
-        """Which samples of all runs are of another step, where that explains a scenario."""
-        found = self._moved_samples(integrator)
-        return found.statement if found is not None and name in found.names else ""
-
-    def _moved_samples(self, integrator: Integrator) -> Moved | None:
-        if self._moved[0] != len(self.kept):
-            self._moved = len(self.kept), moved_samples(integrator, self.kept)
-        return self._moved[1]
-
-    def lengths_at(self, integrator: Integrator, name: str) -> str:
-        """Of which other run an implicit term has the length, where that explains a scenario."""
-        found = self._other_lengths(integrator)
-        return found.statement if found is not None and name in found.names else ""
-
-    def _other_lengths(self, integrator: Integrator) -> OtherLengths | None:
-        count = (len(self.steps), len(self.kept))
-        if self._lengths[0] != count:
-            how = (integrator, self.steps, self.kept, self.requested)
-            self._lengths = count, other_lengths(*how)
-        return self._lengths[1]
-
     def together(self, integrator: Integrator) -> list[str]:
         """What makes all runs of the integrator that have been kept; none where none does."""
-        if self._together[0] != len(self.kept):
-            self._together = len(self.kept), causes_over_runs(integrator, self.kept)
+        kept = self.runs.kept
+        if self._together[0] != len(kept):
+            self._together = len(kept), causes_over_runs(integrator, kept)
         return self._together[1]
 
     def likely(self, integrator: Integrator, again: bool) -> bool:
@@ -143,15 +73,14 @@ class OverScenarios:
         It is looked for again each time that twice as many scenarios fail.
         again: whether two answers to one request differ, which but for their ends has another.
         """
-        failing = len({run.name for run in self.kept if run.fails}).bit_length()
+        kept = self.runs.kept
+        failing = len({run.name for run in kept if run.fails}).bit_length()
         if self._likely[0] != failing:
             self._likely = failing, False, False
             if failing > 1:
-                ended = self._other_ends(integrator) is not None
-                known = ended or self._other_start(integrator) is not None
-                known = known or self._moved_samples(integrator) is not None
-                known = known or self._other_lengths(integrator) is not None
-                known = known or any(map(is_named, causes_over_runs(integrator, self.kept)))
+                ended = self.runs.rule(ENDS, integrator) is not None
+                known = any(True for _ in self.runs.rules(integrator))
+                known = known or any(map(is_named, causes_over_runs(integrator, kept)))
                 self._likely = failing, known, ended
         _, found, ended = self._likely
         return ended if again else found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
@@ -90,13 +91,17 @@ def _heading(q: Array, _: State) -> Array:
     return np.stack([np.cos(half), 0.0 * half, 0.0 * half, np.sin(half)], axis=-1)
 
 
+def _of_states(of: Callable[[Array], Array], values: Array, _: State) -> Array:
+    return of(values)
+
+
 def of_any() -> Iterator[Operator]:
     """Those without numbers, of vectors and quaternions."""
     single = "is rounded to single precision"
     yield _plain(lambda v, x: v.astype(np.float32).astype(float), single, rounds=True)
     together = "among those that are requested together"
     for which, of in OF_OTHERS.items():
-        yield _plain(lambda v, x, of=of: of(v), f"is that of {which} {together}", among=True)
+        yield _plain(partial(_of_states, of), f"is that of {which} {together}", among=True)
     for digits in DECIMALS:
         yield _decimal(digits, np.round, "rounded")
         yield _decimal(digits, np.trunc, "cut")
