@@ -21,11 +21,14 @@ from omegadot.gates.states.equation import random_states
 from omegadot.harness.in_process import driver_of
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import damping_torque
-from omegadot.reference_impl.motion import acceleration_of
+from omegadot.reference_impl.motion import acceleration_of, forward_dynamics
+from omegadot.reference_impl.one_body.body_motion import motion_over
 from omegadot.reference_impl.rotations import exp_quaternion, quaternion_product
-from omegadot.reference_impl.system import Array, State, System
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import Acceleration, Array, State, System
 
-EULER = "semi-implicit-euler"
+EULER, RK4 = "semi-implicit-euler", "rk4-quaternion"
 FREE, DAMPED, TOP = (next(c for c in CASES if c.name == n) for n in ("free", "damped-more", "top"))
 
 
@@ -126,9 +129,9 @@ def old_start(
     return start, own, start.angular_velocity, h
 
 
-def cause(engine: Keeping, case: object) -> str:
+def cause(engine: ReferenceAdapter, case: object, name: str = EULER) -> str:
     asked = Asked(driver_of("wrong", engine))
-    integrators = [i for i in engine.description.integrators if i.name == EULER]
+    integrators = [i for i in engine.description.integrators if i.name == name]
     assert case in CASES
     one = next(c for c in CASES if c is case)
     seen = after_runs(asked, one, integrators, random_states(one, 4, [1]), EPS, 3)
@@ -160,6 +163,40 @@ def test_what_is_taken_is_named(name: str, case: object) -> None:
     if name == "start" and case is FREE:
         return  # nothing slows it down, and it turns ever faster until no number is left
     assert cause(Keeping(take), case).startswith(phrase)
+
+
+class FirstStage(ReferenceAdapter):
+    """RK4 whose first stage has the omega-dot that the run before evaluated last."""
+
+    kept: Array | None = None
+
+    def run(
+        self, initial: State, integrator: str, timestep: float, steps: int, every: int
+    ) -> Trajectory:
+        assert (every, integrator) == (1, RK4)
+        system, stale = self.system, self.kept
+
+        def acceleration(state: State) -> Acceleration:
+            nonlocal stale
+            found = forward_dynamics(system, state)
+            self.kept = found.angular
+            if stale is not None:
+                found, stale = replace(found, angular=stale), None
+            return found
+
+        motion = motion_over(system, "com-world", acceleration)
+        how = (timestep, steps, every, "com-world", motion)
+        return Trajectory(*step_body(SCHEMES[RK4], system, initial, *how))
+
+
+@pytest.mark.parametrize("case", [FREE, DAMPED], ids=lambda case: case.name)
+def test_what_the_last_stage_has_left_over_is_named(case: object) -> None:
+    """Caught: the omega-dot at the end of the run, which is near that of the last stage."""
+    found = cause(FirstStage(), case, RK4)
+    assert found.startswith(
+        "for a part of 0.1667 (the first stage of RK4), the first step of a run takes the "
+        "omega-dot at the last stage of the run before in place of its own"
+    )
 
 
 def test_a_torque_is_told_from_omega_dot() -> None:

@@ -1,5 +1,6 @@
 """What is named on one scenario, beside what is named on the others that fail."""
 
+from omegadot.diagnosis.reported.requests import AGAIN
 from omegadot.diagnosis.wording.among_others import beside_others, of_few
 
 LATE = "each interval between samples is one step shorter than requested"
@@ -13,6 +14,16 @@ def test_a_cause_that_few_of_the_failing_scenarios_show_is_what_is_seen_there() 
     assert of_few(LATE, [LATE, STILL, ""]) == LATE  # half of them
     assert of_few(LATE, []) == LATE
     assert of_few(STILL, [LATE, LATE]) == STILL
+
+
+def test_that_something_is_left_over_contradicts_nothing_that_says_what() -> None:
+    taken = "the first step of a run takes the omega-dot at the end of the run before"
+    general = [*AGAIN.values()]
+    assert of_few(taken, general) == taken
+    assert [of_few(one, [taken, taken, taken]) for one in general] == general
+    assert of_few(taken, [f"{AGAIN['reloaded']}: the mass", f"{AGAIN['reloaded']}: the mass"]) != (
+        taken
+    )
 
 
 def test_one_cause_with_other_numbers_and_conditions_is_the_same() -> None:

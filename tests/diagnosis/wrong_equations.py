@@ -64,6 +64,14 @@ def with_torque(system: System, states: State, torque: Array) -> Acceleration:
     return Acceleration(angular, center_of_mass_acceleration(system, states, angular))
 
 
+def largest(vector: Array, size: float) -> Array:
+    """A vector of this size along the axis of the largest component."""
+    one = np.zeros(3)
+    k = int(np.argmax(np.abs(vector)))
+    one[k] = np.copysign(size, vector[k])
+    return one
+
+
 def gyroscopic(system: System, states: State) -> Array:
     w = states.angular_velocity
     return cross(w, apply(moving_inertia(system), w))
@@ -259,6 +267,14 @@ EQUATIONS: dict[str, tuple[Any, str]] = {
     "gravity-down": (
         under(gravity=lambda s: np.array([0.0, 0.0, -np.linalg.norm(s.load.gravity)])),
         "gravity points along -z, whatever direction was requested",
+    ),
+    "gravity-snapped": (
+        under(gravity=lambda s: largest(s.load.gravity, float(np.linalg.norm(s.load.gravity)))),
+        "gravity acts along the axis of its largest component, with its whole magnitude",
+    ),
+    "gravity-largest": (
+        under(gravity=lambda s: largest(s.load.gravity, float(np.max(np.abs(s.load.gravity))))),
+        "only the largest component of gravity acts",
     ),
     "products": (products_in_another_order, "the products of inertia are in another order"),
     "mass-float32": (mass_in_single_precision, "the mass is kept in single precision"),

@@ -16,10 +16,16 @@ from omegadot.gates.steps.limits import extrapolated
 from omegadot.gates.steps.probe import Probe, probe_at
 from omegadot.harness.requests.repeats import OTHERS
 from omegadot.reference_impl.kinematics import place_on_pivot
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.motion import forward_dynamics
+from omegadot.reference_impl.one_body.body_motion import motion_over
+from omegadot.reference_impl.rotations import attitude_angle
+from omegadot.reference_impl.schemes import SCHEMES
+from omegadot.reference_impl.stepping import step_body
+from omegadot.reference_impl.system import Acceleration, Array, State
 
 STEPS = 3  # of the run before: its start, the start of its last step and its end are three states
 LONG = 16.0  # times the longest of the probe's steps: an eighth of a radian
+SAME = 1e-9  # rad
 OF_ANOTHER, AFTER_LOAD = "of another integrator", "of another system, loaded in between"
 
 
@@ -86,7 +92,29 @@ def _after(
     stepped = State(*(np.stack(f)[None] for f in _by_field(ends[1:])))
     steps = vanishing_steps(case.system, Probe(one, probe.timesteps), stepped, eps)
     each = tuple(zip(paths[1:], ends[1:], strict=True))
-    yield AfterRun(before.kind, before.case.system, _limit(paths), each, steps, ends[0])
+    path = _limit(paths)
+    last = _last_evaluated(before, path)
+    yield AfterRun(before.kind, before.case.system, path, each, steps, ends[0], last)
+
+
+def _last_evaluated(before: _Before, path: State) -> State | None:
+    """Where a declared scheme takes its last rates in the run; None of a state on the path."""
+    scheme, how = SCHEMES.get(before.integrator.scheme or ""), before.integrator.coordinates
+    system, seen = before.case.system, list[State]()
+    if scheme is None or how not in scheme.coordinates:
+        return None
+
+    def acceleration(state: State) -> Acceleration:
+        seen.append(state)
+        return forward_dynamics(system, state)
+
+    motion = motion_over(system, how, acceleration)
+    step_body(scheme, system, path[-2], before.h, 1, 1, how, motion)
+    last = seen[-1]
+    if last.orientation.shape != path.orientation[-1].shape:
+        return None  # many states at once, for a derivative
+    attitudes = (attitude_angle(last.orientation, q) for q in path.orientation)
+    return None if any(angle <= SAME for angle in attitudes) else last
 
 
 def _ends(

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from omegadot.diagnosis.experiments.conditioned import UNKNOWN
-from omegadot.diagnosis.wording.kinds import EITHER, OR, SHARE, is_named, kind_of
+from omegadot.diagnosis.wording.kinds import EITHER, OR, SHARE, is_general, is_named, kind_of
 
 SCOPE = re.compile(
     r"^(?:in (?:the steps|the dynamics|inverse dynamics|the run)(?: and in inverse dynamics)?, )+"
@@ -24,9 +24,12 @@ ENDS = re.compile(
 def of_few(text: str, others: Sequence[str]) -> str:
     """A cause that less than half of the failing scenarios show: as what is seen there alone.
 
-    others: the texts of the other scenarios that fail, in runs of the same integrator.
+    others: the texts of the other scenarios that fail, in runs of the same integrator. That
+    something is left over contradicts nothing that says what.
     """
-    own = _kinds(text)
+    if is_general(text):
+        return text
+    own, others = _kinds(text), [one for one in others if not is_general(one)]
     count = 1 + sum(is_named(other) and not own.isdisjoint(_kinds(other)) for other in others)
     every = 1 + len(others)
     if not is_named(text) or count >= SHARE * every:

@@ -65,6 +65,12 @@ def is_named(text: str) -> bool:
     return bool(text) and not is_fact(text) and not any(one in text for one in SEEN)
 
 
+def is_general(text: str) -> bool:
+    """Whether it says that something is left over, and not what."""
+    before, _, after = text.rpartition("left over")
+    return "something" in before and ": " not in after
+
+
 def is_of_one_run(text: str) -> bool:
     """Whether it holds of a run that is another when it is requested again."""
     first = text.startswith("only the first steps are wrong")  # as where a run before left them

@@ -16,7 +16,7 @@ from omegadot.diagnosis.equations.hypotheses.hypothesis import (
     of_form,
     of_load,
 )
-from omegadot.reference_impl.system import System
+from omegadot.reference_impl.system import Array, System
 
 
 def gravity_hypotheses() -> Iterator[Hypothesis]:
@@ -53,6 +53,16 @@ def gravity_hypotheses() -> Iterator[Hypothesis]:
             "gravity",
             given(axis, lambda k, one: {"gravity": np.where(np.arange(3) == k, one.gravity, 0.0)}),
         )
+    yield of_load(
+        "gravity acts along the axis of its largest component, with its whole magnitude",
+        "gravity",
+        lambda one: {"gravity": size(one.gravity) * np.sign(_largest(one.gravity))},
+    )
+    yield of_load(
+        "only the largest component of gravity acts",
+        "gravity",
+        lambda one: {"gravity": _largest(one.gravity)},
+    )
     for order in permutations(range(3)):
         if order != (0, 1, 2):
             names = ", ".join(AXES[k] for k in order)
@@ -95,6 +105,11 @@ def gravity_hypotheses() -> Iterator[Hypothesis]:
         "gravity",
         lambda f, s: {"arm": s.body.center_of_mass} if s.load.pivot is not None else {},
     )
+
+
+def _largest(vector: Array) -> Array:
+    """The vector's component of the largest size alone."""
+    return np.where(np.arange(3) == np.argmax(np.abs(vector)), vector, 0.0)
 
 
 def _massless(form: Form, system: System) -> dict[str, Any]:

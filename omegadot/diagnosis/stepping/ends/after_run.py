@@ -34,6 +34,7 @@ class AfterRun:
     kind: of the run before.  system and path (n + 1,): that run's, and its states before a step of
     no length.  each: the path before each of the steps, and the end of this step; the last is the
     shortest.  steps: (1,), from the state.  same_step: the end of a step as long as those before.
+    evaluated: where that run's scheme takes its last rates, if that is no state on the path.
     """
 
     kind: str
@@ -42,6 +43,12 @@ class AfterRun:
     each: tuple[tuple[State, State], ...]
     steps: VanishingSteps
     same_step: State
+    evaluated: State | None = None
+
+    def at(self, place: str) -> State | None:
+        """The state at one of PLACES."""
+        index = PLACES[place]
+        return self.evaluated if index is None else self.path[index]
 
     def rate_off(self, channel: str) -> tuple[Array, Array, float]:
         """How far a rate of the first steps is off (3,), the right one, and the bound of both."""
@@ -51,11 +58,14 @@ class AfterRun:
         return off, limit.expected[0], SLACK * float(bound[0])
 
 
-PLACES = {  # of a run, as the place of a state on its path
+PLACES: dict[str, int | None] = {  # of a run, as the place of a state on its path
     "at the start of": 0,
     "at the start of the last step of": -2,
     "at the end of": -1,
+    "at the last stage of": None,
 }
+# Of the first stage of a step, in schemes of several.
+WEIGHTS = {1 / 6: "RK4", 1 / 8: "the 3/8 rule", 1 / 4: "Heun's third-order scheme"}
 
 
 def _gyroscopic(system: System, state: State) -> Array:
@@ -106,8 +116,8 @@ def _causes(seen: Sequence[AfterRun]) -> Iterator[str]:
         found = [
             one
             for what, (quantity, torque) in quantities.items()
-            for place, index in PLACES.items()
-            for one in _of_rate(seen, channel, f"{what} {place}", quantity, torque, index)
+            for place in PLACES
+            for one in _of_rate(seen, channel, f"{what} {place}", quantity, torque, place)
         ]
         most = max((fits for fits, _ in found), default=(0, False))
         texts = [text for fits, text in found if fits == most]
@@ -135,7 +145,9 @@ def _of_start(seen: Sequence[AfterRun], name: str, what: str) -> str:
     """Of which state a quantity is that the first step starts with, in place of the one set."""
     own = [one for one in seen if one.kind == OWN]
     for place, index in PLACES.items():
-        if len(own) >= FEWEST and all(_starts_from(one, name, index) for one in own):
+        if index is None or len(own) < FEWEST:
+            continue
+        if all(_starts_from(one, name, index) for one in own):
             return f"the first step of a run starts from the {what} {place} the run before"
     return ""
 
@@ -152,14 +164,17 @@ def _starts_from(one: AfterRun, name: str, index: int) -> bool:
 
 
 def _of_rate(
-    seen: Sequence[AfterRun], channel: str, what: str, quantity: Quantity, torque: bool, index: int
+    seen: Sequence[AfterRun], channel: str, what: str, quantity: Quantity, torque: bool, place: str
 ) -> Iterator[tuple[tuple[int, bool], str]]:
     """One sentence, where one part of it makes all that is off; none where it does not.
 
     With the number of kinds of runs before that it is so after, and whether it is the whole.
     """
+    states = [(one, one.at(place)) for one in seen]
     rows = [
-        (one.kind, *one.rate_off(channel), _other(one, quantity, torque, index)) for one in seen
+        (one.kind, *one.rate_off(channel), _other(one, quantity, torque, state))
+        for one, state in states
+        if state is not None
     ]
     free = [one for one in seen if one.steps.system.load.pivot is None]
     if channel in ("linear_momentum", "position") and len(free) < len(seen):
@@ -182,9 +197,9 @@ def _of_rate(
     yield (sum(also.values()), _whole(part)), _worded(what, part, also)
 
 
-def _other(one: AfterRun, quantity: Quantity, torque: bool, index: int) -> Array:
+def _other(one: AfterRun, quantity: Quantity, torque: bool, state: State) -> Array:
     """What the rate is off by if it is taken as a whole, (3,)."""
-    state, system = one.path[index], one.steps.system
+    system = one.steps.system
     due = quantity(one.system, state) - quantity(system, one.steps.states[0])
     return apply(inverse(moving_inertia(system)), due) if torque else np.asarray(due)
 
@@ -194,7 +209,9 @@ def _whole(part: float) -> bool:
 
 
 def _worded(what: str, part: float, also: dict[str, bool]) -> str:
-    of = "" if _whole(part) else f"for a part of {written(part, 4)}, "
+    weights = (f" (the first stage of {of})" for w, of in WEIGHTS.items() if _whole(part / w))
+    stage = next(weights, "")
+    of = "" if _whole(part) else f"for a part of {written(part, 4)}{stage}, "
     others = [kind for kind, so in also.items() if so]
     never = [kind for kind, so in also.items() if not so]
     text = f"{of}the first step of a run takes the {what} the run before in place of its own"
