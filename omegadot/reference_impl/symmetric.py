@@ -7,7 +7,6 @@ import numpy as np
 from omegadot.reference_impl.arithmetic.precision import like, to_extended
 from omegadot.reference_impl.system import Array
 
-
 NOT_POSITIVE = "the inertia is not positive definite"
 
 
