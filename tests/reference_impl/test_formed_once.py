@@ -1,4 +1,4 @@
-"""What is kept for a system is that system's alone: wrong where equal ids or arguments mix it up."""
+"""What is kept for a system is its alone: wrong where equal ids or arguments mix systems up."""
 
 from __future__ import annotations
 
