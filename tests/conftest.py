@@ -1,9 +1,13 @@
-"""Hypothesis profiles: `ci` is small and always the same, `thorough` is large and random, and
-`mutation` stops at the first failure.
+"""How tests are shared out, and the Hypothesis profiles.
 
-Choose with ``pytest --hypothesis-profile thorough``. Tests with settings of their own keep them.
+`ci` is small and always the same, `thorough` is large and random, and `mutation` stops at the first
+failure. Choose with ``pytest --hypothesis-profile thorough``. Tests with settings of their own keep
+them.
 """
 
+from typing import Any
+
+import pytest
 from hypothesis import HealthCheck, Phase, settings
 
 slow = [HealthCheck.too_slow, HealthCheck.data_too_large]
@@ -15,3 +19,13 @@ settings.register_profile(
     "mutation", derandomize=True, max_examples=30, deadline=None, phases=phases
 )
 settings.load_profile("ci")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """With ``-n``, a file's tests stay in one process: what they share is then made once."""
+    if config.getoption("dist") != "load":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    return LoadFileScheduling(config, log)

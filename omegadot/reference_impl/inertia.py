@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from omegadot.reference_impl.cross_product import skew
+from omegadot.reference_impl.formed_once import formed_once
 from omegadot.reference_impl.rotations import rotation_matrix
 from omegadot.reference_impl.system import Array, Body, System
 
@@ -53,6 +54,7 @@ def assemble(parts: Sequence[Body]) -> Body:
     return Body(mass=mass, center_of_mass=center, inertia=inertia)
 
 
+@formed_once
 def lever(system: System) -> Array:
     """From the pivot to the centre of mass, (..., 3) m, body axes. Zero for a free body."""
     center = system.body.center_of_mass
@@ -60,6 +62,7 @@ def lever(system: System) -> Array:
     return np.zeros_like(center) if pivot is None else center - pivot
 
 
+@formed_once
 def moving_inertia(system: System) -> Array:
     """The inertia that angular motion meets, (..., 3, 3) kg m², body axes.
 

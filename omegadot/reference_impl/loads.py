@@ -7,11 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.formed_once import formed_once
 from omegadot.reference_impl.inertia import lever
 from omegadot.reference_impl.rotations import rotate_inverse
 from omegadot.reference_impl.system import Array, State, System
 
 
+@formed_once
 def weight(system: System) -> Array:
     """``m g``, (..., 3) N, world axes, acting at the centre of mass."""
     return system.body.mass[..., None] * system.load.gravity

@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from omegadot.reference_impl.cross_product import cross
+from omegadot.reference_impl.formed_once import formed_once
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import gravity_torque, torque_of
 from omegadot.reference_impl.rotations import rotate
@@ -49,6 +50,7 @@ def center_of_mass_acceleration(system: System, state: State, w_dot: Array) -> A
     return rotate(state.orientation, cross(w_dot, r) + cross(w, cross(w, r)))
 
 
+@formed_once
 def acceleration_of(system: System) -> AccelerationOf:
     """Forward dynamics of one system as a function of the state, its constants formed once.
 

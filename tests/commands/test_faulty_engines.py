@@ -16,7 +16,13 @@ from command_line import FAULTY, PROGRAM, Result, omegadot, quick_scenario
 
 def run_faulty(name: str, folder: Path, *more: object) -> Result:
     scenario = quick_scenario(folder)
-    arguments = ("--engine", name.lower(), "--adapter", f"{FAULTY}:{name}", "--engine", "reference")
+    bystanders = (
+        "--engine",
+        "reference:semi-implicit-euler",
+        "--engine",
+        "reference:rk4-quaternion",
+    )
+    arguments = ("--engine", name.lower(), "--adapter", f"{FAULTY}:{name}", *bystanders)
     return omegadot("run", scenario, *arguments, "--out", "out", *more, folder=folder)
 
 

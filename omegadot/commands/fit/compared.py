@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.stats import f as fisher
+from scipy.special import fdtrc
 
 from omegadot.commands.fit.data import Data
 from omegadot.commands.fit.noise import Noise, noise_of
@@ -126,4 +126,4 @@ def _chance(data: Data, small: Fitted, large: Fitted, noise: Noise) -> float:
     more, spare = large.free.count - small.free.count, max(numbers - large.free.count, 1)
     left = max(large.cost, noise.omega**2 * spare)
     gain = max(small.cost - large.cost, 0.0) / (more * noise.inflation)
-    return float(fisher.sf(gain * spare / left, more, spare))
+    return float(fdtrc(more, spare, gain * spare / left))

@@ -16,6 +16,7 @@ from omegadot.reference_impl.cross_product import cross
 from omegadot.reference_impl.rotations import normalize
 from omegadot.reference_impl.system import Array
 
+CROSS = cross(np.eye(3)[:, None], np.eye(3))  # e_j x e_l
 LEAST_MOMENT = 1e-6  # of the largest: below, a body spins up beyond any step
 
 
@@ -51,21 +52,36 @@ def _slope(
 ) -> Callable[[float, Array], Array]:
     """The rates of all lanes, as SciPy takes them: one flat array."""
     calls = iter(range(most))
-    count, inverse = len(lanes.omega), np.linalg.inv(lanes.inertia)
-    damping, inertia = lanes.damping[:, None], lanes.inertia
+    count, terms = len(lanes.omega), _terms(lanes, attitude)
+    size = terms.shape[1]
+    constant = np.zeros((count, size, 1))
+    constant[:, :3] = np.linalg.inv(lanes.inertia) @ np.broadcast_to(torque, (count, 3))[..., None]
+    omega_and_one = np.ones((count, 1, 4))
 
     def slope(_: float, flat: Array) -> Array:
         if next(calls, None) is None:
             raise ArithmeticError("the motion is too fast to follow")
-        y = flat.reshape(count, -1)
-        w, rate = y[:, :3], np.empty_like(y)
-        momentum = (inertia @ w[:, :, None])[:, :, 0]
-        load = torque - damping * w - cross(w, momentum)
-        rate[:, :3] = (inverse @ load[:, :, None])[:, :, 0]
-        if attitude:
-            s, v = y[:, 3:4], y[:, 4:]
-            rate[:, 3] = -0.5 * np.sum(v * w, 1)
-            rate[:, 4:] = 0.5 * (s * w + cross(v, w))
-        return rate.ravel()
+        y = flat.reshape(count, size, 1)
+        omega_and_one[:, 0, :3] = y[:, :3, 0]
+        products = (y * omega_and_one).reshape(count, 4 * size, 1)
+        return (terms @ products + constant).ravel()
 
     return slope
+
+
+def _terms(lanes: Parameters, attitude: bool) -> Array:
+    """The rates' coefficients (k, m, 4 m) of the products of each number of a state with omega, 1.
+
+    Equation (8) and ``q' = q (0, w) / 2`` are sums of such products, and a sum of all of them is
+    one product of a matrix: over a few lanes the calls are what takes time, not the arithmetic.
+    """
+    size = 7 if attitude else 3
+    terms = np.zeros((len(lanes.omega), size, size, 4))  # rate, number, omega's component or 1
+    inverse = np.linalg.inv(lanes.inertia)
+    terms[:, :3, :3, :3] = -np.einsum("nra,jla,nlk->nrjk", inverse, CROSS, lanes.inertia)
+    terms[:, :3, :3, 3] = -lanes.damping[:, None, None] * inverse
+    if attitude:
+        terms[:, 3, 4:, :3] = -0.5 * np.eye(3)
+        terms[:, 4:, 3, :3] = 0.5 * np.eye(3)
+        terms[:, 4:, 4:, :3] = 0.5 * np.moveaxis(CROSS, 2, 0)
+    return terms.reshape(len(lanes.omega), size, 4 * size)

@@ -11,8 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import norm as normal
-from scipy.stats import t as student
+from scipy.special import ndtr, stdtrit
 
 from omegadot.commands.fit.data import Data
 from omegadot.commands.fit.noise import Noise
@@ -96,7 +95,7 @@ def _of_few(spare: int) -> float:
 
     By Student's t: FAR standard errors then hold with the probability of a normal distribution.
     """
-    return float(student.isf(normal.sf(FAR), max(spare, 1)) / FAR)
+    return float(-stdtrit(max(spare, 1), ndtr(-FAR)) / FAR)
 
 
 def _covariance(slopes: Array, ranges: Array) -> Array:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from omegadot.reference_impl.formed_once import formed_once
 from omegadot.reference_impl.inertia import moving_inertia
 from omegadot.reference_impl.loads import gravity_torque
 from omegadot.reference_impl.symmetric import apply
@@ -56,6 +57,7 @@ class BodyScale:
     smallest: float
 
 
+@formed_once
 def body_scale(system: System) -> BodyScale:
     """The sizes of `system`; the inverted inertia is about the pivot, if there is one."""
     body, pivot = system.body, system.load.pivot

@@ -17,6 +17,7 @@ from omegadot.reference_impl.arithmetic.components import (
 )
 from omegadot.reference_impl.coordinates import Coordinates, acceleration_in, from_coordinates
 from omegadot.reference_impl.cross_product import skew
+from omegadot.reference_impl.formed_once import formed_once
 from omegadot.reference_impl.inertia import lever, moving_inertia
 from omegadot.reference_impl.loads import weight
 from omegadot.reference_impl.motion import AccelerationOf
@@ -27,6 +28,7 @@ from omegadot.reference_impl.symmetric import inverse
 from omegadot.reference_impl.system import Array, System
 
 
+@formed_once
 def body_motion(system: System, coordinates: Coordinates = "com-world") -> Motion:
     """One body under its loads, in these coordinates."""
     if system.load.pivot is not None:
@@ -34,6 +36,7 @@ def body_motion(system: System, coordinates: Coordinates = "com-world") -> Motio
     return _motion(_free_acceleration(system, coordinates), _fields_in(coordinates))
 
 
+@formed_once
 def attitude_motion(system: System) -> Motion:
     """The turning of a body alone: q is the quaternion, v is ω. A pivoted body has no more."""
     return _motion(in_components(_angular(system)), ATTITUDE)

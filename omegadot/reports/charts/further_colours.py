@@ -7,6 +7,7 @@ themes and three kinds of sight. So a colour depends on those before it alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -47,8 +48,7 @@ LIGHTNESSES = ((0.35, 0.62), (0.45, 0.70), (0.55, 0.78), (0.62, 0.88))
 
 def further_colours(used: Sequence[Pair], count: int) -> list[Pair]:
     """`count` more pairs of colours, none of which is among those used."""
-    known = _candidates()
-    places = _seen(known)
+    known, places = _candidates()
     nearest = np.full(len(known), np.inf)
     for own in _seen(list(used)):
         nearest = np.minimum(nearest, _apart(places, own))
@@ -60,8 +60,12 @@ def further_colours(used: Sequence[Pair], count: int) -> list[Pair]:
     return found
 
 
-def _candidates() -> list[Pair]:
-    """Pairs of one hue and chroma that a screen can show in both themes."""
+@cache  # every page asks for them
+def _candidates() -> tuple[tuple[Pair, ...], Array]:
+    """Pairs of one hue and chroma that a screen can show in both themes, and what is seen of them.
+
+    Shape (n, 6, 3), as of `_seen`.
+    """
     found = []
     for light, dark in LIGHTNESSES:
         for chroma in CHROMAS:
@@ -72,7 +76,7 @@ def _candidates() -> list[Pair]:
                 ]
                 if all(np.all((part >= 0.0) & (part <= 1.0)) for part in both):
                     found.append((_hex(both[0]), _hex(both[1])))
-    return found
+    return tuple(found), _seen(found)
 
 
 def _hex(linear: Array) -> str:
