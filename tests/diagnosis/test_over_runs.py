@@ -116,6 +116,8 @@ def test_how_a_load_goes_over_a_run_is_named(share: Share, phrase: str) -> None:
         (lambda h: 0.0007 * round(h / 0.0007), "of a step is rounded to a multiple of 0.0007 s"),
         (lambda h: 0.0007 * max(1, int(h / 0.0007)), "is cut off to a multiple of 0.0007 s"),
         (lambda h: round(h, 3), "the length of a step is rounded to 3 decimals"),
+        (lambda h: float(np.float32(h)), "the step is kept in single precision"),
+        (lambda h: h * (1.0 + 3e-8), ""),
         (lambda h: h + 0.0003, "0.0003 s is added to the length of a step"),
     ],
 )

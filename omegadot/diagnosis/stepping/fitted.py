@@ -16,6 +16,7 @@ from omegadot.reference_impl.solutions.growth import changes
 from omegadot.reference_impl.system import Array, State
 from omegadot.written import written
 
+SINGLE = "the step is kept in single precision"
 MOST_TRIES = 8
 CONVERGES = 0.3  # what a try must leave of the distance before it
 # A fitted run has come out of a search that ends within rounding, and bounds are of one run.
@@ -84,7 +85,7 @@ def longer(reported: ReportedRun) -> str:
         return ""
     single = float(np.float32(h))
     if single != h and reported.is_made(partial(ReportedRun.stepped, timestep=single), SLACK):
-        return "the step is kept in single precision"
+        return SINGLE
     text = f"steps are {written(100 * abs(part), 4)} % too {'long' if part > 0 else 'short'}"
     return f"{text}{_grid(h, h * (1.0 + part))}"
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from omegadot.diagnosis.stepping.fitted import SINGLE
 from omegadot.diagnosis.stepping.kept_run import CHANNELS, SLACK, KeptRun, SchemeOf
 from omegadot.diagnosis.wording.digits import number
 from omegadot.diagnosis.wording.laws import law_of
@@ -41,6 +42,8 @@ class _Taken:
 def length_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
     """What the steps' lengths are instead; none where they are right, or off by one part."""
     failing, sound = ([run for run in runs if run.fails is fails] for fails in (True, False))
+    if _single(by, failing):
+        return [SINGLE]
     taken, missed = list[_Taken](), 0
     for count, run in enumerate(failing):
         one = _taken(run.short, by)
@@ -66,6 +69,18 @@ def length_causes(by: SchemeOf, runs: Sequence[KeptRun]) -> list[str]:
         "another part "
         "at each step size"
     ]
+
+
+def _single(by: SchemeOf, failing: Sequence[KeptRun]) -> bool:
+    """Whether the steps of all runs that fail are the nearest number of single precision."""
+    shown = 0
+    for run in (one.short for one in failing):
+        h = float(np.float32(run.timestep))
+        other = replace(run, sweep=replace(run.sweep, timestep=h))
+        if h == run.timestep or not other.sound(by).all():
+            return False
+        shown += not run.sound(by).all()
+    return shown >= LEAST
 
 
 def _some(runs: Sequence[KeptRun]) -> list[KeptRun]:
