@@ -108,7 +108,7 @@ class Causes:
             return text
         others = {name: other for name, other in every.items() if other}
         same = self._same_as_others(engine, case, integrator, text, others)
-        return same or beside_others(text, list(others.values()))
+        return same or beside_others(text, list(every.values()))
 
     def _same_as_others(
         self, engine: str, case: str, integrator: str | None, text: str, others: Mapping[str, str]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -44,6 +45,22 @@ def named(more: More, cases: tuple[Case, ...]) -> dict[str, list[str]]:
         states = EvaluationStates(x, x, requested)
         every[one.name] = CaseCauses(engine, one, truth, states, result, FAILS, ())
     return {name: causes.sentences(None) for name, causes in every.items()}
+
+
+def as_free(s: System, x: State, a: Acceleration) -> Array:
+    free = replace(s, load=replace(s.load, pivot=None))
+    return inverse_dynamics(free, x, a) - inverse_dynamics(s, x, a)
+
+
+def test_a_pivot_that_is_not_seen_is_named() -> None:
+    """Caught: "the inertia about the centre of mass" of a body without gravity, else nothing."""
+    found = named(as_free, tuple(one for one in TOPS if np.any(one.system.load.gravity)))
+    text = (
+        "inverse dynamics take the body for a free one: with the inertia about its centre of mass, "
+        "without gravity"
+    )
+    assert found
+    assert all(texts == [text] for texts in found.values()), found
 
 
 def with_rate_first(s: System, x: State, a: Acceleration) -> Array:

@@ -59,8 +59,7 @@ def causes(wrong: Slope, ahead: float = 0.0, fewest: int = 1) -> list[str]:
         (slope(a=0.7), "in its Jacobian I^-1 [I omega]x has the factor 0.7"),
         (
             slope(a=-1.0, b=-1.0),
-            "in its Jacobian I^-1 [I omega]x has the wrong sign and "
-            "-I^-1 [omega]x I has the wrong sign",
+            "in its Jacobian the derivative of the gyroscopic term has the wrong sign",
         ),
         (slope(0.5, 0.5, 0.5), "its Jacobian is 1/2 times what it should be"),
         (

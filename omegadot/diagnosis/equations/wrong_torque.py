@@ -141,6 +141,10 @@ def _other_bodies(
         "inverse dynamics use the inertia about the centre of mass, not about the pivot": by(
             np.asarray(body), np.asarray(body)
         ),
+        "inverse dynamics take the body for a free one: with the inertia about its centre of mass, "
+        "without gravity": lambda: (
+            apply(np.asarray(body), requested.angular) + cross(w, apply(np.asarray(body), w))
+        ),
         "inverse dynamics use the inertia about the body's origin": by(about_origin, about_origin),
         "inverse dynamics have the products of inertia with the wrong sign": by(
             2.0 * diagonal - inertia, 2.0 * diagonal - inertia

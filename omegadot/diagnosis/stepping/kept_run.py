@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from omegadot.adapters.protocol import Integrator
 from omegadot.diagnosis.stepping.explicit_schemes import EXPLICIT, scheme_named
-from omegadot.gates.bounds.scales import norm
+from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.gates.case import Sweep
 from omegadot.gates.truth import Truth
 from omegadot.reference_impl.coordinates import Coordinates, distinct
@@ -26,6 +26,7 @@ SLACK = 4.0  # the start of an interval is rounded as its end is, and each of a 
 LEAST = 3  # intervals that show a scheme
 MOST_LOOKED_AT = 4  # runs, sound and wrong, in which the scheme of an engine is looked for
 BEGINS = 0.5  # of a run, that its first interval is sound counts as much
+HALF_OF_DIGITS = 2.0**-26
 CHANNELS = ("omega", "attitude", "velocity", "position")
 
 
@@ -129,6 +130,23 @@ class KeptRun:
     def sound(self, by: SchemeOf, slack: float = SLACK) -> NDArray[np.bool_]:
         """(n - 1,): whether the scheme leads from each sample to the next."""
         return self.reached(self.ends(by), slack=slack)
+
+    def sound_but_for_rounding(self, by: SchemeOf, slack: float = SLACK) -> NDArray[np.bool_]:
+        """(n - 1,): as `sound`, where what the scheme makes of the start's own rounding is allowed.
+
+        The bounds are those of the true motion, which a wrong scheme may leave at a greater rate:
+        it is seen from starts that are apart by half of the digits.
+        """
+        w = self.state.angular_velocity * (1.0 + HALF_OF_DIGITS)
+        other = replace(self, state=replace(self.state, angular_velocity=w))
+        here, beside = self.apart(self.ends(by)), self.apart(other.ends(by))
+        part = slack * self.sweep.every * EPS / HALF_OF_DIGITS
+        with np.errstate(all="ignore"):
+            good = [
+                norm(here[c]) <= slack * self.bounds[c] + part * norm(beside[c] - here[c])
+                for c in CHANNELS
+            ]
+        return np.asarray(np.all(good, axis=0))
 
 
 def kept_run(

@@ -62,6 +62,8 @@ def _tried(own: tuple[float, ...], single: Sequence[KeptRun]) -> Iterator[list[J
     one += whole + [f for k in there if (f := _fitted(own, single, [[k]])) is not None]
     # where no run keeps every step, nothing is fitted
     plain_ones = [(*own[:k], other, *own[k + 1 :]) for k in there for other in MISTYPED]
+    if own[:2] == (1.0, 1.0):
+        plain_ones += [(other, other, *own[2:]) for other in MISTYPED]  # the gyroscopic ones
     one += [Jacobian(factors) for factors in plain_ones if factors not in KNOWN]
     yield [*dict.fromkeys(one)]
     for count in range(2, len(there) + 1):

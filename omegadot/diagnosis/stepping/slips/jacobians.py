@@ -92,7 +92,8 @@ class Jacobian:
             return self.step(run.system, motion, q, v, h)
 
         own = SchemeOf(replace(SCHEMES[name], step=step), "com-world")
-        return bool(np.all(run.sound(own) | ~self.judged(run)))
+        good = run.sound(own) | ~self.judged(run)
+        return bool(np.all(good) or np.all(good | run.sound_but_for_rounding(own)))
 
     def shows(self, by: SchemeOf, runs: Sequence[KeptRun]) -> bool:
         """Whether there are intervals that are judged and not the scheme's."""
@@ -108,6 +109,9 @@ class Jacobian:
         pairs = zip(self.factors, own, strict=True)
         if len({k for k, due in pairs if due}) == 1 and len(set(own)) == 1 and self.factors != own:
             return f"its Jacobian is {fraction(self.factors[0])} times what it should be"
+        if self.factors[0] == self.factors[1] != own[0] == own[1] and self.factors[2] == own[2]:
+            what = "the derivative of the gyroscopic term"
+            return f"in its Jacobian {what} {_factor(self.factors[0])}"
         found = [
             f"{term} {FORMS[how]}" for term, how in zip(TERMS, self.forms, strict=False) if how
         ]
