@@ -62,15 +62,15 @@ CASES = tuple(
 )
 
 
-def kept(one: Case, step: int, every: int, asleep: bool = True) -> KeptRun:
+def kept(one: Case, step: int, every: int, asleep: bool = True, h: float = H) -> KeptRun:
     """A run whose velocities are set to zero in this step, and which rests from then on."""
-    state = step_body(SCHEMES[SCHEME], one.system, one.initial, H, STEPS, 1)[1]
+    state = step_body(SCHEMES[SCHEME], one.system, one.initial, h, STEPS, 1)[1]
     if asleep and step <= STEPS:
         fields = {name: np.array(values) for name, values in vars(state).items()}
         for name, values in fields.items():
             values[step:] = 0.0 if "velocity" in name else values[step]
         state = State(**fields)
-    sweep = Sweep(H, STEPS, every)
+    sweep = Sweep(h, STEPS, every)
     state = state[::every]
     bounds = {c: np.full(len(sweep.times) - 1, 1e-12) for c in ("omega", "attitude")}
     bounds |= {c: np.full(len(sweep.times) - 1, 1e-12) for c in ("velocity", "position")}
@@ -78,9 +78,9 @@ def kept(one: Case, step: int, every: int, asleep: bool = True) -> KeptRun:
     return KeptRun(one.name, one.system, sweep, sweep.times, state, bounds, fails)
 
 
-def falls(one: Case, rule: Rule, count: int, given: bool = False) -> int:
+def falls(one: Case, rule: Rule, count: int, given: bool = False, h: float = H) -> int:
     """The step in which so many in a row are below; one more than there are where none is."""
-    state = step_body(SCHEMES[SCHEME], one.system, one.initial, H, STEPS, 1)[1]
+    state = step_body(SCHEMES[SCHEME], one.system, one.initial, h, STEPS, 1)[1]
     below, quiet = rule(one.system, state), 0
     for step in range(0 if given else 1, STEPS + 1):
         quiet = quiet + 1 if below[step] else 0
@@ -140,6 +140,25 @@ def test_the_state_that_is_given_may_be_counted() -> None:
     one = found(by_energy_per_mass, 5, given=True)
     assert one is not None
     assert one.statement.endswith(" in 5 states in a row, the given one among them")
+
+
+def test_the_time_may_be_one_and_not_the_count() -> None:
+    """Caught: no law, as shorter steps are more until the same time has passed."""
+    runs = list[KeptRun]()
+    for h in (0.05, 0.08, 0.11):
+        count = int(np.ceil(0.4 / h - 1e-9))
+        for one in CASES:
+            step = falls(one, by_energy_per_mass, count, h=h)
+            runs += [kept(one, step, every, h=h) for every in (1, 4)]
+    found = sleeping_runs(INTEGRATOR, runs)
+    assert found is not None
+    start = (
+        "the body is put to sleep where its kinetic energy over its mass is below a limit between "
+    )
+    assert found.statement.startswith(start)
+    last = found.statement.partition(" for a time between ")[2].split()
+    assert float(last[0]) <= 0.4 <= float(last[2])
+    assert float(last[2]) - float(last[0]) < 0.1
 
 
 def test_runs_that_stop_without_a_limit_are_not_named() -> None:

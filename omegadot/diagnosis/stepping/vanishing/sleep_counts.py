@@ -1,4 +1,4 @@
-"""A body that is put to sleep after some steps in a row below a limit: after how many, of what."""
+"""A body that is put to sleep after some steps, or some time, below a limit: how many, of what."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from omegadot.diagnosis.stepping.kept_run import KeptRun, SchemeOf, scheme_of
 from omegadot.diagnosis.stepping.vanishing.rests import LEAST, MOST_NAMED, SLEEPS, UNITS, between
 from omegadot.diagnosis.stepping.vanishing.spells import (
     MOST_IN_A_ROW,
+    NEAR,
     Spell,
     awake,
-    bounds_of,
     rests_from,
     sizes,
     slept,
 )
 from omegadot.diagnosis.wording.conditions import ODDS
+from omegadot.diagnosis.wording.digits import limits
 from omegadot.reference_impl.system import Array
 
 SCENARIOS = 2  # at least, that show it
@@ -69,19 +70,49 @@ def law_of_sleep(every: Sequence[Sleeps]) -> str:
     ways = comb(len(asleep) + len(apart), len(asleep))
     if len(spells) < LEAST or len(asleep) < SCENARIOS or ways < ODDS * len(UNITS):
         return ""
-    with np.errstate(all="ignore"):
-        low, high = _bounds(spells, others)
-    found = [text for k, name in enumerate(UNITS) if (text := _worded(name, low[:, k], high[:, k]))]
-    if not 0 < len(found) <= MOST_NAMED:
-        return ""
-    return f"{SLEEPS} where {'either ' * (len(found) > 1)}{', or '.join(found)}"
+    for times in (None, _times(spells)):
+        with np.errstate(all="ignore"):
+            low, high = _bounds(spells, others, times)
+        fits = (low > 0.0) & (low < high) & (high < np.inf)
+        found = [
+            _worded(name, fits[:, k], low[:, k], high[:, k], times)
+            for k, name in enumerate(UNITS)
+            if fits[:, k].any()
+        ]
+        if found:
+            several = "either " * (len(found) > 1)
+            text = f"{SLEEPS} where {several}{', or '.join(found)}"
+            return text * (len(found) <= MOST_NAMED)
+    return ""
+
+
+def _times(spells: Sequence[Spell]) -> Array:
+    """s, up to which a body may have to be below a limit: where the number of steps is another."""
+    longest = min(one.longest for one in spells)
+    steps = sorted({one.timestep for one in spells})
+    every = [
+        h * np.arange(1.0, min(longest / h * (1.0 + NEAR), MOST_IN_A_ROW) + 1.0) for h in steps
+    ]
+    return np.unique(np.concatenate(every))
 
 
 def _bounds(
-    spells: Sequence[Spell], others: Sequence[tuple[KeptRun, SchemeOf]]
+    spells: Sequence[Spell],
+    others: Sequence[tuple[KeptRun, SchemeOf]],
+    times: Array | None,
 ) -> tuple[Array, Array]:
-    """Low and high of all: of the runs that do not fall asleep the slowest are stepped again."""
-    low, high = bounds_of(spells)
+    """Low and high of all, by how many steps in a row, or by how long.
+
+    Of the runs that do not fall asleep the slowest are stepped again.
+    """
+
+    def ends(one: Spell) -> tuple[Array, Array]:
+        return (one.low, one.high) if times is None else one.below_for(times)
+
+    low, high = ends(spells[0])
+    for one in spells[1:]:
+        more, less = ends(one)
+        low, high = np.maximum(low, more), np.minimum(high, less)
     if not others or not np.any(low < high):
         return low, high
     least, looked_at = np.stack([np.min(sizes(run), axis=-1) for run, _ in others]), set[int]()
@@ -90,23 +121,25 @@ def _bounds(
             open_ = high[:, k][low[:, k] < high[:, k]]
             if not len(open_) or least[place, k] >= np.max(open_) or len(looked_at) >= MOST_STEPPED:
                 break
-            if place in looked_at:
-                continue
-            looked_at.add(place)
-            spell = awake(*others[place])
-            high = high if spell is None else np.minimum(high, spell.high)
+            if place not in looked_at:
+                looked_at.add(place)
+                spell = awake(*others[place])
+                high = high if spell is None else np.minimum(high, ends(spell)[1])
     return low, high
 
 
-def _worded(name: str, low: Array, high: Array) -> str:
-    """Of one quantity, low and high (WAYS, N); "" where no count leaves a limit between these."""
-    fits = (low > 0.0) & (low < high) & (high < np.inf)
-    if not fits.any():
-        return ""
+def _worded(
+    name: str, fits: NDArray[np.bool_], low: Array, high: Array, times: Array | None
+) -> str:
+    """Of one quantity: fits, low and high (WAYS, N), or (1, T) of these times in s."""
     way = int(np.argmax(fits.any(-1)))
-    counts = np.flatnonzero(fits[way])
-    limit = between(float(np.min(low[way, counts])), float(np.max(high[way, counts])), UNITS[name])
-    return f"{name} is below a limit between {limit}{_in_a_row(counts + 1, bool(way))}"
+    fit = np.flatnonzero(fits[way])
+    limit = between(float(np.min(low[way, fit])), float(np.max(high[way, fit])), UNITS[name])
+    below = f"{name} is below a limit between {limit}"
+    if times is None:
+        return below + _in_a_row(fit + 1, bool(way))
+    before = np.append(0.0, times)[fit[0]]
+    return f"{below} for a time between {limits(float(before), float(times[fit[-1]]), 's')}"
 
 
 def _in_a_row(counts: NDArray[np.intp], with_given: bool) -> str:

@@ -8,7 +8,7 @@ asleep leaves it below the second.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +24,7 @@ from omegadot.reference_impl.system import Array, State
 
 MOST_IN_A_ROW = 256  # steps
 ROUNDINGS = 8  # of a state at rest that is given in other coordinates than it is stepped in
+NEAR = 1e-9  # relative: a time that is a whole number of steps but for rounding
 WAYS = 2  # the steps alone are counted, or the state that is given as well
 
 
@@ -32,12 +33,26 @@ class Spell:
     """Of a run of this scenario: low and high (WAYS, Q, N), what its limit is not below or above.
 
     Q: the quantities of `UNITS`.  N: from 1 on, how many steps in a row.  Where the run does not
-    fall asleep, low is zero.
+    fall asleep, low is zero.  timestep: s.
     """
 
     name: str
+    timestep: float
     low: Array
     high: Array
+
+    @property
+    def longest(self) -> float:
+        """s, that a run which falls asleep can have been below a limit before."""
+        return self.timestep * float(np.count_nonzero(np.isfinite(self.low[0, 0])))
+
+    def below_for(self, times: Array) -> tuple[Array, Array]:
+        """Low and high (1, Q, T) where the steps in a row last these times in s, or just longer."""
+        numbers = np.maximum(np.ceil(times / self.timestep * (1.0 - NEAR)).astype(int), 1)
+        places = np.minimum(numbers, MOST_IN_A_ROW) - 1
+        high = np.where(numbers > MOST_IN_A_ROW, np.inf, self.high[:1, :, places])
+        asleep = np.where(numbers > MOST_IN_A_ROW, np.inf, self.low[:1, :, places])
+        return (asleep if np.any(self.low) else np.zeros_like(high)), high
 
 
 def rests_from(run: KeptRun) -> int:
@@ -125,7 +140,8 @@ def _spell(run: KeptRun, stepped: State, asleep: tuple[int, int] | None) -> Spel
             steps = number - way  # by which step so many are in a row
             high[way, :, n] = np.min(most[:, : max(0, begin - steps)], axis=-1, initial=np.inf)
             low[way, :, n] = np.min(most[:, : max(0, end - steps + 1)], axis=-1, initial=np.inf)
-    return Spell(run.name, low if asleep else np.zeros_like(low), high)
+    low = low if asleep else np.zeros_like(low)
+    return Spell(run.name, run.timestep, low, high)
 
 
 def _in_a_row(values: Array) -> Iterator[tuple[int, Array]]:
@@ -134,11 +150,3 @@ def _in_a_row(values: Array) -> Iterator[tuple[int, Array]]:
     for number in range(1, min(MOST_IN_A_ROW, values.shape[1]) + 1):
         yield number, most
         most = np.maximum(most[:, :-1], values[:, number:])
-
-
-def bounds_of(spells: Sequence[Spell]) -> tuple[Array, Array]:
-    """Low and high of all."""
-    return (
-        np.max([one.low for one in spells], axis=0),
-        np.min([one.high for one in spells], axis=0),
-    )
