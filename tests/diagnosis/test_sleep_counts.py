@@ -161,6 +161,17 @@ def test_the_time_may_be_one_and_not_the_count() -> None:
     assert float(last[2]) - float(last[0]) < 0.1
 
 
+def test_a_body_that_moves_and_does_not_turn_falls_asleep_as_well() -> None:
+    """Caught: what its omega is not off in was taken for another cause."""
+    start = replace(CASES[9].initial, angular_velocity=np.zeros(3))
+    flies = replace(CASES[9], name="flies", initial=start)
+    runs = [kept(one, falls(one, by_omega, 5), n) for one in (*CASES, flies) for n in (1, 4)]
+    found = sleeping_runs(INTEGRATOR, runs)
+    assert found is not None
+    assert "|omega| is below a limit" in found.statement
+    assert "flies" in found.names
+
+
 def test_runs_that_stop_without_a_limit_are_not_named() -> None:
     """Caught: a limit of whatever happens to be small where a run stops."""
     for stop in (lambda k: 5, lambda k: 7 + 3 * (k % 4), lambda k: 9 if k % 3 else STEPS + 1):

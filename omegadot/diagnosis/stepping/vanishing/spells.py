@@ -20,7 +20,7 @@ from omegadot.gates.bounds.scales import EPS, norm
 from omegadot.reference_impl.one_body.body_motion import body_motion
 from omegadot.reference_impl.rotations import normalize, rotation_between
 from omegadot.reference_impl.stepping import step_body
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.system import Array, State, System
 
 MOST_IN_A_ROW = 256  # steps
 ROUNDINGS = 8  # of a state at rest that is given in other coordinates than it is stepped in
@@ -60,9 +60,7 @@ def rests_from(run: KeptRun) -> int:
 
     Its velocities are zero there, and neither its attitude nor its place changes any more.
     """
-    still = stands(run.state)
-    if run.system.load.pivot is None:
-        still &= ~np.any(run.state.linear_velocity, axis=-1)
+    still = _is_still(run.system, run.state)
     first = int(np.argmax(still))
     after = run.state[first:]
     names = ["orientation", *(["position"] if run.system.load.pivot is None else [])]
@@ -70,6 +68,12 @@ def rests_from(run: KeptRun) -> int:
         values = getattr(after, name)
         still[first:] &= norm(values - values[:1]) <= ROUNDINGS * EPS * norm(values[:1])
     return first if first > 0 and bool(np.all(still[first:])) else 0
+
+
+def _is_still(system: System, states: State) -> NDArray[np.bool_]:
+    """(n,): whether the velocities are zero; a pivoted body's follows from omega."""
+    moves = np.any(states.linear_velocity, axis=-1)
+    return stands(states) if system.load.pivot is not None else stands(states) & ~moves
 
 
 def slept(run: KeptRun, by: SchemeOf) -> Spell | None:
@@ -80,7 +84,7 @@ def slept(run: KeptRun, by: SchemeOf) -> Spell | None:
     stepped = _steps_within(run, by, first)
     ends = State(*(f[-1] for f in vars(stepped).values()))
     good = run.reached(ends, first)
-    if not np.all(good[:-1]) or good[-1] or np.any(stands(ends)):
+    if not np.all(good[:-1]) or good[-1] or np.any(_is_still(run.system, ends)):
         return None
     last = State(*(f[:, -1] for f in vars(stepped).values()))
     near = np.flatnonzero(_rests_at(run, last, first))
