@@ -86,6 +86,7 @@ def kept_case(
         over.beginnings[case.name] = beginning
     over.fails[case.name] = any(run.fails for run in runs)
     whole = [*_whole_runs(truth, result, runs)]
+    over.runs.integrator = runs[0].integrator
     _keep(over.runs, case, truth, result, whole)
     failed = (row for run in runs for row in run.rows if row.verdict == "fail")
     turned_wrong = any(row.channel == "attitude" for row in failed)

@@ -22,6 +22,7 @@ from omegadot.diagnosis.stepping.over_runs import causes_over_runs
 from omegadot.diagnosis.stepping.vanishing.follows import Beginning, Followed, follows
 from omegadot.diagnosis.stepping.vanishing.freezes import FREEZES
 from omegadot.diagnosis.stepping.vanishing.rests import SLEEPS, Rests, sleep_law
+from omegadot.diagnosis.stepping.vanishing.sleep_counts import Sleeps, law_of_sleep
 from omegadot.diagnosis.wording.kinds import is_named
 from omegadot.written import written
 
@@ -124,6 +125,7 @@ class EngineOverScenarios:
     integrators: dict[str, OverScenarios] = field(
         default_factory=lambda: defaultdict(OverScenarios)
     )
+    _slept: tuple[tuple[Sleeps, ...], str] = ((), "")
 
     def __post_init__(self) -> None:
         """Both are looked at together: what is kept is often decided by a small change."""
@@ -134,9 +136,22 @@ class EngineOverScenarios:
 
         One rule of all integrators that put it to sleep; where there is none, of this one.
         """
-        return self._below_a_limit(integrator, name, "rests", SLEEPS) or self._below_a_limit(
-            integrator, name, "frozen", FREEZES
+        return (
+            self._below_a_limit(integrator, name, "rests", SLEEPS)
+            or self._after_steps(integrator, name)
+            or self._below_a_limit(integrator, name, "frozen", FREEZES)
         )
+
+    def _after_steps(self, integrator: str, name: str) -> str:
+        """One rule of all integrators whose runs fall asleep after some steps, or of this one."""
+        own = self.integrators[integrator].runs.sleeps
+        if own is None or name not in own.names:
+            return ""
+        every = [over.runs.sleeps for over in self.integrators.values()]
+        known = tuple(one for one in every if one is not None)
+        if self._slept[0] != known:
+            self._slept = known, law_of_sleep(known)
+        return self._slept[1] or own.statement
 
     def _below_a_limit(self, integrator: str, name: str, which: str, what: str) -> str:
         """One rule of all bodies, or of those that are free, or pivoted, as this one is."""

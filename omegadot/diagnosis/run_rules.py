@@ -11,11 +11,12 @@ from omegadot.diagnosis.stepping.ends.run_ends import Ends, RunEnd, other_ends
 from omegadot.diagnosis.stepping.ends.starts import Starts, other_start
 from omegadot.diagnosis.stepping.kept_run import KeptRun
 from omegadot.diagnosis.stepping.turns.factor_lengths import OtherLengths, other_lengths
+from omegadot.diagnosis.stepping.vanishing.sleep_counts import Sleeps, sleeping_runs
 from omegadot.diagnosis.stepping.vanishing.vanishing_steps import VanishingSteps
 from omegadot.reference_impl.system import State
 
 # Each has a statement of all runs, and names of the scenarios whose failed runs this explains.
-RunRule = Starts | Ends | Moved | OtherLengths
+RunRule = Starts | Ends | Moved | OtherLengths | Sleeps
 
 
 @dataclass
@@ -25,8 +26,10 @@ class KeptRuns:
     kept: the first samples of every run.  negated: of those that are requested again from -q.
     ends: the last two samples of every run.  By scenario, steps and given: first steps from many
     states, as they vanish, and the state that runs are given.  requested: s, the lengths of steps
-    of all runs, as they were requested.
+    of all runs, as they were requested.  integrator: whose runs these are.
     """
+
+    integrator: Integrator | None = None
 
     kept: list[KeptRun] = field(default_factory=list)
     negated: list[KeptRun] = field(default_factory=list)
@@ -52,6 +55,12 @@ class KeptRuns:
         found = self.rule(kind, integrator)
         return found.statement if found is not None and name in found.names else ""
 
+    @property
+    def sleeps(self) -> Sleeps | None:
+        """After what a body is put to sleep in these runs; None where none is seen to be."""
+        found = self.rule(SLEEP, self.integrator) if self.integrator is not None else None
+        return found if isinstance(found, Sleeps) else None
+
     def explains_negated(self, integrator: Integrator, name: str) -> str:
         """At which other state all runs begin, where that makes those from -q; else ""."""
         found = self.rule(STARTS, integrator)
@@ -63,10 +72,11 @@ class KeptRuns:
         return found.statement * all(found.makes(run, other) for run in runs)
 
 
-STARTS, ENDS, MOVED, LENGTHS = "starts", "ends", "moved", "lengths"
+STARTS, ENDS, MOVED, LENGTHS, SLEEP = "starts", "ends", "moved", "lengths", "sleep"
 KINDS: Mapping[str, Callable[[Integrator, KeptRuns], RunRule | None]] = {
     STARTS: lambda how, runs: other_start(how, runs.steps, runs.given, runs.kept),
     ENDS: lambda how, runs: other_ends(how, runs.ends, runs.kept),
     MOVED: lambda how, runs: moved_samples(how, runs.kept),
     LENGTHS: lambda how, runs: other_lengths(how, runs.steps, runs.kept, runs.requested),
+    SLEEP: lambda how, runs: sleeping_runs(how, runs.kept),
 }

@@ -102,6 +102,27 @@ def conjugated_in_part(state: State) -> State:
     return replace(state, orientation=other)
 
 
+def velocity_of_origin(sign: float) -> Change:
+    """R (omega x c) more, or less: of the one of two points taken for that of the other."""
+
+    def start(state: State) -> State:
+        center = np.broadcast_to(CASES[0].system.body.center_of_mass, state.angular_velocity.shape)
+        between = rotate(state.orientation, np.cross(state.angular_velocity, center))
+        return replace(state, linear_velocity=state.linear_velocity + sign * between)
+
+    return start
+
+
+def place_of_origin(sign: float) -> Change:
+    """R c more, or less."""
+
+    def start(state: State) -> State:
+        center = np.broadcast_to(CASES[0].system.body.center_of_mass, state.angular_velocity.shape)
+        return replace(state, position=state.position + sign * rotate(state.orientation, center))
+
+    return start
+
+
 def unsigned(state: State) -> State:
     """The scalar part of the quaternion by its size."""
     w = np.abs(state.orientation[..., :1])
@@ -129,6 +150,36 @@ def unsigned(state: State) -> State:
         (
             unsigned,
             "with the quaternion's scalar part without its sign",
+        ),
+        (
+            velocity_of_origin(1.0),
+            "with the linear velocity of the centre of mass taken for that of the body's origin: "
+            "R (omega x c) is added",
+        ),
+        (
+            velocity_of_origin(-1.0),
+            "with the linear velocity of the body's origin in place of that of the centre of mass: "
+            "R (omega x c) is taken off",
+        ),
+        (
+            place_of_origin(1.0),
+            "with the position of the centre of mass taken for that of the body's origin: "
+            "R c is added",
+        ),
+        (
+            place_of_origin(-1.0),
+            "with the position of the body's origin in place of that of the centre of mass: "
+            "R c is taken off",
+        ),
+        (
+            lambda s: replace(s, linear_velocity=rotate(s.orientation, s.linear_velocity)),
+            "with the linear velocity turned by R",
+        ),
+        (
+            lambda s: replace(
+                s, angular_velocity=rotate(conjugate(s.orientation), s.angular_velocity)
+            ),
+            "with omega turned by R^T",
         ),
         (lambda s: replace(s, angular_velocity=-s.angular_velocity), "with omega reversed"),
         (
@@ -158,6 +209,7 @@ def test_samples_that_are_reported_so_are_no_other_start() -> None:
 
     assert statement(same, swapped) == ""
     assert statement(same, by_atan) == ""
+    assert statement(same, velocity_of_origin(1.0)) == ""
     assert statement(same) == ""
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from omegadot.diagnosis.models.fitted_misreadings import order_text, signed_orders
+from omegadot.diagnosis.models.of_other_point import of_other_point
 from omegadot.diagnosis.wording.digits import factor, number, vector
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.rotations import (
@@ -17,7 +18,7 @@ from omegadot.reference_impl.rotations import (
     rotate,
     rotate_inverse,
 )
-from omegadot.reference_impl.system import Array, State
+from omegadot.reference_impl.system import Array, State, System
 
 VECTORS = {
     "angular_velocity": "omega",
@@ -27,12 +28,15 @@ VECTORS = {
 PLAIN = 3  # digits of a fitted number that is tried first
 CLOSE = 1e-4  # of an angle or of an axis that is a plain one
 PLAIN_ANGLES = {np.pi: "half a turn", np.pi / 2: "a quarter of a turn"}
-Made = Callable[[State], Array]
+Made = Callable[[System, State], Array]
 
 
 @dataclass(frozen=True)
 class OtherStart:
-    """statement: completes ``a run begins ...``.  made: the quantity, of the states given."""
+    """statement: completes ``a run begins ...``.
+
+    made: the quantity, of a system and of the states given.
+    """
 
     statement: str
     made: Made
@@ -50,6 +54,8 @@ def other_starts(name: str, given: State, begins: State) -> Iterator[OtherStart]
         return
     what = VECTORS[name]
     yield from _vectors(name, what)
+    for text, made in of_other_point(name):
+        yield OtherStart(text, made)
     came, due = getattr(begins, name), getattr(given, name)
     size = float(np.sum(due * due))
     k = float(np.sum(came * due)) / size if size > 0.0 else 0.0
@@ -60,11 +66,11 @@ def other_starts(name: str, given: State, begins: State) -> Iterator[OtherStart]
 
 def _attitudes() -> Iterator[OtherStart]:
     of = "with the quaternion"
-    yield OtherStart(f"{of} conjugated", lambda s: conjugate(s.orientation))
+    yield OtherStart(f"{of} conjugated", lambda _, s: conjugate(s.orientation))
     yield OtherStart(f"{of}'s scalar part without its sign", _unsigned)
     yield OtherStart(
         "at the identity, whatever attitude it is given",
-        lambda s: 0.0 * s.orientation + np.array([1.0, 0.0, 0.0, 0.0]),
+        lambda _, s: 0.0 * s.orientation + np.array([1.0, 0.0, 0.0, 0.0]),
     )
     first, last = "(w, x, y, z)", "(x, y, z, w)"
     yield OtherStart(f"{of} {first} taken as {last}", _rolled(1))
@@ -76,24 +82,24 @@ def _attitudes() -> Iterator[OtherStart]:
             yield OtherStart(text, _by_turn(turn, world))
     for order, signs in signed_orders():
 
-        def made(s: State, order: list[int] = order, signs: Array = signs) -> Array:
+        def made(_: System, s: State, order: list[int] = order, signs: Array = signs) -> Array:
             q = s.orientation
             return np.concatenate((q[..., :1], signs * q[..., 1:][..., order]), axis=-1)
 
         yield OtherStart(_reordered("the quaternion", order, signs), made)
 
 
-def _unsigned(state: State) -> Array:
+def _unsigned(_: System, state: State) -> Array:
     q = state.orientation
     return np.concatenate((np.abs(q[..., :1]), q[..., 1:]), axis=-1)
 
 
 def _rolled(shift: int) -> Made:
-    return lambda s: np.roll(s.orientation, shift, axis=-1)
+    return lambda _, s: np.roll(s.orientation, shift, axis=-1)
 
 
 def _by_turn(turn: Array, world: bool) -> Made:
-    def made(state: State) -> Array:
+    def made(_: System, state: State) -> Array:
         whole = np.broadcast_to(turn, state.orientation.shape)
         pair = (whole, state.orientation) if world else (state.orientation, whole)
         return quaternion_product(*pair)
@@ -128,16 +134,16 @@ def _turned(given: Array, begins: Array) -> Iterator[OtherStart]:
 
 
 def _vectors(name: str, what: str) -> Iterator[OtherStart]:
-    yield OtherStart(f"with {what} zero", lambda s: 0.0 * getattr(s, name))
+    yield OtherStart(f"with {what} zero", lambda _, s: 0.0 * getattr(s, name))
     for order, signs in _orders():
 
-        def made(s: State, order: list[int] = order, signs: Array = signs) -> Array:
+        def made(_: System, s: State, order: list[int] = order, signs: Array = signs) -> Array:
             return np.asarray(signs * getattr(s, name)[..., order])
 
         yield OtherStart(_reordered(what, order, signs), made)
     for turn, text in ((rotate, "R"), (rotate_inverse, "R^T")):
 
-        def turned(s: State, turn: Callable[[Array, Array], Array] = turn) -> Array:
+        def turned(_: System, s: State, turn: Callable[[Array, Array], Array] = turn) -> Array:
             return turn(s.orientation, getattr(s, name))
 
         yield OtherStart(f"with {what} turned by {text}", turned)
@@ -165,4 +171,4 @@ def _reordered(what: str, order: list[int], signs: Array) -> str:
 
 
 def _by(name: str, k: float) -> Made:
-    return lambda s: k * getattr(s, name)
+    return lambda _, s: k * getattr(s, name)

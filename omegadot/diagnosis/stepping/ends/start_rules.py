@@ -88,7 +88,7 @@ def _rule(name: str, scenes: Sequence[VanishingSteps]) -> Rule | None:
     given, begins = (_joined(scenes, jumps, which) for which in ("states", "start"))
     conditional = list[tuple[OtherStart, list[Flags]]]()
     for one in other_starts(name, given, begins):
-        fits = [same_start(each, name, one.made(each.states)) for each in scenes]
+        fits = [same_start(each, name, one.made(each.system, each.states)) for each in scenes]
         pairs = list(zip(fits, jumps, strict=True))
         if all(fit.all() for fit in fits):
             return Rule(one.statement, one.made)

@@ -19,7 +19,7 @@ from omegadot.diagnosis.wording.digits import listed
 from omegadot.gates.bounds.scales import norm
 from omegadot.reference_impl.kinematics import place_on_pivot
 from omegadot.reference_impl.rotations import attitude_angle
-from omegadot.reference_impl.system import State
+from omegadot.reference_impl.system import State, System
 
 SLACK = 4.0
 SCENARIOS = 2  # at least, that show it
@@ -92,17 +92,17 @@ def _held(
     return Starts(statement, frozenset(jumping - wrong), rules, by)
 
 
-def _made(rules: Mapping[str, Rule], state: State) -> State | None:
+def _made(rules: Mapping[str, Rule], system: System, state: State) -> State | None:
     """The states by all rules, whatever their conditions; None where one is of a convention."""
     if any(rule.made is None for rule in rules.values()):
         return None
-    made = {name: rule.made(state) for name, rule in rules.items() if rule.made is not None}
+    made = {n: rule.made(system, state) for n, rule in rules.items() if rule.made is not None}
     return replace(state, **made)
 
 
 def _from(rules: Mapping[str, Rule], run: KeptRun, given: State) -> list[KeptRun]:
     """The run from where it begins by the rules: the first sample may be logged as it is given."""
-    made = _made(rules, given)
+    made = _made(rules, run.system, given)
     if made is None:
         return []
     return [_with_start(run, place_on_pivot(run.system, made))]
@@ -121,7 +121,7 @@ def _decides(rules: Mapping[str, Rule], by: SchemeOf, run: KeptRun, given: State
     if _near(run, begins, start):
         return False
     end = _with_start(run, given).ends(by)[:1]
-    made = _made(rules, end)
+    made = _made(rules, run.system, end)
     if made is None:
         return True  # of a convention no sample is made here
     repeated = (np.repeat(f, len(run.times) - 1, axis=0) for f in vars(made).values())

@@ -153,11 +153,12 @@ def _of_two(every: Sequence[Rests]) -> str:
     high = [float(np.min(values, initial=np.inf)) for values in near]
     if not all(0.0 < a < b < np.inf for a, b in zip(low, high, strict=True)):
         return ""
-    omega, speed = (_between(low[k], high[k], UNITS[names[k]]) for k in range(2))
+    omega, speed = (between(low[k], high[k], UNITS[names[k]]) for k in range(2))
     return f"|omega| is below a limit between {omega} and its speed is below one between {speed}"
 
 
-def _between(low: float, high: float, unit: str) -> str:
+def between(low: float, high: float, unit: str) -> str:
+    """Two ends, in digits that a short step does not change."""
     return limits(_outward(low, np.floor), _outward(high, np.ceil), unit)
 
 
@@ -179,7 +180,7 @@ def sleep_law(every: Sequence[Rests], what: str = SLEEPS) -> str:
         low = max((one.at_rest[name] for one in every if one.at_rest), default=0.0)
         high = min((one.moving[name] for one in every if one.moving), default=np.inf)
         if 0.0 < low < high < np.inf:
-            found.append(f"{name} is below a limit between {_between(low, high, unit)}")
+            found.append(f"{name} is below a limit between {between(low, high, unit)}")
     found = found or [text for text in (_of_two(every),) if text]
     if not found or len(found) > MOST_NAMED:
         return ""
