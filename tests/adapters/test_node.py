@@ -240,3 +240,23 @@ def test_as_shipped_rapier_puts_a_slow_body_to_sleep() -> None:
         adapter.load(of([2.0, 2.0, 2.0]))
         found = adapter.run(slow, "step", 0.02, 200, 200).state[-1].angular_velocity
         assert bool(found.any()) is moves
+
+
+def test_as_shipped_jolt_takes_no_small_moments() -> None:
+    """It holds those of a sphere of radius 1 m in their place."""
+    small = System((Body(np.array(1e-3), np.zeros(3), 1e-8 * system("full").body.inertia),))
+    for setup, expected in (("as-shipped", 4e-4 * np.eye(3)), ("physics", small.body.inertia)):
+        adapter = built("jolt-physics", setup)
+        adapter.load(small)
+        (found,) = adapter.model()
+        assert np.max(np.abs(found.inertia - expected)) <= FEW * SINGLE * np.max(expected)
+
+
+def test_as_shipped_jolt_puts_slow_bodies_to_sleep_and_no_others() -> None:
+    """Caught: a shape without size, whose bounds do not move however fast it turns."""
+    for spin, moves in ((2.0, True), (1e-3, False)):
+        adapter = built("jolt-physics", "as-shipped")
+        adapter.load(of([1.0, 2.0, 2.5]))
+        start = replace(TURNED, angular_velocity=np.array([0.0, spin, 0.0]))
+        found = adapter.run(start, "step", STEP, 100, 100).state[-1].angular_velocity
+        assert bool(found.any()) is moves

@@ -1,15 +1,18 @@
-// Jolt, compiled to WebAssembly: one body of an EmptyShape, which holds its centre of mass.
+// Jolt, compiled to WebAssembly: one body, a sphere that touches nothing. Jolt decides by how fast a
+// shape's bounds move whether to put a body to sleep, so that it has to be of the body's size.
 'use strict';
 const path = require('path');
 const { pathToFileURL } = require('url');
-const { rotated, turnedDiagonal } = require('./rotations.js');
+const { principal, rotated, turnedDiagonal } = require('./rotations.js');
 
 const FAST = 1e18; // its square is finite in single precision
+const NEAR_ZERO = 1e-6; // kg m^2: MotionProperties::SetMassProperties takes no moments of less length
 const SWITCHED_OFF = [
   'no gyroscopic force by default (BodyCreationSettings.mApplyGyroscopicForce is set)',
   'mLinearDamping and mAngularDamping of 0.05: v is multiplied by 1 - d h at each step',
   'mMaxAngularVelocity of 47.1 rad/s and mMaxLinearVelocity of 500 m/s',
   'sleep (mAllowSleeping)',
+  'the moments 0.4 m that stand in for moments below 1e-6 kg m^2 (MotionProperties.SetInverseInertia gives the right ones)',
 ];
 
 async function open(folder) {
@@ -68,7 +71,9 @@ function filled(vector, values) {
 
 // Settings of a body; those that they point to are copied.
 function settingsOf({ api, scratch }, setup, given) {
-  const shape = new api.EmptyShape(filled(scratch.one, given.center_of_mass));
+  const mean = (given.inertia[0] + given.inertia[4] + given.inertia[8]) / 3;
+  const sphere = new api.SphereShape(Math.sqrt(2.5 * mean / given.mass)); // with this moment
+  const shape = new api.OffsetCenterOfMassShape(sphere, filled(scratch.one, given.center_of_mass));
   const start = [filled(scratch.place, [0, 0, 0]), filled(scratch.turn, [0, 0, 0, 1])];
   const made = new api.BodyCreationSettings(shape, ...start, api.EMotionType_Dynamic, 0);
   made.mOverrideMassProperties = api.EOverrideMassProperties_MassAndInertiaProvided;
@@ -94,8 +99,17 @@ class World {
     const settings = settingsOf(opened, setup, given);
     this.body = this.bodies.CreateBody(settings);
     this.api.destroy(settings);
+    if (setup === 'physics') this.keepSmallMoments(given.inertia);
     this.bodies.AddBody(this.body.GetID(), this.api.EActivation_Activate);
     this.center = list(this.body.GetShape().GetCenterOfMass());
+  }
+
+  keepSmallMoments(inertia) {
+    const { moments, frame: [w, x, y, z] } = principal(inertia);
+    if (Math.hypot(...moments) > 2 * NEAR_ZERO) return; // twice, for the rounding of its square
+    const { one, turn } = this.scratch;
+    const inverse = [filled(one, moments.map((moment) => 1 / moment)), filled(turn, [x, y, z, w])];
+    this.body.GetMotionProperties().SetInverseInertia(...inverse);
   }
 
   put({ q, w, p, v }) {
