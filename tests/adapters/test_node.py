@@ -260,3 +260,28 @@ def test_as_shipped_jolt_puts_slow_bodies_to_sleep_and_no_others() -> None:
         start = replace(TURNED, angular_velocity=np.array([0.0, spin, 0.0]))
         found = adapter.run(start, "step", STEP, 100, 100).state[-1].angular_velocity
         assert bool(found.any()) is moves
+
+
+def test_as_shipped_rapier_goes_no_faster_than_400_m_per_s() -> None:
+    fast = replace(TURNED, linear_velocity=np.array([1e3, 0.0, 0.0]))
+    for setup, most in (("as-shipped", 400.0), ("physics", 1e3)):
+        adapter = built("rapier3d-compat", setup)
+        adapter.load(of([1.0, 2.0, 2.5]))
+        found = adapter.run(fast, "step", STEP, 1, 1).state[-1].linear_velocity
+        assert abs(found[0] - most) <= FEW * SINGLE * most
+
+
+def test_rapier_cuts_omega_down_to_an_eighth_of_a_turn_in_a_step() -> None:
+    """No option changes that, so that the setup physics refuses to go on."""
+    limit = np.pi / 4 / STEP
+    for spin in (0.99 * limit, 1.2 * limit):
+        start = replace(TURNED, angular_velocity=np.array([0.0, 0.0, spin]))
+        shipped = built("rapier3d-compat", "as-shipped")
+        shipped.load(of([2.0, 2.0, 2.0]))
+        found = shipped.run(start, "step", STEP, 3, 3).state[-1].angular_velocity
+        assert abs(found[2] - min(spin, limit)) <= FEW * SINGLE * limit
+    adapter = built("rapier3d-compat")
+    adapter.load(of([2.0, 2.0, 2.0]))
+    assert adapter.run(start, "step", STEP / 2, 3, 3).state.orientation.shape == (2, 4)
+    with pytest.raises(UnsupportedError, match="at most 45 degrees in a step"):
+        adapter.run(start, "step", STEP, 3, 3)

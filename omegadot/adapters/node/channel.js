@@ -10,6 +10,9 @@ class Table {
   }
 }
 
+// What an engine cannot do: it is answered as unsupported, with this reason.
+class Unsupported extends Error {}
+
 // Exactly so many bytes of standard input; at its end, leave.
 function read(count) {
   const buffer = Buffer.alloc(count);
@@ -56,4 +59,4 @@ function bytesOf(table) {
   return bytes;
 }
 
-module.exports = { Table, receive, send };
+module.exports = { Table, Unsupported, receive, send };

@@ -48,7 +48,7 @@ function description(api, setup) {
       name: 'step',
       scheme: null,
       orders: Object.fromEntries(channels.map((channel) => [channel, 1])),
-      note: 'JoltInterface.Step with one collision step',
+      note: 'JoltInterface.Step: L1 = (L - h w x L) |L| / |L - h w x L|, w1 = I^-1 (L1 + h t), and the rotation of h w1',
     }],
     conventions: [
       'quaternions are (x, y, z, w), world-from-body',
@@ -57,7 +57,11 @@ function description(api, setup) {
       'a torque is in world axes and acts during one step: a torque in body axes is turned at the start of each step',
     ],
     switched_off: setup === 'physics' ? SWITCHED_OFF : [],
-    links: ['https://github.com/jrouwe/JoltPhysics', 'https://github.com/jrouwe/JoltPhysics.js'],
+    links: [
+      'https://github.com/jrouwe/JoltPhysics',
+      'https://github.com/jrouwe/JoltPhysics.js',
+      'https://github.com/jrouwe/JoltPhysics/issues/803',
+    ],
   };
 }
 

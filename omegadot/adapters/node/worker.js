@@ -15,12 +15,10 @@ console.log = console.info = console.error; // standard output is for answers al
 
 const fs = require('fs');
 const path = require('path');
-const { Table, receive, send } = require('./channel.js');
+const { Table, Unsupported, receive, send } = require('./channel.js');
 const { conjugate, rotated } = require('./rotations.js');
 
 const KEYS = { orientation: 'q', angular_velocity: 'w', position: 'p', linear_velocity: 'v' };
-
-class Unsupported extends Error {}
 
 class Server {
   constructor(engine, api, version) {
